@@ -1,0 +1,88 @@
+//! The one error type. Its kind is the status code at the C boundary; its message names the parameter, its value and
+//! what is allowed, and says what to do.
+
+use std::fmt;
+
+/// What went wrong, with the values of `luxfer_status`: append only, 0-6 as in Embree and Open Image Denoise.
+#[repr(i32)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ErrorKind {
+    /// A cause that has no kind of its own.
+    Unknown = 1,
+    /// A parameter is null, out of range, or contradicts another.
+    InvalidArgument = 2,
+    /// The call is not allowed in the object's present state.
+    InvalidOperation = 3,
+    /// The memory budget of the context, or the machine, is used up.
+    OutOfMemory = 4,
+    /// The file or the request is valid, but uses something this library does not do.
+    Unsupported = 5,
+    /// The caller cancelled the job.
+    Cancelled = 6,
+    /// The operating system could not read or write a file.
+    Io = 7,
+    /// A file is truncated, corrupt, or not what it claims to be.
+    Format = 8,
+    /// A result was asked for before the stage that makes it has run.
+    NotReady = 9,
+    /// A defect in this library: please report it.
+    Internal = 10,
+    /// The input is well formed but has no answer: no lines, a plane seen edge-on, one class of strokes only.
+    Degenerate = 11,
+    /// No surface, image or entry has the given name.
+    NotFound = 12,
+    /// No light can reach the target: no path, a channel fully absorbed, or negative light would be needed.
+    Unreachable = 13,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct Error {
+    pub kind: ErrorKind,
+    pub message: String,
+}
+
+pub type Result<T> = std::result::Result<T, Error>;
+
+impl Error {
+    pub fn new(kind: ErrorKind, message: impl Into<String>) -> Self {
+        Self { kind, message: message.into() }
+    }
+
+    pub fn argument(message: impl Into<String>) -> Self {
+        Self::new(ErrorKind::InvalidArgument, message)
+    }
+
+    pub fn degenerate(message: impl Into<String>) -> Self {
+        Self::new(ErrorKind::Degenerate, message)
+    }
+
+    pub fn format(message: impl Into<String>) -> Self {
+        Self::new(ErrorKind::Format, message)
+    }
+
+    pub fn cancelled() -> Self {
+        Self::new(ErrorKind::Cancelled, "the job was cancelled")
+    }
+
+    /// The same error with where it happened in front: `texture 3: the file is truncated`.
+    pub fn within(self, place: impl fmt::Display) -> Self {
+        Self { message: format!("{place}: {}", self.message), ..self }
+    }
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+impl std::error::Error for Error {}
+
+/// Checks that a parameter lies in `[low, high]`; a NaN never does.
+pub fn check_range<T: PartialOrd + fmt::Display>(name: &str, value: T, low: T, high: T) -> Result<T> {
+    if value >= low && value <= high {
+        Ok(value)
+    } else {
+        Err(Error::argument(format!("{name} is {value}; it must lie in [{low}, {high}]")))
+    }
+}

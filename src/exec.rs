@@ -1,0 +1,120 @@
+//! The library's own thread pool, and loops whose result does not depend on the number of threads.
+//!
+//! rayon's global pool is never used: it cannot be ended, and it belongs to the host. Dropping a rayon pool only signals
+//! its threads, so the handles are kept here and joined.
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::job::Job;
+use rayon::prelude::*;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread::JoinHandle;
+
+pub struct Pool {
+    threads: Option<rayon::ThreadPool>,
+    handles: Vec<JoinHandle<()>>,
+}
+
+impl Pool {
+    /// A pool of `num_threads` threads; 0 means one for each core this process may use.
+    pub fn new(num_threads: usize) -> Result<Self> {
+        let cores = std::thread::available_parallelism().map_or(1, |n| n.get());
+        let count = if num_threads == 0 { cores } else { num_threads };
+        let handles = Mutex::new(Vec::new());
+        let threads = rayon::ThreadPoolBuilder::new()
+            .num_threads(count)
+            .spawn_handler(|thread| {
+                let handle = std::thread::Builder::new()
+                    .name(format!("luxfer-{}", thread.index()))
+                    .stack_size(4 << 20)
+                    .spawn(|| thread.run())?;
+                handles.lock().unwrap_or_else(|e| e.into_inner()).push(handle);
+                Ok(())
+            })
+            .build()
+            .map_err(|e| Error::new(ErrorKind::OutOfMemory, format!("could not start {count} threads: {e}")))?;
+        Ok(Self { threads: Some(threads), handles: handles.into_inner().unwrap_or_else(|e| e.into_inner()) })
+    }
+
+    /// Runs `work` so that every parallel loop in it uses this pool. Not to be called from a thread of the pool.
+    pub fn run<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
+        match &self.threads {
+            Some(threads) => threads.install(work),
+            None => work(),
+        }
+    }
+}
+
+impl Drop for Pool {
+    fn drop(&mut self) {
+        drop(self.threads.take());
+        for handle in self.handles.drain(..) {
+            let _ = handle.join();
+        }
+    }
+}
+
+/// Calls `work(row, pixels)` for every row of an interleaved image, in parallel, checking for a cancel request at each.
+pub fn for_rows<T: Send>(
+    data: &mut [T],
+    row_len: usize,
+    job: Job,
+    work: impl Fn(usize, &mut [T]) + Sync,
+) -> Result<()> {
+    if row_len == 0 || data.is_empty() {
+        return job.check();
+    }
+    let rows = data.len() / row_len;
+    let done = AtomicUsize::new(0);
+    data.par_chunks_exact_mut(row_len).enumerate().try_for_each(|(y, row)| {
+        job.check()?;
+        work(y, row);
+        job.report((done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / rows as f64);
+        Ok(())
+    })
+}
+
+/// Computes `work(i)` for `i` in `0..count` in parallel; results come back in order of `i` whatever the thread count, so
+/// that a reduction over them is the same to the bit.
+pub fn map<T: Send>(count: usize, job: Job, work: impl Fn(usize) -> T + Sync) -> Result<Vec<T>> {
+    let done = AtomicUsize::new(0);
+    (0..count)
+        .into_par_iter()
+        .map(|i| {
+            job.check()?;
+            let value = work(i);
+            job.report((done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / count as f64);
+            Ok(value)
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::job::Monitor;
+
+    #[test]
+    fn the_pool_ends_with_its_owner_and_results_keep_their_order() {
+        let monitor = Monitor::default();
+        for threads in [1, 2, 7] {
+            let pool = Pool::new(threads).unwrap();
+            let squares = pool.run(|| map(1000, monitor.job(), |i| i * i)).unwrap();
+            assert!(squares.iter().enumerate().all(|(i, &s)| s == i * i));
+        }
+    }
+
+    #[test]
+    fn a_cancelled_loop_stops_with_an_error() {
+        let monitor = Monitor::default();
+        let pool = Pool::new(2).unwrap();
+        let result = pool.run(|| {
+            map(1_000_000, monitor.job(), |i| {
+                if i == 10 {
+                    monitor.cancel();
+                }
+            })
+        });
+        assert_eq!(result.unwrap_err().kind, ErrorKind::Cancelled);
+    }
+}

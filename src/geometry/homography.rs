@@ -1,0 +1,129 @@
+//! Plane-to-plane projective maps.
+
+use super::linear;
+use crate::error::{Error, Result};
+use glam::{DMat3, DVec2, DVec3};
+
+/// A 3 × 3 map of homogeneous points, defined up to scale.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Homography(pub DMat3);
+
+impl Homography {
+    /// The map that takes four points to four points, exactly (Hartley and Zisserman 2004, 4.1, with the normalisation of
+    /// 4.4). Three collinear points on either side have no such map.
+    pub fn from_corners(from: [DVec2; 4], to: [DVec2; 4]) -> Result<Self> {
+        let (nf, nt) = (normalisation(&from)?, normalisation(&to)?);
+        let (f, t) = (from.map(|p| apply(nf, p)), to.map(|p| apply(nt, p)));
+        for quad in [f, t] {
+            let least = (0..4)
+                .map(|i| doubled_area(quad[i], quad[(i + 1) % 4], quad[(i + 2) % 4]).abs())
+                .fold(f64::MAX, f64::min);
+            if least < 1e-12 {
+                return Err(Error::degenerate(
+                    "three of the four corners lie on one line: no perspective maps them to a rectangle",
+                ));
+            }
+        }
+        // Two rows per point; the last entry is fixed to 1, which normalised points allow unless the origin maps to
+        // infinity: then another entry takes its place.
+        let mut a = [[0.0; 9]; 8];
+        for i in 0..4 {
+            let (x, y, u, v) = (f[i].x, f[i].y, t[i].x, t[i].y);
+            a[2 * i] = [x, y, 1.0, 0.0, 0.0, 0.0, -u * x, -u * y, -u];
+            a[2 * i + 1] = [0.0, 0.0, 0.0, x, y, 1.0, -v * x, -v * y, -v];
+        }
+        let h = [8, 6, 7, 0, 4]
+            .iter()
+            .find_map(|&fixed| {
+                let columns: Vec<usize> = (0..9).filter(|&c| c != fixed).collect();
+                let matrix: [[f64; 8]; 8] = std::array::from_fn(|r| std::array::from_fn(|c| a[r][columns[c]]));
+                let solution = linear::solve(matrix, std::array::from_fn(|r| -a[r][fixed]))?;
+                let mut h = [0.0; 9];
+                h[fixed] = 1.0;
+                columns.iter().zip(solution).for_each(|(&c, s)| h[c] = s);
+                Some(h)
+            })
+            .ok_or_else(|| Error::degenerate("the four corners determine no perspective"))?;
+        let normalised = DMat3::from_cols_array(&h).transpose();
+        Ok(Self(nt.inverse() * normalised * nf).rescaled())
+    }
+
+    /// The same map scaled to unit Frobenius norm, so that its entries can be compared and inverted safely.
+    pub fn rescaled(self) -> Self {
+        let norm = self.0.to_cols_array().iter().map(|v| v * v).sum::<f64>().sqrt();
+        Self(if norm > 0.0 { self.0 * (1.0 / norm) } else { self.0 })
+    }
+
+    pub fn inverse(self) -> Self {
+        Self(self.rescaled().0.inverse()).rescaled()
+    }
+
+    /// The image of a point; its third coordinate changes sign across the line that maps to infinity.
+    pub fn apply_homogeneous(&self, p: DVec2) -> DVec3 {
+        self.0 * p.extend(1.0)
+    }
+
+    /// The image of a point; infinite or NaN on the line that maps to infinity.
+    pub fn apply(&self, p: DVec2) -> DVec2 {
+        apply(self.0, p)
+    }
+
+    /// `self` after `first`.
+    pub fn after(self, first: Self) -> Self {
+        Self(self.0 * first.0).rescaled()
+    }
+}
+
+fn apply(h: DMat3, p: DVec2) -> DVec2 {
+    let q = h * p.extend(1.0);
+    q.truncate() / q.z
+}
+
+fn doubled_area(a: DVec2, b: DVec2, c: DVec2) -> f64 {
+    (b - a).perp_dot(c - a)
+}
+
+/// Moves the centroid to the origin and scales the mean distance from it to √2.
+fn normalisation(points: &[DVec2; 4]) -> Result<DMat3> {
+    let centre = points.iter().sum::<DVec2>() / 4.0;
+    let distance = points.iter().map(|p| p.distance(centre)).sum::<f64>() / 4.0;
+    if !(distance.is_finite() && distance > 0.0) {
+        return Err(Error::degenerate("the four corners coincide or are not finite"));
+    }
+    let s = std::f64::consts::SQRT_2 / distance;
+    Ok(DMat3::from_scale(DVec2::splat(s)) * DMat3::from_translation(-centre))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rng::Rng;
+
+    #[test]
+    fn corners_map_onto_corners_and_a_known_map_is_recovered() {
+        let mut rng = Rng::new(5, &[]);
+        for scale in [1e-6, 1.0, 1e6] {
+            for _ in 0..50 {
+                let mut near = |x: f64, y: f64| DVec2::new(x + 0.3 * rng.next_f64(), y + 0.3 * rng.next_f64()) * scale;
+                let from = [near(0.0, 0.0), near(1.0, 0.0), near(1.0, 1.0), near(0.0, 1.0)];
+                let to =
+                    [DVec2::new(3.0, 4.0), DVec2::new(700.0, 9.0), DVec2::new(650.0, 480.0), DVec2::new(-20.0, 500.0)];
+                let h = Homography::from_corners(from, to).unwrap();
+                for i in 0..4 {
+                    assert!(h.apply(from[i]).distance(to[i]) < 1e-9 * 700.0);
+                    assert!(h.inverse().apply(to[i]).distance(from[i]) < 1e-9 * scale);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn degenerate_corners_are_an_error() {
+        let square = [DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y];
+        let line = [DVec2::ZERO, DVec2::X, DVec2::X * 2.0, DVec2::Y];
+        for bad in [line, [DVec2::ONE; 4], [DVec2::NAN; 4], [DVec2::ZERO, DVec2::ZERO, DVec2::X, DVec2::Y]] {
+            assert!(Homography::from_corners(bad, square).is_err());
+            assert!(Homography::from_corners(square, bad).is_err());
+        }
+    }
+}

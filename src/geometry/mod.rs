@@ -1,0 +1,31 @@
+//! Plane and space geometry in `f64`: homographies, the pinhole camera and its vanishing points, small linear systems.
+//!
+//! Image points are in pixels, x right, y down, the centre of the top-left pixel at (0.5, 0.5). Camera space is x right,
+//! y down, z forward. Homogeneous points are never divided before they must be: a vanishing point may be at infinity.
+
+pub mod homography;
+pub mod linear;
+pub mod perspective;
+pub mod polygon;
+
+pub use homography::Homography;
+pub use perspective::{FocalSource, Perspective};
+
+use glam::DVec2;
+
+/// A straight piece of an edge, in pixels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Segment {
+    pub a: DVec2,
+    pub b: DVec2,
+}
+
+impl Segment {
+    pub fn length(&self) -> f64 {
+        self.a.distance(self.b)
+    }
+
+    pub fn midpoint(&self) -> DVec2 {
+        (self.a + self.b) / 2.0
+    }
+}

@@ -1,0 +1,40 @@
+//! Convex polygons in the plane.
+
+use glam::DVec2;
+
+/// Signed area, positive where the corners run from x towards y.
+pub fn area(corners: &[DVec2]) -> f64 {
+    let next = corners.iter().cycle().skip(1);
+    corners.iter().zip(next).map(|(a, b)| a.perp_dot(*b)).sum::<f64>() / 2.0
+}
+
+/// The part of a convex polygon where `normal · p <= offset` (Sutherland and Hodgman 1974).
+pub fn clip(corners: &[DVec2], normal: DVec2, offset: f64) -> Vec<DVec2> {
+    let mut out = Vec::with_capacity(corners.len() + 1);
+    for (i, &p) in corners.iter().enumerate() {
+        let q = corners[(i + 1) % corners.len()];
+        let (dp, dq) = (normal.dot(p) - offset, normal.dot(q) - offset);
+        if dp <= 0.0 {
+            out.push(p);
+        }
+        if (dp < 0.0 && dq > 0.0) || (dp > 0.0 && dq < 0.0) {
+            out.push(p + (q - p) * (dp / (dp - dq)));
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn half_a_square_has_half_its_area() {
+        let square = [DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y];
+        assert_eq!(area(&square), 1.0);
+        assert_eq!(area(&clip(&square, DVec2::X, 0.25)), 0.25);
+        assert_eq!(area(&clip(&square, DVec2::ONE, 1.0)), 0.5);
+        assert!(clip(&square, DVec2::X, -1.0).is_empty());
+        assert_eq!(clip(&square, DVec2::X, 2.0), square);
+    }
+}

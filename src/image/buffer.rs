@@ -1,0 +1,150 @@
+//! The owned image.
+
+use crate::error::{Error, ErrorKind, Result};
+use glam::Vec3;
+
+/// Longest allowed side of any image, in pixels.
+pub const MAX_SIDE: usize = 65_536;
+
+/// Interleaved `f32` samples, row by row from the top.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Image {
+    pub width: usize,
+    pub height: usize,
+    pub channels: usize,
+    pub data: Vec<f32>,
+}
+
+/// A vector of `len` copies of `value`, or an error where an infallible allocation would end the host's process.
+pub fn try_vec<T: Clone>(len: usize, value: T) -> Result<Vec<T>> {
+    let mut data = Vec::new();
+    data.try_reserve_exact(len).map_err(|_| {
+        let mib = (len as f64) * size_of::<T>() as f64 / (1 << 20) as f64;
+        Error::new(ErrorKind::OutOfMemory, format!("could not allocate {mib:.1} MiB"))
+    })?;
+    data.resize(len, value);
+    Ok(data)
+}
+
+impl Image {
+    /// A black image.
+    pub fn new(width: usize, height: usize, channels: usize) -> Result<Self> {
+        if width == 0 || height == 0 || width > MAX_SIDE || height > MAX_SIDE {
+            return Err(Error::argument(format!(
+                "image size is {width} x {height}; each side must lie in [1, {MAX_SIDE}]"
+            )));
+        }
+        if channels == 0 || channels > 64 {
+            return Err(Error::argument(format!("image has {channels} channels; it must have 1 to 64")));
+        }
+        Ok(Self { width, height, channels, data: try_vec(width * height * channels, 0.0)? })
+    }
+
+    /// An image whose every pixel is computed from its column and row.
+    pub fn from_fn<const C: usize>(
+        width: usize,
+        height: usize,
+        pixel: impl Fn(usize, usize) -> [f32; C],
+    ) -> Result<Self> {
+        let mut image = Self::new(width, height, C)?;
+        for (i, out) in image.data.chunks_exact_mut(C).enumerate() {
+            out.copy_from_slice(&pixel(i % width, i / width));
+        }
+        Ok(image)
+    }
+
+    /// Length of a row in samples.
+    pub fn row_len(&self) -> usize {
+        self.width * self.channels
+    }
+
+    pub fn row(&self, y: usize) -> &[f32] {
+        &self.data[y * self.row_len()..(y + 1) * self.row_len()]
+    }
+
+    pub fn pixel(&self, x: usize, y: usize) -> &[f32] {
+        let start = (y * self.width + x) * self.channels;
+        &self.data[start..start + self.channels]
+    }
+
+    pub fn pixel_mut(&mut self, x: usize, y: usize) -> &mut [f32] {
+        let start = (y * self.width + x) * self.channels;
+        &mut self.data[start..start + self.channels]
+    }
+
+    /// The first three channels of a pixel; a grey image gives the same value three times.
+    pub fn rgb(&self, x: usize, y: usize) -> Vec3 {
+        let pixel = self.pixel(x, y);
+        if pixel.len() >= 3 { Vec3::from_slice(pixel) } else { Vec3::splat(pixel[0]) }
+    }
+
+    /// One channel as an image of its own.
+    pub fn channel(&self, channel: usize) -> Result<Self> {
+        let mut out = Self::new(self.width, self.height, 1)?;
+        for (o, p) in out.data.iter_mut().zip(self.data.chunks_exact(self.channels)) {
+            *o = p[channel];
+        }
+        Ok(out)
+    }
+
+    /// The same pixels with the first three channels kept; grey becomes RGB.
+    pub fn to_rgb(&self) -> Result<Self> {
+        let mut out = Self::new(self.width, self.height, 3)?;
+        for (o, p) in out.data.chunks_exact_mut(3).zip(self.data.chunks_exact(self.channels)) {
+            if p.len() >= 3 { o.copy_from_slice(&p[..3]) } else { o.fill(p[0]) }
+        }
+        Ok(out)
+    }
+
+    /// Checks that a partner image has the same width and height.
+    pub fn check_same_size(&self, name: &str, other: &Self, other_name: &str) -> Result<()> {
+        if (self.width, self.height) == (other.width, other.height) {
+            return Ok(());
+        }
+        Err(Error::argument(format!(
+            "{name} is {} x {} and {other_name} is {} x {}; they must have the same size",
+            self.width, self.height, other.width, other.height
+        )))
+    }
+
+    /// The number of samples that are NaN or infinite.
+    pub fn count_non_finite(&self) -> usize {
+        self.data.iter().filter(|v| !v.is_finite()).count()
+    }
+
+    /// Bilinear sample of one channel at a position in pixels, clamped at the border.
+    pub fn sample(&self, x: f64, y: f64, channel: usize) -> f32 {
+        let (x, y) = (x - 0.5, y - 0.5);
+        let clamp = |v: f64, n: usize| (v.clamp(0.0, (n - 1) as f64)) as usize;
+        let (x0, y0) = (clamp(x.floor(), self.width), clamp(y.floor(), self.height));
+        let (x1, y1) = (clamp(x.floor() + 1.0, self.width), clamp(y.floor() + 1.0, self.height));
+        let (tx, ty) = ((x - x.floor()) as f32, (y - y.floor()) as f32);
+        let at = |x: usize, y: usize| self.data[(y * self.width + x) * self.channels + channel];
+        let top = at(x0, y0) + (at(x1, y0) - at(x0, y0)) * tx;
+        let bottom = at(x0, y1) + (at(x1, y1) - at(x0, y1)) * tx;
+        top + (bottom - top) * ty
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_out_of_range_are_refused_with_their_values() {
+        for (w, h, c) in [(0, 1, 1), (1, 0, 3), (MAX_SIDE + 1, 1, 1), (1, 1, 0), (1, 1, 65)] {
+            assert_eq!(Image::new(w, h, c).unwrap_err().kind, ErrorKind::InvalidArgument);
+        }
+        assert!(Image::new(0, 7, 3).unwrap_err().message.contains("0 x 7"));
+    }
+
+    #[test]
+    fn bilinear_samples_hit_pixel_centres_and_clamp() {
+        let image = Image::from_fn(3, 2, |x, y| [(x + 10 * y) as f32]).unwrap();
+        assert_eq!(image.sample(0.5, 0.5, 0), 0.0);
+        assert_eq!(image.sample(2.5, 1.5, 0), 12.0);
+        assert_eq!(image.sample(1.0, 1.0, 0), 5.5);
+        assert_eq!(image.sample(-50.0, 1.5, 0), 10.0);
+        assert_eq!(image.sample(1e9, -1e9, 0), 2.0);
+    }
+}

@@ -1,0 +1,154 @@
+//! Colour: the sRGB transfer curve (IEC 61966-2-1), Rec.709 primaries, CIELAB with D65 white (CIE 15:2018), and the
+//! CIEDE2000 difference (Sharma, Wu and Dalal 2005).
+
+use crate::error::Result;
+use crate::exec;
+use crate::image::Image;
+use crate::job::Job;
+use glam::{DMat3, DVec3, Vec3};
+
+/// Linear Rec.709 RGB to CIE XYZ, from the chromaticities of Rec.709 and D65 = (0.3127, 0.3290); Y of white is 1.
+const RGB_TO_XYZ: DMat3 = DMat3::from_cols(
+    DVec3::new(0.412_390_799_265_959_5, 0.212_639_005_871_510_36, 0.019_330_818_715_591_85),
+    DVec3::new(0.357_584_339_383_877_96, 0.715_168_678_767_755_9, 0.119_194_779_794_625_99),
+    DVec3::new(0.180_480_788_401_834_3, 0.072_192_315_360_733_7, 0.950_532_152_249_660_5),
+);
+
+/// Decodes one sRGB value; extended to negative values by symmetry, and linear in scale beyond 1.
+pub fn srgb_to_linear(v: f32) -> f32 {
+    let a = v.abs();
+    let linear = if a <= 0.04045 { a / 12.92 } else { ((a + 0.055) / 1.055).powf(2.4) };
+    linear.copysign(v)
+}
+
+pub fn linear_to_srgb(v: f32) -> f32 {
+    let a = v.abs();
+    let encoded = if a <= 0.003_130_8 { a * 12.92 } else { 1.055 * a.powf(1.0 / 2.4) - 0.055 };
+    encoded.copysign(v)
+}
+
+/// The linear value of each 8-bit sRGB code.
+pub fn srgb8_table() -> [f32; 256] {
+    std::array::from_fn(|code| srgb_to_linear(code as f32 / 255.0))
+}
+
+/// Luminance of linear Rec.709 RGB: in cd/m² where the colour is photometric.
+pub fn luminance(rgb: Vec3) -> f32 {
+    rgb.dot(Vec3::new(0.212_639, 0.715_168_7, 0.072_192_3))
+}
+
+pub fn linear_to_xyz(rgb: Vec3) -> DVec3 {
+    RGB_TO_XYZ * rgb.as_dvec3()
+}
+
+/// Linear RGB, 1 = diffuse white, to CIELAB: L* in `[0, 100]` for colours inside the gamut.
+pub fn linear_to_lab(rgb: Vec3) -> Vec3 {
+    let white = RGB_TO_XYZ * DVec3::ONE;
+    let relative = linear_to_xyz(rgb) / white;
+    let f = |t: f64| {
+        const DELTA: f64 = 6.0 / 29.0;
+        if t > DELTA * DELTA * DELTA { t.cbrt() } else { t / (3.0 * DELTA * DELTA) + 4.0 / 29.0 }
+    };
+    let (fx, fy, fz) = (f(relative.x), f(relative.y), f(relative.z));
+    DVec3::new(116.0 * fy - 16.0, 500.0 * (fx - fy), 200.0 * (fy - fz)).as_vec3()
+}
+
+/// CIEDE2000 difference of two CIELAB colours.
+pub fn delta_e_2000(a: Vec3, b: Vec3) -> f64 {
+    let (a, b) = (a.as_dvec3(), b.as_dvec3());
+    let chroma = |v: DVec3| v.y.hypot(v.z);
+    let pow7 = |v: f64| v.powi(7);
+    let g = {
+        let c = pow7((chroma(a) + chroma(b)) / 2.0);
+        0.5 * (1.0 - (c / (c + pow7(25.0))).sqrt())
+    };
+    let adjust = |v: DVec3| DVec3::new(v.x, v.y * (1.0 + g), v.z);
+    let (a, b) = (adjust(a), adjust(b));
+    let (ca, cb) = (chroma(a), chroma(b));
+    let hue = |v: DVec3| v.z.atan2(v.y).to_degrees().rem_euclid(360.0);
+    let (ha, hb) = (hue(a), hue(b));
+
+    // Differences of lightness, chroma and hue; without chroma there is no hue.
+    let grey = ca * cb == 0.0;
+    let dh = if grey { 0.0 } else { (hb - ha + 540.0).rem_euclid(360.0) - 180.0 };
+    let (dl, dc) = (b.x - a.x, cb - ca);
+    let dh_term = 2.0 * (ca * cb).sqrt() * (dh / 2.0).to_radians().sin();
+
+    // Means, the hue's taken along the shorter arc.
+    let (l, c) = ((a.x + b.x) / 2.0, (ca + cb) / 2.0);
+    let h = match () {
+        () if grey => ha + hb,
+        () if (ha - hb).abs() <= 180.0 => (ha + hb) / 2.0,
+        () if ha + hb < 360.0 => (ha + hb + 360.0) / 2.0,
+        () => (ha + hb - 360.0) / 2.0,
+    };
+
+    // Weights and the rotation term.
+    let cos = |degrees: f64| degrees.to_radians().cos();
+    let t = 1.0 - 0.17 * cos(h - 30.0) + 0.24 * cos(2.0 * h) + 0.32 * cos(3.0 * h + 6.0) - 0.20 * cos(4.0 * h - 63.0);
+    let l50 = (l - 50.0) * (l - 50.0);
+    let sl = 1.0 + 0.015 * l50 / (20.0 + l50).sqrt();
+    let (sc, sh) = (1.0 + 0.045 * c, 1.0 + 0.015 * c * t);
+    let rotation = 60.0 * (-((h - 275.0) / 25.0).powi(2)).exp();
+    let rt = -2.0 * (pow7(c) / (pow7(c) + pow7(25.0))).sqrt() * rotation.to_radians().sin();
+    let (x, y, z) = (dl / sl, dc / sc, dh_term / sh);
+    (x * x + y * y + z * z + rt * y * z).max(0.0).sqrt()
+}
+
+/// A linear RGB image to CIELAB.
+pub fn image_to_lab(rgb: &Image, job: Job) -> Result<Image> {
+    let mut lab = Image::new(rgb.width, rgb.height, 3)?;
+    exec::for_rows(&mut lab.data, rgb.width * 3, job, |y, row| {
+        for (x, out) in row.chunks_exact_mut(3).enumerate() {
+            linear_to_lab(rgb.rgb(x, y)).write_to_slice(out);
+        }
+    })?;
+    Ok(lab)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_srgb_curve_meets_its_reference_and_inverts() {
+        assert!((srgb_to_linear(0.5) - 0.214_041_14).abs() < 1e-7);
+        assert_eq!(srgb_to_linear(1.0), 1.0);
+        for code in 0..256 {
+            let v = code as f32 / 255.0;
+            assert!((linear_to_srgb(srgb_to_linear(v)) - v).abs() < 1e-6);
+        }
+    }
+
+    /// Reference values in exact arithmetic from the chromaticities of Rec.709 and D65 = (0.3127, 0.3290).
+    #[test]
+    fn lab_meets_reference_values() {
+        let near = |rgb: [f32; 3], lab: [f32; 3]| {
+            let got = linear_to_lab(Vec3::from(rgb));
+            assert!((got - Vec3::from(lab)).abs().max_element() < 1e-4, "{rgb:?}: {got}");
+        };
+        near([1.0, 1.0, 1.0], [100.0, 0.0, 0.0]);
+        near([0.0, 0.0, 0.0], [0.0, 0.0, 0.0]);
+        near([0.18, 0.18, 0.18], [49.496_108, 0.0, 0.0]);
+        near([1.0, 0.0, 0.0], [53.237_116, 80.090_11, 67.203_264]);
+        near([0.0, 1.0, 0.0], [87.735_52, -86.181_6, 83.186_62]);
+        near([0.0, 0.0, 1.0], [32.300_873, 79.195_27, -107.855_46]);
+        near([0.001, 0.5, 0.25], [67.713_26, -51.837_82, 14.599_296]);
+    }
+
+    /// Pairs 1, 4, 7, 13, 17 and 25 of the test data of Sharma, Wu and Dalal (2005).
+    #[test]
+    fn ciede2000_meets_the_published_pairs() {
+        for (a, b, want) in [
+            ([50.0, 2.6772, -79.7751], [50.0, 0.0, -82.7485], 2.0425),
+            ([50.0, -1.3802, -84.2814], [50.0, 0.0, -82.7485], 1.0000),
+            ([50.0, 0.0, 0.0], [50.0, -1.0, 2.0], 2.3669),
+            ([50.0, -0.0010, 2.4900], [50.0, 0.0009, -2.4900], 4.8045),
+            ([50.0, 2.5, 0.0], [73.0, 25.0, -18.0], 27.1492),
+            ([60.2574, -34.0099, 36.2677], [60.4626, -34.1751, 39.4387], 1.2644),
+        ] {
+            let got = delta_e_2000(Vec3::from(a), Vec3::from(b));
+            assert!((got - want).abs() < 1e-4, "{a:?} {b:?}: {got}");
+        }
+    }
+}

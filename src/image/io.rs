@@ -1,0 +1,238 @@
+//! Image files: PNG, JPEG, Radiance HDR and OpenEXR in; PNG and OpenEXR out. The only user of `image` and `exr`.
+//!
+//! A header that promises more than [`MAX_PIXELS`] is refused before anything is allocated for it.
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::image::colour::{linear_to_srgb, srgb_to_linear, srgb8_table};
+use crate::image::{Image, MAX_SIDE};
+use exr::prelude as ex;
+use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader};
+use std::io::Cursor;
+use std::path::Path;
+
+/// Largest image a file may hold: 2^28 pixels, a 16 k square.
+pub const MAX_PIXELS: u64 = 1 << 28;
+
+/// How the integers of a file are to be read. Floating-point files are always linear.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Encoding {
+    Srgb,
+    /// Data that is no colour: normal maps, roughness, masks.
+    Linear,
+}
+
+/// Reads a file with 1, 3 or 4 channels, as linear values.
+pub fn load(path: &Path, encoding: Encoding) -> Result<Image> {
+    let bytes = std::fs::read(path).map_err(|e| Error::new(ErrorKind::Io, format!("{}: {e}", path.display())))?;
+    decode(&bytes, encoding).map_err(|e| e.within(path.display()))
+}
+
+/// Reads an image file held in memory.
+pub fn decode(bytes: &[u8], encoding: Encoding) -> Result<Image> {
+    if bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]) { decode_exr(bytes) } else { decode_raster(bytes, encoding) }
+}
+
+fn check_size(width: u64, height: u64) -> Result<()> {
+    if width == 0 || height == 0 || width > MAX_SIDE as u64 || height > MAX_SIDE as u64 || width * height > MAX_PIXELS {
+        return Err(Error::format(format!(
+            "the header says {width} x {height} pixels; sides must lie in [1, {MAX_SIDE}] and the area in [1, {MAX_PIXELS}]"
+        )));
+    }
+    Ok(())
+}
+
+fn decode_raster(bytes: &[u8], encoding: Encoding) -> Result<Image> {
+    let format = image::guess_format(bytes)
+        .map_err(|_| Error::format("not a PNG, JPEG, Radiance HDR or OpenEXR file".to_string()))?;
+    let is_hdr = format == ImageFormat::Hdr;
+    let broken = |e: image::ImageError| Error::format(format!("the file cannot be decoded: {e}"));
+    let decoder = ImageReader::with_format(Cursor::new(bytes), format).into_decoder().map_err(broken)?;
+    let (width, height) = decoder.dimensions();
+    check_size(width.into(), height.into())?;
+    let decoded = DynamicImage::from_decoder(decoder).map_err(broken)?;
+    let (width, height) = (width as usize, height as usize);
+
+    // Integers in sRGB decode through a table or the curve; everything else is scaled only.
+    let curve = |v: f32| if encoding == Encoding::Srgb && !is_hdr { srgb_to_linear(v) } else { v };
+    let table = if encoding == Encoding::Srgb { srgb8_table() } else { std::array::from_fn(|i| i as f32 / 255.0) };
+    let from8 = |data: &[u8], channels: usize| {
+        let mut out = Image::new(width, height, channels)?;
+        for (i, (o, &v)) in out.data.iter_mut().zip(data).enumerate() {
+            *o = if channels == 4 && i % 4 == 3 { f32::from(v) / 255.0 } else { table[v as usize] };
+        }
+        Ok(out)
+    };
+    match decoded {
+        DynamicImage::ImageLuma8(i) => from8(i.as_raw(), 1),
+        DynamicImage::ImageRgb8(i) => from8(i.as_raw(), 3),
+        DynamicImage::ImageRgba8(i) => from8(i.as_raw(), 4),
+        other => {
+            let channels = match other.color().channel_count() {
+                1 => 1,
+                3 => 3,
+                _ => 4,
+            };
+            let rgba = other.into_rgba32f();
+            let mut out = Image::new(width, height, channels)?;
+            for (o, p) in out.data.chunks_exact_mut(channels).zip(rgba.as_raw().chunks_exact(4)) {
+                for (c, v) in o.iter_mut().enumerate() {
+                    *v = if c == 3 { p[3] } else { curve(p[c]) };
+                }
+            }
+            Ok(out)
+        }
+    }
+}
+
+/// The first layer that has R, G and B (and A), or one with a single channel.
+fn decode_exr(bytes: &[u8]) -> Result<Image> {
+    let broken = |e: exr::error::Error| Error::format(format!("the OpenEXR file cannot be decoded: {e}"));
+    let meta = exr::meta::MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(broken)?;
+    for header in &meta.headers {
+        check_size(header.layer_size.0 as u64, header.layer_size.1 as u64)?;
+    }
+    use ex::{ReadChannels, ReadLayers};
+    let file = ex::read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .all_channels()
+        .first_valid_layer()
+        .all_attributes()
+        .non_parallel()
+        .from_buffered(Cursor::new(bytes))
+        .map_err(broken)?;
+    let layer = file.layer_data;
+    let list = &layer.channel_data.list;
+    let find = |name: &str| list.iter().find(|c| c.name.eq_case_insensitive(name));
+    let channels: Vec<_> = match (find("R"), find("G"), find("B"), find("A")) {
+        (Some(r), Some(g), Some(b), Some(a)) => vec![r, g, b, a],
+        (Some(r), Some(g), Some(b), None) => vec![r, g, b],
+        _ if list.len() == 1 => vec![&list[0]],
+        _ => {
+            return Err(Error::new(
+                ErrorKind::Unsupported,
+                "the OpenEXR layer has neither R, G, B nor one single channel",
+            ));
+        }
+    };
+    let mut out = Image::new(layer.size.0, layer.size.1, channels.len())?;
+    for (c, channel) in channels.iter().enumerate() {
+        for (o, v) in out.data.iter_mut().skip(c).step_by(channels.len()).zip(channel.sample_data.values_as_f32()) {
+            *o = v;
+        }
+    }
+    Ok(out)
+}
+
+/// Encodes a linear image as an 8-bit sRGB PNG after multiplying it by `exposure`; 1, 3 or 4 channels.
+pub fn encode_png(image: &Image, exposure: f32) -> Result<Vec<u8>> {
+    let colour = match image.channels {
+        1 => image::ExtendedColorType::L8,
+        3 => image::ExtendedColorType::Rgb8,
+        4 => image::ExtendedColorType::Rgba8,
+        n => return Err(Error::argument(format!("a PNG cannot hold {n} channels; it must be 1, 3 or 4"))),
+    };
+    let mut bytes = crate::image::try_vec(image.data.len(), 0u8)?;
+    for (i, (b, &v)) in bytes.iter_mut().zip(&image.data).enumerate() {
+        let alpha = image.channels == 4 && i % 4 == 3;
+        let encoded = if alpha { v } else { linear_to_srgb(v * exposure) };
+        *b = (encoded.clamp(0.0, 1.0) * 255.0).round() as u8;
+    }
+    let mut out = Cursor::new(Vec::new());
+    image::write_buffer_with_format(
+        &mut out,
+        &bytes,
+        image.width as u32,
+        image.height as u32,
+        colour,
+        ImageFormat::Png,
+    )
+    .map_err(|e| Error::new(ErrorKind::Internal, format!("the PNG encoder failed: {e}")))?;
+    Ok(out.into_inner())
+}
+
+/// One named group of channels of an OpenEXR file; an empty name gives plain `R`, `G`, `B`.
+pub struct Layer<'a> {
+    pub name: &'a str,
+    pub image: &'a Image,
+    /// One letter or word per channel: `["R", "G", "B"]`, `["Z"]`, `["X", "Y", "Z"]`.
+    pub channels: &'a [&'a str],
+}
+
+/// Encodes layers of one size into a single-part 32-bit float OpenEXR file, channels named `layer.channel`.
+pub fn encode_exr(layers: &[Layer]) -> Result<Vec<u8>> {
+    use ex::WritableImage;
+    let first = layers.first().ok_or_else(|| Error::argument("an OpenEXR file needs at least one layer"))?.image;
+    let mut list = ex::SmallVec::<[ex::AnyChannel<ex::FlatSamples>; 4]>::new();
+    for layer in layers {
+        first.check_same_size("the first layer", layer.image, layer.name)?;
+        if layer.channels.len() != layer.image.channels {
+            return Err(Error::argument(format!(
+                "layer {} has {} channels and {} channel names",
+                layer.name,
+                layer.image.channels,
+                layer.channels.len()
+            )));
+        }
+        for (c, channel) in layer.channels.iter().enumerate() {
+            let name = if layer.name.is_empty() { channel.to_string() } else { format!("{}.{channel}", layer.name) };
+            let samples: Vec<f32> = layer.image.data.iter().skip(c).step_by(layer.image.channels).copied().collect();
+            let name = ex::Text::new_or_none(&name)
+                .ok_or_else(|| Error::argument(format!("{name:?} cannot name an OpenEXR channel")))?;
+            list.push(ex::AnyChannel::new(name, ex::FlatSamples::F32(samples)));
+        }
+    }
+    let file = ex::Image::from_channels((first.width, first.height), ex::AnyChannels::sort(list));
+    let mut out = Cursor::new(Vec::new());
+    file.write()
+        .non_parallel()
+        .to_buffered(&mut out)
+        .map_err(|e| Error::new(ErrorKind::Internal, format!("the OpenEXR encoder failed: {e}")))?;
+    Ok(out.into_inner())
+}
+
+/// Writes a whole file, or leaves what was there before: the bytes go to a neighbour first, then take its place.
+pub fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
+    let failed = |e: std::io::Error| Error::new(ErrorKind::Io, format!("{}: {e}", path.display()));
+    let mut neighbour = path.as_os_str().to_owned();
+    neighbour.push(format!(".{}.part", std::process::id()));
+    std::fs::write(&neighbour, bytes).and_then(|()| std::fs::rename(&neighbour, path)).map_err(|e| {
+        let _ = std::fs::remove_file(&neighbour);
+        failed(e)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn picture() -> Image {
+        Image::from_fn(19, 13, |x, y| [x as f32 / 18.0, y as f32 / 12.0, 0.5]).unwrap()
+    }
+
+    #[test]
+    fn png_and_exr_round_trip() {
+        let image = picture();
+        let png = decode(&encode_png(&image, 1.0).unwrap(), Encoding::Srgb).unwrap();
+        assert!(png.data.iter().zip(&image.data).all(|(a, b)| (a - b).abs() < 0.01));
+        let exr = encode_exr(&[Layer { name: "", image: &image, channels: &["R", "G", "B"] }]).unwrap();
+        assert_eq!(decode(&exr, Encoding::Srgb).unwrap(), image);
+    }
+
+    #[test]
+    fn truncated_and_lying_files_are_errors() {
+        let image = picture();
+        let png = encode_png(&image, 1.0).unwrap();
+        let exr = encode_exr(&[Layer { name: "", image: &image, channels: &["R", "G", "B"] }]).unwrap();
+        for file in [&png, &exr] {
+            for cut in [0, 1, 4, 8, 20, file.len() / 2, file.len() - 20] {
+                assert!(decode(&file[..cut], Encoding::Srgb).is_err(), "cut at {cut}");
+            }
+        }
+        // A PNG whose header claims 2^31 - 1 pixels a side.
+        let mut bomb = png.clone();
+        bomb[16..24].copy_from_slice(&[0x7f, 0xff, 0xff, 0xff, 0x7f, 0xff, 0xff, 0xff]);
+        assert_eq!(decode(&bomb, Encoding::Srgb).unwrap_err().kind, ErrorKind::Format);
+        assert_eq!(load(Path::new("/nonexistent.png"), Encoding::Srgb).unwrap_err().kind, ErrorKind::Io);
+    }
+}

@@ -1,0 +1,117 @@
+//! Resampling: exact area averages for any size, and Gaussian blur.
+
+use crate::error::Result;
+use crate::exec;
+use crate::image::Image;
+use crate::job::Job;
+
+/// The image at another size, each new pixel the exact average of the area it covers (bilinear where it magnifies).
+pub fn resize(image: &Image, width: usize, height: usize, job: Job) -> Result<Image> {
+    let columns = weights(image.width, width);
+    let rows = weights(image.height, height);
+    let c = image.channels;
+
+    // Along x, then along y.
+    let mut wide = Image::new(width, image.height, c)?;
+    exec::for_rows(&mut wide.data, width * c, job.part(0.0, 0.5), |y, out| {
+        let source = image.row(y);
+        for (pixel, (first, taps)) in out.chunks_exact_mut(c).zip(&columns) {
+            for (i, w) in taps.iter().enumerate() {
+                let s = &source[(first + i) * c..(first + i + 1) * c];
+                pixel.iter_mut().zip(s).for_each(|(o, v)| *o += w * v);
+            }
+        }
+    })?;
+    let mut out = Image::new(width, height, c)?;
+    exec::for_rows(&mut out.data, width * c, job.part(0.5, 1.0), |y, row| {
+        let (first, taps) = &rows[y];
+        for (i, w) in taps.iter().enumerate() {
+            row.iter_mut().zip(wide.row(first + i)).for_each(|(o, v)| *o += w * v);
+        }
+    })?;
+    Ok(out)
+}
+
+/// For each of `to` intervals that tile `from` pixels: the first pixel it draws on and the weights, which sum to 1.
+fn weights(from: usize, to: usize) -> Vec<(usize, Vec<f32>)> {
+    let scale = from as f64 / to as f64;
+    (0..to)
+        .map(|i| {
+            let (low, high) = if scale >= 1.0 {
+                (i as f64 * scale, (i + 1) as f64 * scale)
+            } else {
+                // Magnifying: a unit-wide box at the new pixel's centre is bilinear interpolation.
+                let centre = (i as f64 + 0.5) * scale;
+                ((centre - 0.5).max(0.0), (centre + 0.5).min(from as f64))
+            };
+            let first = (low.floor() as usize).min(from - 1);
+            let last = (high.ceil() as usize).clamp(first + 1, from);
+            let overlap = |p: usize| (high.min(p as f64 + 1.0) - low.max(p as f64)).max(0.0);
+            let total: f64 = (first..last).map(overlap).sum();
+            (first, (first..last).map(|p| (overlap(p) / total) as f32).collect())
+        })
+        .collect()
+}
+
+/// Gaussian blur with standard deviation `sigma` pixels, cut at three; the border is extended by its nearest pixel.
+pub fn blur(image: &Image, sigma: f32, job: Job) -> Result<Image> {
+    if sigma <= 0.0 {
+        return Ok(image.clone());
+    }
+    let radius = (3.0 * sigma).ceil() as isize;
+    let mut kernel: Vec<f32> = (-radius..=radius).map(|i| (-0.5 * (i as f32 / sigma).powi(2)).exp()).collect();
+    let total: f32 = kernel.iter().sum();
+    kernel.iter_mut().for_each(|k| *k /= total);
+    let c = image.channels;
+    let clamp = |i: isize, n: usize| i.clamp(0, n as isize - 1) as usize;
+
+    let mut wide = Image::new(image.width, image.height, c)?;
+    exec::for_rows(&mut wide.data, image.row_len(), job.part(0.0, 0.5), |y, out| {
+        let source = image.row(y);
+        for (x, pixel) in out.chunks_exact_mut(c).enumerate() {
+            for (k, w) in kernel.iter().enumerate() {
+                let s = clamp(x as isize + k as isize - radius, image.width) * c;
+                pixel.iter_mut().zip(&source[s..s + c]).for_each(|(o, v)| *o += w * v);
+            }
+        }
+    })?;
+    let mut out = Image::new(image.width, image.height, c)?;
+    exec::for_rows(&mut out.data, image.row_len(), job.part(0.5, 1.0), |y, row| {
+        for (k, w) in kernel.iter().enumerate() {
+            let s = clamp(y as isize + k as isize - radius, image.height);
+            row.iter_mut().zip(wide.row(s)).for_each(|(o, v)| *o += w * v);
+        }
+    })?;
+    Ok(out)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::job::Monitor;
+
+    #[test]
+    fn resizing_keeps_the_mean_and_constants() {
+        let monitor = Monitor::default();
+        let image = Image::from_fn(37, 23, |x, y| [(x * y % 11) as f32, 2.0]).unwrap();
+        let mean = |i: &Image| i.data.iter().step_by(2).sum::<f32>() / (i.width * i.height) as f32;
+        for (w, h) in [(1, 1), (5, 23), (36, 22)] {
+            let small = resize(&image, w, h, monitor.job()).unwrap();
+            assert!((mean(&small) - mean(&image)).abs() < 1e-4);
+        }
+        let large = resize(&image, 100, 90, monitor.job()).unwrap();
+        assert!(large.data.iter().skip(1).step_by(2).all(|&v| (v - 2.0).abs() < 1e-5));
+        assert_eq!(resize(&image, 37, 23, monitor.job()).unwrap(), image);
+    }
+
+    #[test]
+    fn blur_spreads_an_impulse_by_its_sigma() {
+        let mut image = Image::new(41, 41, 1).unwrap();
+        image.pixel_mut(20, 20)[0] = 1.0;
+        let blurred = blur(&image, 2.0, Monitor::default().job()).unwrap();
+        let total: f32 = blurred.data.iter().sum();
+        let variance: f32 = (0..41 * 41).map(|i| ((i % 41) as f32 - 20.0).powi(2) * blurred.data[i]).sum();
+        assert!((total - 1.0).abs() < 1e-5);
+        assert!((variance - 4.0).abs() < 0.15, "{variance}");
+    }
+}

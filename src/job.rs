@@ -1,0 +1,90 @@
+//! Progress and cancellation of long work.
+//!
+//! A [`Monitor`] is shared by the thread that works and the threads that watch. A [`Job`] is the worker's end of it: a
+//! span of the whole progress bar, so that a routine reports from 0 to 1 without knowing what it is part of.
+
+use crate::error::{Error, Result};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+
+/// Progress in `[0, 1]`, never falling, and a cancel request, never taken back.
+#[derive(Default)]
+pub struct Monitor {
+    cancelled: AtomicBool,
+    /// Bits of an `f64`: among non-negative floats they sort as integers do, so `fetch_max` keeps progress monotone.
+    progress: AtomicU64,
+}
+
+impl Monitor {
+    pub fn cancel(&self) {
+        self.cancelled.store(true, Ordering::Relaxed);
+    }
+
+    pub fn is_cancelled(&self) -> bool {
+        self.cancelled.load(Ordering::Relaxed)
+    }
+
+    pub fn progress(&self) -> f64 {
+        f64::from_bits(self.progress.load(Ordering::Relaxed))
+    }
+
+    /// The whole progress bar.
+    pub fn job(&self) -> Job<'_> {
+        Job { monitor: self, start: 0.0, span: 1.0 }
+    }
+}
+
+#[derive(Clone, Copy)]
+pub struct Job<'a> {
+    monitor: &'a Monitor,
+    start: f64,
+    span: f64,
+}
+
+impl<'a> Job<'a> {
+    /// The part of this job between two of its fractions.
+    pub fn part(self, from: f64, to: f64) -> Job<'a> {
+        debug_assert!((0.0..=1.0).contains(&from) && from <= to && to <= 1.0);
+        Job { monitor: self.monitor, start: self.start + self.span * from, span: self.span * (to - from) }
+    }
+
+    /// Reports how much of this job is done, in `[0, 1]`.
+    pub fn report(self, fraction: f64) {
+        let whole = (self.start + self.span * fraction.clamp(0.0, 1.0)).clamp(0.0, 1.0);
+        self.monitor.progress.fetch_max(whole.to_bits(), Ordering::Relaxed);
+    }
+
+    /// Ends the work if the caller asked for it. To be called at least every few milliseconds.
+    pub fn check(self) -> Result<()> {
+        if self.is_cancelled() { Err(Error::cancelled()) } else { Ok(()) }
+    }
+
+    pub fn is_cancelled(self) -> bool {
+        self.monitor.is_cancelled()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_map_onto_the_whole_and_progress_never_falls() {
+        let monitor = Monitor::default();
+        let half = monitor.job().part(0.5, 1.0);
+        half.part(0.0, 0.5).report(1.0);
+        assert_eq!(monitor.progress(), 0.75);
+        monitor.job().report(0.1);
+        assert_eq!(monitor.progress(), 0.75);
+        half.report(1.0);
+        assert_eq!(monitor.progress(), 1.0);
+    }
+
+    #[test]
+    fn a_cancel_request_reaches_every_part() {
+        let monitor = Monitor::default();
+        let part = monitor.job().part(0.2, 0.4);
+        assert!(part.check().is_ok());
+        monitor.cancel();
+        assert_eq!(part.check(), Err(Error::cancelled()));
+    }
+}

@@ -1,0 +1,32 @@
+//! The camera of a rendering.
+
+use glam::Vec3;
+
+/// A pinhole camera.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Camera {
+    pub name: String,
+    pub position: Vec3,
+    /// Unit viewing direction.
+    pub forward: Vec3,
+    /// Unit, orthogonal to `forward`: up in the image.
+    pub up: Vec3,
+    /// Full vertical angle of view in radians, in (0, π).
+    pub fov_y: f32,
+}
+
+impl Camera {
+    /// A camera at `position` that looks at `target`, kept upright.
+    pub fn look_at(position: Vec3, target: Vec3, fov_y: f32) -> Self {
+        let forward = (target - position).normalize_or(Vec3::NEG_Z);
+        let side = forward.cross(Vec3::Y).try_normalize().unwrap_or(Vec3::X);
+        Self { name: String::new(), position, forward, up: side.cross(forward), fov_y }
+    }
+
+    /// Unnormalised direction through a point of the image, `x` and `y` in `[0, 1]` from the top-left corner.
+    pub fn direction(&self, x: f32, y: f32, aspect: f32) -> Vec3 {
+        let half = (self.fov_y / 2.0).tan();
+        let right = self.forward.cross(self.up);
+        self.forward + right * ((2.0 * x - 1.0) * half * aspect) + self.up * ((1.0 - 2.0 * y) * half)
+    }
+}

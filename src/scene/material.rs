@@ -1,0 +1,86 @@
+//! glTF 2.0 metallic-roughness materials, with transmission for clear glass.
+
+use glam::{Mat3, Vec3};
+
+/// A texture as a material uses it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TextureRef {
+    /// Index into the scene's textures.
+    pub texture: usize,
+    /// Which of the mesh's sets of texture coordinates: 0 or 1.
+    pub uv_set: usize,
+    /// Applied to (u, v, 1) before the look-up (`KHR_texture_transform`).
+    pub transform: Mat3,
+}
+
+impl TextureRef {
+    pub fn new(texture: usize) -> Self {
+        Self { texture, uv_set: 0, transform: Mat3::IDENTITY }
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum AlphaMode {
+    Opaque,
+    /// Points whose alpha is below the cutoff are not there.
+    Mask(f32),
+    /// Points are there with the probability of their alpha.
+    Blend,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct Material {
+    pub name: String,
+    /// Linear, each in `[0, 1]`.
+    pub base_color: Vec3,
+    pub base_color_texture: Option<TextureRef>,
+    /// In `[0, 1]`; multiplies the texture's alpha.
+    pub alpha: f32,
+    pub alpha_mode: AlphaMode,
+    /// In `[0, 1]`.
+    pub metallic: f32,
+    /// Perceptual roughness in `[0, 1]`; the GGX width is its square.
+    pub roughness: f32,
+    /// Green is roughness, blue is metallic.
+    pub metallic_roughness_texture: Option<TextureRef>,
+    pub normal_texture: Option<TextureRef>,
+    pub normal_scale: f32,
+    /// Emitted luminance per channel in cd/m²: `emissiveFactor × emissiveStrength`.
+    pub emission: Vec3,
+    pub emission_texture: Option<TextureRef>,
+    /// Whether back faces reflect and emit as front faces do. Others still block light.
+    pub double_sided: bool,
+    /// Share of light that passes through instead of being reflected diffusely, in `[0, 1]`.
+    pub transmission: f32,
+    /// Index of refraction of the dielectric, at least 1.
+    pub ior: f32,
+}
+
+impl Default for Material {
+    fn default() -> Self {
+        Self {
+            name: String::new(),
+            base_color: Vec3::ONE,
+            base_color_texture: None,
+            alpha: 1.0,
+            alpha_mode: AlphaMode::Opaque,
+            metallic: 1.0,
+            roughness: 1.0,
+            metallic_roughness_texture: None,
+            normal_texture: None,
+            normal_scale: 1.0,
+            emission: Vec3::ZERO,
+            emission_texture: None,
+            double_sided: false,
+            transmission: 0.0,
+            ior: 1.5,
+        }
+    }
+}
+
+impl Material {
+    /// A matt material of one colour.
+    pub fn diffuse(name: &str, base_color: Vec3) -> Self {
+        Self { name: name.into(), base_color, metallic: 0.0, double_sided: true, ..Self::default() }
+    }
+}

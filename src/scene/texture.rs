@@ -1,0 +1,88 @@
+//! Textures: images with wrapping, sampled bilinearly.
+
+use crate::image::Image;
+use glam::{Vec2, Vec4};
+
+/// How a texture continues outside `[0, 1]`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wrap {
+    Repeat,
+    Clamp,
+    Mirror,
+}
+
+/// Linear values; (u, v) = (0, 0) is the outer corner of the top-left texel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Texture {
+    pub name: String,
+    pub image: Image,
+    pub wrap: [Wrap; 2],
+}
+
+impl Texture {
+    pub fn new(name: &str, image: Image) -> Self {
+        Self { name: name.into(), image, wrap: [Wrap::Repeat; 2] }
+    }
+
+    /// Bilinear sample; a missing alpha is 1, a grey image gives r = g = b.
+    pub fn sample(&self, uv: Vec2) -> Vec4 {
+        let size = [self.image.width, self.image.height];
+        let position = [uv.x * size[0] as f32 - 0.5, uv.y * size[1] as f32 - 0.5];
+        let base = position.map(f32::floor);
+        let index = |axis: usize, step: f32| wrap_index(base[axis] + step, size[axis], self.wrap[axis]);
+        let (tx, ty) = (position[0] - base[0], position[1] - base[1]);
+        let (x0, x1, y0, y1) = (index(0, 0.0), index(0, 1.0), index(1, 0.0), index(1, 1.0));
+        let top = self.texel(x0, y0).lerp(self.texel(x1, y0), tx);
+        let bottom = self.texel(x0, y1).lerp(self.texel(x1, y1), tx);
+        top.lerp(bottom, ty)
+    }
+
+    /// The texel that covers a point, without interpolation.
+    pub fn nearest(&self, uv: Vec2) -> Vec4 {
+        let (w, h) = (self.image.width, self.image.height);
+        let x = wrap_index((uv.x * w as f32).floor(), w, self.wrap[0]);
+        let y = wrap_index((uv.y * h as f32).floor(), h, self.wrap[1]);
+        self.texel(x, y)
+    }
+
+    fn texel(&self, x: usize, y: usize) -> Vec4 {
+        match *self.image.pixel(x, y) {
+            [v] => Vec4::new(v, v, v, 1.0),
+            [r, g, b] => Vec4::new(r, g, b, 1.0),
+            [r, g, b, a, ..] => Vec4::new(r, g, b, a),
+            _ => Vec4::ONE,
+        }
+    }
+}
+
+fn wrap_index(i: f32, size: usize, wrap: Wrap) -> usize {
+    // Beyond 2^24 a float cannot tell neighbouring texels apart; NaN becomes 0.
+    let i = i.clamp(-16_777_216.0, 16_777_216.0) as i64;
+    let n = size as i64;
+    let wrapped = match wrap {
+        Wrap::Repeat => i.rem_euclid(n),
+        Wrap::Clamp => i.clamp(0, n - 1),
+        Wrap::Mirror => {
+            let m = i.rem_euclid(2 * n);
+            m.min(2 * n - 1 - m)
+        }
+    };
+    wrapped as usize
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wrapping_follows_its_mode() {
+        let image = Image::from_fn(4, 1, |x, _| [x as f32]).unwrap();
+        let at = |wrap, u| {
+            Texture { name: String::new(), image: image.clone(), wrap: [wrap; 2] }.nearest(Vec2::new(u, 0.5)).x
+        };
+        assert_eq!([-0.1, 0.1, 1.1, 2.9].map(|u| at(Wrap::Repeat, u)), [3.0, 0.0, 0.0, 3.0]);
+        assert_eq!([-0.1, 0.1, 1.1, 2.9].map(|u| at(Wrap::Clamp, u)), [0.0, 0.0, 3.0, 3.0]);
+        assert_eq!([-0.1, 0.1, 1.1, 2.9].map(|u| at(Wrap::Mirror, u)), [0.0, 0.0, 3.0, 3.0]);
+        assert!(at(Wrap::Repeat, f32::NAN).is_finite() && at(Wrap::Clamp, f32::INFINITY).is_finite());
+    }
+}
