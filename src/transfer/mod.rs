@@ -7,9 +7,11 @@
 
 mod colour;
 mod placement;
+mod schedule;
 mod stages;
 
 pub use colour::TargetColour;
+pub use schedule::Fixture;
 
 use crate::emission::{self, Emission};
 use crate::error::{Error, ErrorKind, Result, check_range};
