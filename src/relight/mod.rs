@@ -1,6 +1,20 @@
-//! Relighting: colour and intensity of the emission, solved against the photo through light transport (Lipp et al., §7).
+//! Relighting: colour and intensity of the emission, solved against the photo through light transport (Lipp et al.,
+//! "Single-Exemplar Lighting Style Transfer", §7).
+//!
+//! Radiance is linear in emission, so nothing is searched: per colour channel the mean light `r` that the target surface
+//! sends back under the emission as it stands, and the light `b` of everything else, are measured once; the answer is
+//! `(target - b) / r`. The measurement is Monte Carlo, so the answer carries a confidence interval.
+//!
+//! Not modelled here: the photo's camera response beyond sRGB, and fluorescence (a channel never feeds another).
 
-use crate::error::Result;
+mod solve;
+mod target;
+mod transport;
+
+#[cfg(test)]
+mod tests;
+
+use crate::error::{Result, check_range};
 use crate::job::Job;
 use crate::render::World;
 use glam::{DVec3, Vec3};
@@ -8,30 +22,43 @@ use glam::{DVec3, Vec3};
 /// What should match the photo.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
-    /// Colour of the light the target surface sends back (its albedo included): what a photo shows of it.
+    /// The light the target surface sends back, its albedo included: what a photo shows of it.
     Outgoing,
-    /// Colour of the light that arrives at it.
+    /// The light that arrives at it, as if it were white.
     Incident,
 }
 
-#[derive(Clone)]
+/// How far an answer could go to meet the target in one colour channel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reach {
+    /// The target is met.
+    Met,
+    /// Other lights alone exceed the target: the emission is off in this channel.
+    TooBright,
+    /// No light of this channel finds its way to the target, so nothing can be said about it: the emission keeps the
+    /// mean scale of the channels that could be solved.
+    Dark,
+}
+
+#[derive(Clone, Copy)]
 pub struct Input<'a> {
     /// The scene with the emission in place, at the strength the solution will multiply.
     pub world: &'a World,
-    /// Material index of the emission to solve for.
+    /// Index of the emitting material to solve for.
     pub emitter: usize,
-    /// Triangles (mesh, triangle) whose mean colour is to match: those of the target surface.
+    /// The target surface: (mesh, triangle) of each of its triangles, their winding facing the side to match.
     pub target_triangles: &'a [(usize, usize)],
-    /// Luminance per channel the target should have, in cd/m² (outgoing) or lux/π (incident).
+    /// Mean radiance the target surface should have, in cd/m² per channel, ≥ 0; for [`Quantity::Incident`] that of a
+    /// white surface in the same light, illuminance / π.
     pub target: Vec3,
 }
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Params {
     pub quantity: Quantity,
-    /// Paths in all; split into independent batches for the interval. In `[1024, 1 << 30]`.
+    /// Most paths to trace, in `[1024, 1 << 30]`.
     pub paths: u32,
-    /// Stop when the half-width of the 95 % interval is below this share of the answer; 0 = never.
+    /// Stop when the half-width of the widest 95 % interval is below this share of its answer, in `[0, 1]`; 0 = never.
     pub target_error: f32,
     /// Stop after this many milliseconds; 0 = never.
     pub time_budget_ms: u32,
@@ -40,23 +67,54 @@ pub struct Params {
 
 impl Default for Params {
     fn default() -> Self {
-        Self { quantity: Quantity::Outgoing, paths: 1 << 18, target_error: 0.01, time_budget_ms: 0, seed: 1 }
+        Self { quantity: Quantity::Outgoing, paths: 1 << 22, target_error: 0.01, time_budget_ms: 0, seed: 1 }
     }
 }
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solution {
-    /// What to multiply the emission with, per channel.
+    /// What to multiply the emission with, per channel, ≥ 0.
     pub scale: DVec3,
     /// Half-widths of the 95 % confidence intervals of `scale`.
     pub half_width: DVec3,
-    /// Mean response of the target to the emission at scale 1, and to all other light.
+    pub reach: [Reach; 3],
+    /// Mean radiance of the target under the emission at scale 1, in cd/m².
     pub response: DVec3,
+    /// Mean radiance of the target under all other light, in cd/m².
     pub background: DVec3,
     /// Paths traced.
     pub paths: u32,
 }
 
-pub fn run(_input: &Input, _params: &Params, _job: Job) -> Result<Solution> {
-    todo!()
+impl Solution {
+    /// The widest relative half-width among the channels that met their target; 0 if none did.
+    pub fn error(&self) -> f64 {
+        (0..3)
+            .filter(|&c| self.reach[c] == Reach::Met && self.scale[c] > 0.0)
+            .map(|c| self.half_width[c] / self.scale[c])
+            .fold(0.0, f64::max)
+    }
+}
+
+/// Solves for the scale of the emission. [`crate::error::ErrorKind::Unreachable`] where no channel can be solved.
+pub fn run(input: &Input, params: &Params, job: Job) -> Result<Solution> {
+    check_range("paths", params.paths, 1024, 1 << 30)?;
+    check_range("target_error", params.target_error, 0.0, 1.0)?;
+    for channel in input.target.to_array() {
+        check_range("target", channel, 0.0, f32::MAX)?;
+    }
+    let points = target::Sampler::new(input.world.scene(), input.target_triangles, params.quantity)?;
+    let clock = std::time::Instant::now();
+    let mut batches = transport::Batches::new(input.world, &points, input.emitter, params.seed);
+    loop {
+        batches.trace_round(params.paths, job)?;
+        let solution = solve::run(&batches, input.target.as_dvec3());
+        let precise =
+            solution.as_ref().is_ok_and(|s| params.target_error > 0.0 && s.error() <= f64::from(params.target_error));
+        let late = params.time_budget_ms > 0 && clock.elapsed().as_millis() >= u128::from(params.time_budget_ms);
+        if precise || late || batches.paths() >= params.paths {
+            job.report(1.0);
+            return solution;
+        }
+    }
 }

@@ -49,3 +49,8 @@ pub struct Segmentation {
 pub fn run(_input: &Input, _params: &Params, _job: Job) -> Result<Segmentation> {
     todo!()
 }
+
+/// The mask grown by a disc of `radius` pixels.
+pub fn dilate(_mask: &Image, _radius: usize) -> Result<Image> {
+    todo!()
+}

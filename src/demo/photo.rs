@@ -1,0 +1,82 @@
+//! A photo of a generated room: a rendering seen through a lens and an 8-bit sensor.
+
+use crate::error::Result;
+use crate::exec;
+use crate::image::colour::{linear_to_srgb, luminance, srgb_to_linear};
+use crate::image::{Image, pyramid};
+use crate::job::Job;
+use crate::render::{self, World};
+use crate::rng::Rng;
+use crate::scene::{Camera, Scene};
+use std::sync::Arc;
+
+/// Standard deviation of the lens blur in pixels.
+const LENS_BLUR: f32 = 0.7;
+/// Share of the light that the lens scatters into a glow around lamps, and the glow's standard deviation in pixels.
+const GLARE: (f32, f32) = (0.03, 9.0);
+/// Brightness in the corner of the picture relative to its centre.
+const VIGNETTE: f32 = 0.8;
+/// Electrons that white holds, and the read-out noise in electrons.
+const WELL: (f64, f64) = (6000.0, 12.0);
+/// Linear value the median of the picture is exposed to.
+const MEDIAN_EXPOSURE: f32 = 0.14;
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct Params {
+    pub width: usize,
+    pub height: usize,
+    /// Paths per pixel.
+    pub samples: u32,
+    pub seed: u64,
+}
+
+impl Default for Params {
+    fn default() -> Self {
+        Self { width: 960, height: 640, samples: 64, seed: 1 }
+    }
+}
+
+/// Takes the picture: linear RGB in `[0, 1]` that has been through 8-bit sRGB, lamps clipped to white. Also returns the
+/// exposure: the linear value of 1 cd/m².
+pub fn photograph(scene: Arc<Scene>, camera: &Camera, params: &Params, job: Job) -> Result<(Image, f32)> {
+    let world = World::build(scene, job.part(0.0, 0.05))?;
+    let settings = render::Params {
+        width: params.width,
+        height: params.height,
+        samples: params.samples,
+        seed: params.seed,
+        ..render::Params::default()
+    };
+    let film = render::run(&world, camera, &settings, job.part(0.05, 0.9), &mut |_| {})?;
+
+    // Lens: a little blur, and a glow that carries what is far too bright.
+    let sharp = pyramid::blur(&film.beauty, LENS_BLUR, job.part(0.9, 0.92))?;
+    let glow = pyramid::blur(&film.beauty, GLARE.1, job.part(0.92, 0.96))?;
+
+    // Exposure for the room, not for its lamps.
+    let mut levels: Vec<f32> = (0..params.width * params.height)
+        .map(|i| luminance(film.beauty.rgb(i % params.width, i / params.width)))
+        .collect();
+    levels.sort_by(f32::total_cmp);
+    let exposure = MEDIAN_EXPOSURE / levels[levels.len() / 2].max(f32::MIN_POSITIVE);
+
+    // Sensor: vignetting, shot and read-out noise, saturation, 8 bits.
+    let mut photo = Image::new(params.width, params.height, 3)?;
+    let centre = [params.width as f32 / 2.0, params.height as f32 / 2.0];
+    let reach = centre[0].hypot(centre[1]);
+    exec::for_rows(&mut photo.data, params.width * 3, job.part(0.96, 1.0), |y, row| {
+        for (x, pixel) in row.chunks_exact_mut(3).enumerate() {
+            let radius = (x as f32 + 0.5 - centre[0]).hypot(y as f32 + 0.5 - centre[1]) / reach;
+            let falloff = 1.0 - (1.0 - VIGNETTE) * radius * radius;
+            let mut rng = Rng::new(params.seed, &[x as u64, y as u64]);
+            for (c, out) in pixel.iter_mut().enumerate() {
+                let light = (1.0 - GLARE.0) * sharp.pixel(x, y)[c] + GLARE.0 * glow.pixel(x, y)[c];
+                let electrons = f64::from((light * falloff * exposure).max(0.0)) * WELL.0;
+                let noise = (electrons + WELL.1 * WELL.1).sqrt() * rng.normal();
+                let value = ((electrons + noise) / WELL.0).clamp(0.0, 1.0) as f32;
+                *out = srgb_to_linear((linear_to_srgb(value) * 255.0).round() / 255.0);
+            }
+        }
+    })?;
+    Ok((photo, exposure))
+}

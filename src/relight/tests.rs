@@ -1,0 +1,128 @@
+use super::*;
+use crate::error::ErrorKind;
+use crate::exec::Pool;
+use crate::job::Monitor;
+use crate::scene::{Material, Mesh, PunctualLight, Scene};
+use std::sync::Arc;
+
+/// A box room of `size` metres whose six sides face inwards: floor, ceiling, then the walls. Material 0 is everything but
+/// the ceiling, which has material 1.
+fn room(size: Vec3, walls: Vec3, ceiling: Vec3, emission: Vec3) -> Scene {
+    let corner = |i: usize| Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2 & 1) as f32) * size;
+    let side = |name: &str, material, quad: [usize; 4]| Mesh {
+        name: name.into(),
+        material,
+        positions: quad.map(corner).to_vec(),
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+        ..Mesh::default()
+    };
+    Scene {
+        meshes: vec![
+            side("floor", 0, [0, 4, 5, 1]),
+            side("ceiling", 1, [2, 3, 7, 6]),
+            side("back", 0, [0, 1, 3, 2]),
+            side("front", 0, [4, 6, 7, 5]),
+            side("left", 0, [0, 2, 6, 4]),
+            side("right", 0, [1, 5, 7, 3]),
+        ],
+        materials: vec![
+            Material { double_sided: false, ..Material::diffuse("walls", walls) },
+            Material { emission, double_sided: false, ..Material::diffuse("ceiling", ceiling) },
+        ],
+        ..Scene::default()
+    }
+}
+
+fn solve(scene: &Scene, target: Vec3, params: &Params) -> Result<Solution> {
+    let pool = Pool::new(2).unwrap();
+    let monitor = Monitor::default();
+    let world = World::build(Arc::new(scene.clone()), monitor.job()).unwrap();
+    // The ceiling emits everywhere, so the floor is the target: it has no lamps to leave out.
+    let input = Input { world: &world, emitter: 1, target_triangles: &[(0, 0), (0, 1)], target };
+    pool.run(|| run(&input, params, monitor.job()))
+}
+
+/// Between two wide parallel plates of albedo 0 and the walls black, a floor under a small ceiling: with black
+/// surroundings the floor gathers `E = π F e`, F the form factor of parallel rectangles.
+#[test]
+fn a_black_room_answers_with_the_form_factor() {
+    let scene = room(Vec3::new(2.0, 1.0, 2.0), Vec3::ZERO, Vec3::ZERO, Vec3::ONE);
+    let params = Params { quantity: Quantity::Incident, target_error: 0.002, ..Params::default() };
+    let solution = solve(&scene, Vec3::ONE, &params).unwrap();
+    // Equal parallel rectangles at distance 1 with sides X = Y = 2 (Howell, configuration C-11).
+    let (x, y) = (2.0f64, 2.0f64);
+    let (x1, y1) = (1.0 + x * x, 1.0 + y * y);
+    let f = 2.0 / (std::f64::consts::PI * x * y)
+        * ((x1 * y1 / (x1 + y1 - 1.0)).sqrt().ln()
+            + x * y1.sqrt() * (x / y1.sqrt()).atan()
+            + y * x1.sqrt() * (y / x1.sqrt()).atan()
+            - x * x.atan()
+            - y * y.atan());
+    for c in 0..3 {
+        assert!(
+            (solution.scale[c] - 1.0 / f).abs() < 1.5 * solution.half_width[c],
+            "{solution:?}, expected {}",
+            1.0 / f
+        );
+        assert!(solution.half_width[c] / solution.scale[c] < 0.002);
+    }
+}
+
+/// The answer multiplies the emission so that the target is met: solve, apply, and measure again.
+#[test]
+fn a_known_emitter_is_recovered_under_other_light() {
+    let truth = Vec3::new(120.0, 80.0, 40.0);
+    let mut scene = room(Vec3::new(4.0, 2.5, 3.0), Vec3::new(0.7, 0.5, 0.3), Vec3::splat(0.8), Vec3::ONE);
+    scene
+        .lights
+        .push(PunctualLight::Point { position: Vec3::new(1.0, 1.2, 1.0), intensity: Vec3::new(20.0, 30.0, 60.0) });
+    let params = Params { target_error: 0.004, ..Params::default() };
+    let unit = solve(&scene, Vec3::splat(1e6), &params).unwrap();
+    let target = (unit.response * truth.as_dvec3() + unit.background).as_vec3();
+    let solution = solve(&scene, target, &Params { seed: 99, ..params }).unwrap();
+    for c in 0..3 {
+        let error = (solution.scale[c] - f64::from(truth[c])).abs();
+        // Two independent estimates, each with its interval.
+        assert!(error < 2.0 * std::f64::consts::SQRT_2 * solution.half_width[c], "{solution:?}");
+    }
+}
+
+#[test]
+fn what_cannot_be_met_is_said() {
+    let params = Params { paths: 1 << 14, ..Params::default() };
+    let unreachable = |scene: &Scene, target: Vec3| solve(scene, target, &params).unwrap_err().kind;
+    // A black floor sends nothing back.
+    let black = room(Vec3::ONE, Vec3::ZERO, Vec3::ONE * 0.5, Vec3::ONE);
+    assert_eq!(unreachable(&black, Vec3::ONE), ErrorKind::Unreachable);
+    // Another light is brighter than the target.
+    let mut bright = room(Vec3::ONE, Vec3::splat(0.5), Vec3::splat(0.5), Vec3::ONE);
+    bright.lights.push(PunctualLight::Point { position: Vec3::splat(0.5), intensity: Vec3::splat(1e3) });
+    assert_eq!(unreachable(&bright, Vec3::ONE), ErrorKind::Unreachable);
+    // A channel that walls absorb completely keeps the others' mean.
+    let redless = room(Vec3::ONE, Vec3::new(0.0, 0.5, 0.5), Vec3::splat(0.5), Vec3::ONE);
+    let solution = solve(&redless, Vec3::ONE, &params).unwrap();
+    assert_eq!(solution.reach, [Reach::Dark, Reach::Met, Reach::Met]);
+    assert!((solution.scale.x - (solution.scale.y + solution.scale.z) / 2.0).abs() < 1e-9);
+    // Bad parameters name themselves.
+    for target in [Vec3::splat(-1.0), Vec3::NAN] {
+        assert!(solve(&redless, target, &params).unwrap_err().message.starts_with("target is"));
+    }
+}
+
+#[test]
+fn a_target_of_nothing_needs_no_light() {
+    let scene = room(Vec3::ONE, Vec3::splat(0.5), Vec3::splat(0.5), Vec3::ONE);
+    let solution = solve(&scene, Vec3::ZERO, &Params { paths: 1 << 14, ..Params::default() }).unwrap();
+    assert_eq!(solution.scale, DVec3::ZERO);
+}
+
+#[test]
+fn the_same_bits_for_any_number_of_threads() {
+    let scene = Arc::new(room(Vec3::new(3.0, 2.0, 1.0), Vec3::splat(0.6), Vec3::splat(0.7), Vec3::ONE));
+    let monitor = Monitor::default();
+    let world = World::build(scene, monitor.job()).unwrap();
+    let input = Input { world: &world, emitter: 1, target_triangles: &[(0, 0)], target: Vec3::ONE };
+    let params = Params { paths: 1 << 15, target_error: 0.0, ..Params::default() };
+    let with = |threads| Pool::new(threads).unwrap().run(|| run(&input, &params, monitor.job()).unwrap());
+    assert_eq!(with(1), with(3));
+}

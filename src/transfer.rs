@@ -1,1 +1,0 @@
-//! The transfer: runs the stages in order; every intermediate can be read, replaced and re-run from.

@@ -1,0 +1,207 @@
+//! The lighting transfer: from a photo, a few strokes and a 3D scene to that scene lit as in the photo (Lipp et al.,
+//! "Single-Exemplar Lighting Style Transfer via Emissive Texture Synthesis and Optimization").
+//!
+//! Runs the stages in order and passes data between them, which never know of each other. Every intermediate can be read,
+//! replaced by the caller's own, and the run taken up again from any stage: a better depth map, a hand-drawn mask or
+//! known vanishing points stand in for a stage's result.
+
+mod colour;
+mod placement;
+mod schedule;
+mod stages;
+
+pub use colour::TargetColour;
+pub use schedule::Fixture;
+
+use crate::emission::{self, Emission};
+use crate::error::{Error, ErrorKind, Result, check_range};
+use crate::features::{self, DepthKind, Features};
+use crate::image::Image;
+use crate::job::Job;
+use crate::rectify::{self, Unwarped, View};
+use crate::relight::{self, Solution};
+use crate::render::{self, Film};
+use crate::scene::surface::{Placed, Surface};
+use crate::scene::{Camera, Scene};
+use crate::segment::{self, Segmentation, Stroke};
+use glam::Vec3;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// The steps of the transfer, in the order they run.
+#[repr(u32)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Stage {
+    /// Lines, vanishing points and the photo's camera.
+    View = 0,
+    /// Ten channels per pixel.
+    Features = 1,
+    /// The mask of the plane that carries the lights.
+    Plane = 2,
+    /// The mask of the lights in it.
+    Lights = 3,
+    /// The plane seen straight on.
+    Unwarp = 4,
+    /// The emissive texture, laid onto the scene's surface.
+    Emission = 5,
+    /// Its colour and intensity.
+    Relight = 6,
+    /// The picture.
+    Render = 7,
+}
+
+pub const STAGES: [Stage; 8] = [
+    Stage::View,
+    Stage::Features,
+    Stage::Plane,
+    Stage::Lights,
+    Stage::Unwarp,
+    Stage::Emission,
+    Stage::Relight,
+    Stage::Render,
+];
+
+/// Share of the whole run's time that each stage is expected to take, for the progress bar only.
+const WEIGHTS: [f64; 8] = [0.06, 0.06, 0.03, 0.03, 0.06, 0.12, 0.14, 0.5];
+
+#[derive(Clone, Debug, Default)]
+pub struct Input {
+    /// Linear RGB, 1 = display white.
+    pub photo: Option<Arc<Image>>,
+    /// Depth of the photo, if the caller has it.
+    pub depth: Option<(Arc<Image>, DepthKind)>,
+    pub plane_strokes: Vec<Stroke>,
+    pub light_strokes: Vec<Stroke>,
+    pub scene: Option<Arc<Scene>>,
+    /// Name of the object or material of the scene that receives the lights.
+    pub surface: String,
+    /// Whence the result is rendered; the scene's first camera if absent.
+    pub camera: Option<Camera>,
+}
+
+#[derive(Clone, Debug)]
+pub struct Params {
+    pub rectify: rectify::Params,
+    pub unwarp: rectify::UnwarpParams,
+    pub features: features::Params,
+    pub segment: segment::Params,
+    /// `width`, `height` and `scale` are set by the transfer, from the surface's size and the two below.
+    pub emission: emission::Params,
+    /// Distance of the photo's camera from the lit plane in metres, in `[0.01, 1e4]`: it sets the scale of the pattern.
+    pub plane_distance: f64,
+    /// Longest side of the emissive texture in texels, in `[1, 16384]`.
+    pub max_texels: usize,
+    pub target: TargetColour,
+    /// Luminance in cd/m² that the photo's white stands for, in `[1e-6, 1e9]`.
+    pub white_luminance: f32,
+    pub relight: relight::Params,
+    pub render: render::Params,
+}
+
+impl Default for Params {
+    fn default() -> Self {
+        Self {
+            rectify: rectify::Params::default(),
+            unwarp: rectify::UnwarpParams::default(),
+            features: features::Params::default(),
+            segment: segment::Params::default(),
+            emission: emission::Params::default(),
+            plane_distance: 1.2,
+            max_texels: 2048,
+            target: TargetColour::Surface,
+            white_luminance: 100.0,
+            relight: relight::Params::default(),
+            render: render::Params::default(),
+        }
+    }
+}
+
+/// The scene with the emission on its surface.
+#[derive(Clone, Debug)]
+pub struct LitScene {
+    pub scene: Arc<Scene>,
+    pub surface: Surface,
+    pub placed: Placed,
+    /// Metres per texel.
+    pub texel_size: f64,
+}
+
+/// What each stage has made; all of it may be replaced.
+#[derive(Clone, Debug, Default)]
+pub struct Results {
+    pub view: Option<Arc<View>>,
+    pub features: Option<Arc<Features>>,
+    pub plane: Option<Arc<Segmentation>>,
+    pub lights: Option<Arc<Segmentation>>,
+    pub unwarped: Option<Arc<Unwarped>>,
+    pub emission: Option<Arc<Emission>>,
+    /// The texture on the surface at the photo's own strength: `white_luminance` times its linear values.
+    pub unsolved: Option<Arc<LitScene>>,
+    /// Mean colour the surface is to have, relative to the photo's white.
+    pub target: Option<Vec3>,
+    pub solution: Option<Solution>,
+    /// The scene with the solved emission.
+    pub lit: Option<Arc<LitScene>>,
+    pub film: Option<Arc<Film>>,
+    /// Seconds each stage took when it last ran.
+    pub seconds: [f64; STAGES.len()],
+}
+
+/// Inputs, settings and results of one transfer.
+#[derive(Clone, Debug, Default)]
+pub struct Transfer {
+    pub input: Input,
+    pub params: Params,
+    pub results: Results,
+}
+
+impl Transfer {
+    /// Runs the stages `from..=to`. What a stage needs must have been made before, or given by the caller.
+    ///
+    /// `publish` is called with the results whenever a stage ends, and while the picture is being rendered: after a
+    /// cancel or an error they hold all that was finished.
+    pub fn run(&mut self, from: Stage, to: Stage, job: Job, mut publish: impl FnMut(&Results)) -> Result<()> {
+        if from > to {
+            return Err(Error::argument(format!("the run is from stage {from:?} to {to:?}; it must go forwards")));
+        }
+        check_range("plane_distance", self.params.plane_distance, 0.01, 1e4)?;
+        check_range("max_texels", self.params.max_texels, 1, 16_384)?;
+        check_range("white_luminance", self.params.white_luminance, 1e-6, 1e9)?;
+
+        let (first, last) = (from as usize, to as usize);
+        let total: f64 = WEIGHTS[first..=last].iter().sum();
+        let mut done = 0.0;
+        for stage in &STAGES[first..=last] {
+            let weight = WEIGHTS[*stage as usize] / total;
+            let part = job.part(done, (done + weight).min(1.0));
+            part.check()?;
+            let clock = Instant::now();
+            self.run_stage(*stage, part, &mut publish)?;
+            self.results.seconds[*stage as usize] = clock.elapsed().as_secs_f64();
+            done = (done + weight).min(1.0);
+            job.report(done);
+            publish(&self.results);
+        }
+        job.report(1.0);
+        Ok(())
+    }
+
+    fn run_stage(&mut self, stage: Stage, job: Job, publish: &mut dyn FnMut(&Results)) -> Result<()> {
+        match stage {
+            Stage::View => self.find_view(job),
+            Stage::Features => self.compute_features(job),
+            Stage::Plane => self.segment_plane(job),
+            Stage::Lights => self.segment_lights(job),
+            Stage::Unwarp => self.unwarp(job),
+            Stage::Emission => self.synthesise(job),
+            Stage::Relight => self.relight(job),
+            Stage::Render => self.render(job, publish),
+        }
+        .map_err(|e| e.within(format_args!("stage {stage:?}")))
+    }
+}
+
+/// What an earlier stage or the caller should have provided.
+fn need<'a, T>(value: &'a Option<T>, what: &str) -> Result<&'a T> {
+    value.as_ref().ok_or_else(|| Error::new(ErrorKind::NotReady, format!("{what} first")))
+}

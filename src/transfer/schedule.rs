@@ -1,0 +1,56 @@
+//! The luminaire schedule: every lamp of the solved texture as a fixture in the room.
+
+use super::{LitScene, Transfer, need};
+use crate::emission::Emission;
+use crate::error::Result;
+use crate::image::colour::luminance;
+use glam::{DVec2, Vec3};
+use std::f64::consts::PI;
+
+/// One lamp on the surface.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fixture {
+    /// Centre in metres.
+    pub position: Vec3,
+    /// Direction the lamp shines in.
+    pub normal: Vec3,
+    /// Direction of the long axis.
+    pub axis: Vec3,
+    /// Lengths along and across the axis in metres.
+    pub size: DVec2,
+    /// Area in m².
+    pub area: f64,
+    /// Mean luminance per channel in cd/m².
+    pub radiance: Vec3,
+    /// Luminous flux in lumens: a Lambertian lamp sends out π × luminance × area.
+    pub flux: f64,
+}
+
+impl Transfer {
+    /// The lamps of the lit scene; all of the texture counts, also where an irregular surface leaves parts of it out.
+    pub fn fixtures(&self) -> Result<Vec<Fixture>> {
+        let emission = need(&self.results.emission, "run stage Emission")?;
+        let lit = need(&self.results.lit, "run stage Relight")?;
+        Ok(emission.luminaires.iter().map(|lamp| fixture(emission, lit, lamp)).collect())
+    }
+}
+
+fn fixture(emission: &Emission, lit: &LitScene, lamp: &crate::emission::Luminaire) -> Fixture {
+    let surface = &lit.surface;
+    let (width, height) = (emission.texture.width as f64, emission.texture.height as f64);
+    let strength = lit.scene.materials[lit.placed.material].emission;
+    let texel = DVec2::new(f64::from(surface.size.x) / width, f64::from(surface.size.y) / height);
+    let on_surface = lamp.centre * texel;
+    let axis = DVec2::from_angle(lamp.orientation);
+    let area = lamp.area * texel.x * texel.y;
+    let radiance = lamp.colour * strength;
+    Fixture {
+        position: surface.origin + surface.u_axis * on_surface.x as f32 + surface.v_axis * on_surface.y as f32,
+        normal: surface.normal,
+        axis: surface.u_axis * axis.x as f32 + surface.v_axis * axis.y as f32,
+        size: DVec2::new(lamp.size.x * (axis * texel).length(), lamp.size.y * (axis.perp() * texel).length()),
+        area,
+        radiance,
+        flux: PI * f64::from(luminance(radiance)) * area,
+    }
+}

@@ -1,0 +1,155 @@
+//! Each stage of the transfer: gathers its input from the results before it, runs it, keeps its result.
+
+use super::{LitScene, Results, Transfer, colour, need, placement};
+use crate::error::{Error, ErrorKind, Result};
+use crate::job::Job;
+use crate::render::World;
+use crate::scene::surface;
+use crate::{emission, features, rectify, relight, render, segment};
+use glam::Vec3;
+use std::sync::Arc;
+
+impl Transfer {
+    pub(super) fn find_view(&mut self, job: Job) -> Result<()> {
+        let photo = need(&self.input.photo, "set the photo")?;
+        self.results.view = Some(Arc::new(rectify::find_view(photo, &self.params.rectify, job)?));
+        Ok(())
+    }
+
+    pub(super) fn compute_features(&mut self, job: Job) -> Result<()> {
+        let photo = need(&self.input.photo, "set the photo")?;
+        let depth = self.input.depth.as_ref().map(|(image, kind)| features::DepthMap { image, kind: *kind });
+        let view = self.results.view.as_ref();
+        let room = view.map(|v| features::RoomView { perspective: &v.perspective, segments: &v.segments });
+        let input = features::Input { photo, depth, room };
+        self.results.features = Some(Arc::new(features::run(&input, &self.params.features, job)?));
+        Ok(())
+    }
+
+    pub(super) fn segment_plane(&mut self, job: Job) -> Result<()> {
+        let features = need(&self.results.features, "run stage Features")?;
+        let input = segment::Input { features: &features.image, strokes: &self.input.plane_strokes, within: None };
+        let plane = segment::run(&input, &self.params.segment, job).map_err(|e| e.within("strokes of the plane"))?;
+        self.results.plane = Some(Arc::new(plane));
+        Ok(())
+    }
+
+    pub(super) fn segment_lights(&mut self, job: Job) -> Result<()> {
+        let features = need(&self.results.features, "run stage Features")?;
+        let plane = need(&self.results.plane, "run stage Plane")?;
+        let input =
+            segment::Input { features: &features.image, strokes: &self.input.light_strokes, within: Some(&plane.mask) };
+        let lights = segment::run(&input, &self.params.segment, job).map_err(|e| e.within("strokes of the lights"))?;
+        self.results.lights = Some(Arc::new(lights));
+        Ok(())
+    }
+
+    pub(super) fn unwarp(&mut self, job: Job) -> Result<()> {
+        let photo = need(&self.input.photo, "set the photo")?;
+        let view = need(&self.results.view, "run stage View")?;
+        let plane = need(&self.results.plane, "run stage Plane")?;
+        let unwarped = rectify::unwarp(photo, view, &plane.mask, &self.params.unwarp, job)?;
+        self.results.unwarped = Some(Arc::new(unwarped));
+        Ok(())
+    }
+
+    pub(super) fn synthesise(&mut self, job: Job) -> Result<()> {
+        let photo = need(&self.input.photo, "set the photo")?;
+        let scene = need(&self.input.scene, "set the scene")?;
+        let lights = need(&self.results.lights, "run stage Lights")?;
+        let unwarped = need(&self.results.unwarped, "run stage Unwarp")?;
+        let surface = surface::find(scene, &self.input.surface)?;
+
+        // What the unwarped plane shows of the light mask.
+        let (width, height) = (unwarped.image.width, unwarped.image.height);
+        let light = rectify::warp(&lights.confidence, &unwarped.to_photo, width, height, job.part(0.0, 0.1))?;
+        let input = emission::Input {
+            unwarped: &unwarped.image,
+            light: &light,
+            valid: &unwarped.valid,
+            photo: Some((photo, unwarped.to_photo)),
+        };
+        let grid = placement::texel_grid(&surface, unwarped, self.params.plane_distance, self.params.max_texels);
+        let params = emission::Params {
+            width: grid.width,
+            height: grid.height,
+            scale: grid.scale,
+            ..self.params.emission.clone()
+        };
+        let emission = emission::run(&input, &params, job.part(0.1, 0.95))?;
+
+        // Onto the surface, as bright as the photo shows the lamps.
+        let mut lit = (**scene).clone();
+        let strength = Vec3::splat(self.params.white_luminance);
+        let placed = surface::place(&mut lit, &surface, emission.texture.clone(), strength)?;
+        self.results.unsolved =
+            Some(Arc::new(LitScene { scene: Arc::new(lit), surface, placed, texel_size: grid.texel_size }));
+        self.results.emission = Some(Arc::new(emission));
+        Ok(())
+    }
+
+    pub(super) fn relight(&mut self, job: Job) -> Result<()> {
+        let photo = need(&self.input.photo, "set the photo")?;
+        let plane = need(&self.results.plane, "run stage Plane")?;
+        let lights = need(&self.results.lights, "run stage Lights")?;
+        let unsolved = need(&self.results.unsolved, "run stage Emission")?;
+        let target = colour::target(self.params.target, photo, &plane.mask, &lights.mask)?;
+
+        let world = World::build(unsolved.scene.clone(), job.part(0.0, 0.1))?;
+        let mesh = unsolved.placed.mesh;
+        let triangles: Vec<_> = (0..unsolved.scene.meshes[mesh].triangles.len()).map(|t| (mesh, t)).collect();
+        let input = relight::Input {
+            world: &world,
+            emitter: unsolved.placed.material,
+            target_triangles: &triangles,
+            target: target * self.params.white_luminance,
+        };
+        let solution = relight::run(&input, &self.params.relight, job.part(0.1, 1.0))?;
+
+        let strength = Vec3::splat(self.params.white_luminance) * solution.scale.as_vec3();
+        self.results.lit = Some(Arc::new(unsolved.with_strength(strength)));
+        self.results.target = Some(target);
+        self.results.solution = Some(solution);
+        Ok(())
+    }
+
+    pub(super) fn render(&mut self, job: Job, publish: &mut dyn FnMut(&Results)) -> Result<()> {
+        let lit = need(&self.results.lit, "run stage Relight")?;
+        let camera = self.input.camera.as_ref().or(lit.scene.cameras.first()).ok_or_else(|| {
+            Error::new(ErrorKind::NotFound, "the scene has no camera: set one to render from".to_string())
+        })?;
+        let world = World::build(lit.scene.clone(), job.part(0.0, 0.05))?;
+        let mut results = self.results.clone();
+        let film = render::run(&world, camera, &self.params.render, job.part(0.05, 1.0), &mut |film| {
+            results.film = Some(Arc::new(film.clone()));
+            publish(&results);
+        });
+        // A cancelled render keeps what it has.
+        self.results.film = results.film;
+        self.results.film = Some(Arc::new(film?));
+        Ok(())
+    }
+}
+
+impl LitScene {
+    /// The same with another strength of the emission, in cd/m² per channel.
+    pub fn with_strength(&self, strength: Vec3) -> Self {
+        let mut scene = (*self.scene).clone();
+        scene.materials[self.placed.material].emission = strength;
+        Self { scene: Arc::new(scene), ..self.clone() }
+    }
+
+    /// The same lamps in white light of the same luminance: what the colour of the solution is compared with.
+    pub fn in_white(&self) -> Self {
+        let mut scene = (*self.scene).clone();
+        let material = &mut scene.materials[self.placed.material];
+        if let Some(map) = material.emission_texture {
+            let tint = material.emission;
+            for pixel in scene.textures[map.texture].image.data.chunks_exact_mut(3) {
+                pixel.fill(crate::image::colour::luminance(Vec3::from_slice(pixel) * tint));
+            }
+            material.emission = Vec3::ONE;
+        }
+        Self { scene: Arc::new(scene), ..self.clone() }
+    }
+}

@@ -1,0 +1,119 @@
+//! The rules that keep the house a house, checked on the source: which part may use which, where `unsafe` may stand,
+//! what never stands anywhere, and how long a file may grow.
+
+use std::path::{Path, PathBuf};
+
+/// For each part of `src`, what it may use; a part may always use itself. Later parts use earlier ones.
+const ARROWS: &[(&str, &[&str])] = &[
+    ("error", &[]),
+    ("job", &["error"]),
+    ("exec", &["error", "job"]),
+    ("rng", &[]),
+    ("image", &["error", "job", "exec"]),
+    ("geometry", &["error", "rng"]),
+    ("scene", &["error", "job", "exec", "rng", "image", "geometry"]),
+    ("render", &["error", "job", "exec", "rng", "image", "geometry", "scene"]),
+    ("patch", &["error", "job", "exec", "rng", "image"]),
+    // Stages: never each other. Segmentation knows how many channels the features have.
+    ("features", &["error", "job", "exec", "rng", "image", "geometry"]),
+    ("segment", &["error", "job", "exec", "rng", "image", "geometry", "features"]),
+    ("rectify", &["error", "job", "exec", "rng", "image", "geometry"]),
+    ("emission", &["error", "job", "exec", "rng", "image", "geometry", "patch"]),
+    ("relight", &["error", "job", "exec", "rng", "image", "geometry", "scene", "render"]),
+    ("stylize", &["error", "job", "exec", "rng", "image", "geometry", "patch"]),
+    // Those that pass data between stages.
+    ("demo", &["error", "job", "exec", "rng", "image", "geometry", "scene", "render", "segment"]),
+    (
+        "transfer",
+        &[
+            "error", "job", "exec", "rng", "image", "geometry", "scene", "render", "features", "segment", "rectify",
+            "emission", "relight",
+        ],
+    ),
+];
+
+/// Files that may contain `unsafe` beside `ffi`: SIMD kernels.
+const UNSAFE: &[&str] = &["simd"];
+
+/// Longest file that may be committed.
+const MAX_LINES: usize = 600;
+
+fn sources() -> Vec<(PathBuf, String)> {
+    fn walk(folder: &Path, out: &mut Vec<(PathBuf, String)>) {
+        let mut entries: Vec<_> = std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect();
+        entries.sort();
+        for path in entries {
+            if path.is_dir() {
+                walk(&path, out);
+            } else if path.extension().is_some_and(|e| e == "rs") {
+                let text = std::fs::read_to_string(&path).unwrap();
+                out.push((path, text));
+            }
+        }
+    }
+    let mut out = Vec::new();
+    walk(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"), &mut out);
+    assert!(out.len() > 20, "the sources were not found");
+    out
+}
+
+/// The part of the library a file belongs to: its folder under `src`, or its own name.
+fn part(path: &Path) -> String {
+    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let first = path.strip_prefix(src).unwrap().components().next().unwrap();
+    first.as_os_str().to_string_lossy().trim_end_matches(".rs").to_string()
+}
+
+#[test]
+fn every_part_uses_only_what_lies_below_it() {
+    for (path, text) in sources() {
+        let part = part(&path);
+        if part == "lib" || part == "ffi" {
+            continue;
+        }
+        let allowed = ARROWS.iter().find(|(name, _)| *name == part).unwrap_or_else(|| panic!("{part} has no rule")).1;
+        // Tests beside the code may build their input with any part.
+        let code = text.split("#[cfg(test)]\nmod tests {").next().unwrap();
+        if path.file_name().is_some_and(|f| f.to_string_lossy().contains("tests")) {
+            continue;
+        }
+        for (at, _) in code.match_indices("crate::") {
+            let rest = &code[at + "crate::".len()..];
+            let names: Vec<&str> = match rest.strip_prefix('{') {
+                Some(group) => group.split('}').next().unwrap().split(',').map(str::trim).collect(),
+                None => vec![rest],
+            };
+            for name in names {
+                let name: String = name.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
+                let ok = name.is_empty() || name == part || allowed.contains(&name.as_str());
+                assert!(ok, "{} uses crate::{name}, which {part} may not", path.display());
+            }
+        }
+    }
+}
+
+#[test]
+fn unsafe_stands_only_at_the_c_boundary_and_in_simd_kernels() {
+    for (path, text) in sources() {
+        let name = path.file_stem().unwrap().to_string_lossy().to_string();
+        if part(&path) == "ffi" || part(&path) == "lib" || UNSAFE.iter().any(|u| name.contains(u)) {
+            continue;
+        }
+        let found = text.lines().find(|l| l.split("//").next().unwrap().split_whitespace().any(|w| w == "unsafe"));
+        assert!(found.is_none(), "{}: {}", path.display(), found.unwrap_or_default());
+    }
+}
+
+#[test]
+fn nothing_unfinished_nothing_printed_nothing_too_long() {
+    let banned = ["todo!(", "unimplemented!(", "println!(", "print!(", "dbg!(", "static mut", "thread_local!"];
+    for (path, text) in sources() {
+        let code = text.split("#[cfg(test)]\nmod tests {").next().unwrap();
+        for word in banned {
+            let is_test = path.file_name().is_some_and(|f| f.to_string_lossy().contains("tests"));
+            assert!(is_test || !code.contains(word), "{} contains {word}", path.display());
+        }
+        let lines = text.lines().count();
+        assert!(lines <= MAX_LINES, "{} has {lines} lines; split it along a step of its algorithm", path.display());
+    }
+}
