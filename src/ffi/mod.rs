@@ -1,1 +1,33 @@
-//! The C boundary: the only place with `extern "C"` and raw pointers.
+//! The C boundary: the only place with `extern "C"` and raw pointers. One file per handle; nothing here computes.
+//!
+//! How an entry point is built, always the same way:
+//! - [`guard`] turns panics and errors into a status and keeps the message for the calling thread;
+//! - [`handle`] checks the tag behind every pointer that claims to be one of ours, and counts references;
+//! - [`params`] copies the caller's versioned structs, old or new, and never trusts their size;
+//! - [`stage`] holds what all stages share: inputs, one job at a time, a result that appears only on success.
+//!
+//! The comments of the exported items, and the heads of the files they are in, become `include/luxfer.h`; the test
+//! `abi_header` generates it. Nothing exported may be made by a macro: cbindgen would not see it.
+
+// C names; the contract of each unsafe function is its text in the header.
+#![allow(non_camel_case_types, clippy::missing_safety_doc)]
+
+#[cfg(panic = "abort")]
+compile_error!("luxfer reports panics to its host as LUXFER_INTERNAL: build it with panic = \"unwind\"");
+
+mod guard;
+mod handle;
+mod params;
+mod pointer;
+
+mod context;
+mod image;
+mod job;
+mod status;
+mod version;
+
+pub use context::*;
+pub use image::*;
+pub use job::*;
+pub use status::*;
+pub use version::*;

@@ -13,6 +13,8 @@ use std::path::Path;
 /// Largest image a file may hold: 2^28 pixels, a 16 k square.
 pub const MAX_PIXELS: u64 = 1 << 28;
 
+const EXR_MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
+
 /// How the integers of a file are to be read. Floating-point files are always linear.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Encoding {
@@ -23,13 +25,28 @@ pub enum Encoding {
 
 /// Reads a file with 1, 3 or 4 channels, as linear values.
 pub fn load(path: &Path, encoding: Encoding) -> Result<Image> {
-    let bytes = std::fs::read(path).map_err(|e| Error::new(ErrorKind::Io, format!("{}: {e}", path.display())))?;
-    decode(&bytes, encoding).map_err(|e| e.within(path.display()))
+    decode(&read_file(path)?, encoding).map_err(|e| e.within(path.display()))
+}
+
+/// Reads a whole file.
+pub fn read_file(path: &Path) -> Result<Vec<u8>> {
+    std::fs::read(path).map_err(|e| Error::new(ErrorKind::Io, format!("{}: {e}", path.display())))
 }
 
 /// Reads an image file held in memory.
 pub fn decode(bytes: &[u8], encoding: Encoding) -> Result<Image> {
-    if bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]) { decode_exr(bytes) } else { decode_raster(bytes, encoding) }
+    if bytes.starts_with(&EXR_MAGIC) { decode_exr(bytes) } else { decode_raster(bytes, encoding) }
+}
+
+/// Width, height and largest number of channels of an image file, from its header alone: what decoding it will need.
+pub fn probe(bytes: &[u8]) -> Result<(usize, usize, usize)> {
+    if bytes.starts_with(&EXR_MAGIC) {
+        let size = exr_headers(bytes)?.iter().map(|h| (h.layer_size.0, h.layer_size.1, h.channels.list.len().min(4)));
+        return size.max_by_key(|s| s.0 * s.1 * s.2).ok_or_else(|| Error::format("the OpenEXR file has no layers"));
+    }
+    let (_, decoder) = raster_decoder(bytes)?;
+    let (width, height) = decoder.dimensions();
+    Ok((width as usize, height as usize, usize::from(decoder.color_type().channel_count())))
 }
 
 fn check_size(width: u64, height: u64) -> Result<()> {
@@ -41,15 +58,24 @@ fn check_size(width: u64, height: u64) -> Result<()> {
     Ok(())
 }
 
-fn decode_raster(bytes: &[u8], encoding: Encoding) -> Result<Image> {
+fn raster_decoder(bytes: &[u8]) -> Result<(ImageFormat, impl ImageDecoder + '_)> {
     let format = image::guess_format(bytes)
         .map_err(|_| Error::format("not a PNG, JPEG, Radiance HDR or OpenEXR file".to_string()))?;
-    let is_hdr = format == ImageFormat::Hdr;
-    let broken = |e: image::ImageError| Error::format(format!("the file cannot be decoded: {e}"));
-    let decoder = ImageReader::with_format(Cursor::new(bytes), format).into_decoder().map_err(broken)?;
+    let decoder = ImageReader::with_format(Cursor::new(bytes), format).into_decoder().map_err(broken_raster)?;
     let (width, height) = decoder.dimensions();
     check_size(width.into(), height.into())?;
-    let decoded = DynamicImage::from_decoder(decoder).map_err(broken)?;
+    Ok((format, decoder))
+}
+
+fn broken_raster(e: image::ImageError) -> Error {
+    Error::format(format!("the file cannot be decoded: {e}"))
+}
+
+fn decode_raster(bytes: &[u8], encoding: Encoding) -> Result<Image> {
+    let (format, decoder) = raster_decoder(bytes)?;
+    let is_hdr = format == ImageFormat::Hdr;
+    let (width, height) = decoder.dimensions();
+    let decoded = DynamicImage::from_decoder(decoder).map_err(broken_raster)?;
     let (width, height) = (width as usize, height as usize);
 
     // Integers in sRGB decode through a table or the curve; everything else is scaled only.
@@ -84,13 +110,21 @@ fn decode_raster(bytes: &[u8], encoding: Encoding) -> Result<Image> {
     }
 }
 
-/// The first layer that has R, G and B (and A), or one with a single channel.
-fn decode_exr(bytes: &[u8]) -> Result<Image> {
-    let broken = |e: exr::error::Error| Error::format(format!("the OpenEXR file cannot be decoded: {e}"));
-    let meta = exr::meta::MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(broken)?;
+fn broken_exr(e: exr::error::Error) -> Error {
+    Error::format(format!("the OpenEXR file cannot be decoded: {e}"))
+}
+
+fn exr_headers(bytes: &[u8]) -> Result<exr::meta::Headers> {
+    let meta = exr::meta::MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(broken_exr)?;
     for header in &meta.headers {
         check_size(header.layer_size.0 as u64, header.layer_size.1 as u64)?;
     }
+    Ok(meta.headers)
+}
+
+/// The first layer that has R, G and B (and A), or one with a single channel.
+fn decode_exr(bytes: &[u8]) -> Result<Image> {
+    exr_headers(bytes)?;
     use ex::{ReadChannels, ReadLayers};
     let file = ex::read()
         .no_deep_data()
@@ -100,7 +134,7 @@ fn decode_exr(bytes: &[u8]) -> Result<Image> {
         .all_attributes()
         .non_parallel()
         .from_buffered(Cursor::new(bytes))
-        .map_err(broken)?;
+        .map_err(broken_exr)?;
     let layer = file.layer_data;
     let list = &layer.channel_data.list;
     let find = |name: &str| list.iter().find(|c| c.name.eq_case_insensitive(name));
@@ -225,6 +259,7 @@ mod tests {
         let png = encode_png(&image, 1.0).unwrap();
         let exr = encode_exr(&[Layer { name: "", image: &image, channels: &["R", "G", "B"] }]).unwrap();
         for file in [&png, &exr] {
+            assert_eq!(probe(file).unwrap(), (19, 13, 3));
             for cut in [0, 1, 4, 8, 20, file.len() / 2, file.len() - 20] {
                 assert!(decode(&file[..cut], Encoding::Srgb).is_err(), "cut at {cut}");
             }

@@ -1,0 +1,217 @@
+//! Context
+//!
+//! A context owns the threads that do the work, a memory budget and the error messages. All other objects are made in a
+//! context and keep it alive, so objects may be released in any order; objects of two contexts cannot be mixed
+//! (LUXFER_INVALID_ARGUMENT).
+//!
+//! Handles, of every kind: X_retain adds a reference, X_release gives one back; the last one frees the object. Releasing
+//! NULL does nothing. A handle is checked on entry: NULL, a handle of another kind or one released before is
+//! LUXFER_INVALID_ARGUMENT, as far as the memory behind it still shows it.
+//!
+//! Threads: different objects may be used from different threads at the same time, and so may one object; calls that
+//! change it take turns. Only the release of the last reference must not overlap any other use.
+//!
+//! The library has no global state, prints nothing, reads no environment variables, never ends the process and installs
+//! no handlers. With equal inputs, parameters and seeds results are equal to the bit, whatever the number of threads.
+
+use super::guard::{enter, guard, lock};
+use super::handle::{self, Handle, Owned, tag};
+use super::params::{self, Versioned};
+use super::pointer::{Out, set_optional};
+use super::status::luxfer_status;
+use crate::error::{Error, ErrorKind, Result};
+use crate::exec::Pool;
+use std::collections::HashMap;
+use std::ffi::c_char;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex};
+use std::thread::{self, ThreadId};
+
+/// A context: threads, memory budget and error messages. See luxfer_context_create.
+pub struct luxfer_context {
+    _opaque: [u8; 0],
+}
+
+/// How a context is set up. Fill it with luxfer_context_params_init.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_context_params {
+    /// sizeof(luxfer_context_params), set by luxfer_context_params_init.
+    pub struct_size: u32,
+    /// Number of worker threads in [0, 1024]; 0, the default, is one for each core the process may use.
+    pub num_threads: u32,
+    /// Limit in MiB for the pixels, meshes and textures of all objects the caller makes in this context; what exceeds it
+    /// is LUXFER_OUT_OF_MEMORY. 0, the default, is no limit. Working memory of a job and its results are not counted.
+    pub memory_budget_mib: u64,
+}
+
+// SAFETY: plain integers.
+unsafe impl Versioned for luxfer_context_params {
+    const NAME: &'static str = "luxfer_context_params";
+    const SIZES: &'static [usize] = &[16];
+    fn defaults() -> Self {
+        Self { struct_size: 16, num_threads: 0, memory_budget_mib: 0 }
+    }
+}
+
+/// Messages are kept for this many threads, those that failed last.
+const MAX_MESSAGES: usize = 256;
+
+/// What a `luxfer_context` refers to.
+pub(super) struct Context {
+    pub(super) pool: Pool,
+    budget: u64,
+    used: AtomicU64,
+    messages: Mutex<Messages>,
+}
+
+/// The last error message of each thread. A map and no thread-local: those would outlive the context, and the library.
+#[derive(Default)]
+struct Messages {
+    count: u64,
+    by_thread: HashMap<ThreadId, (u64, String)>,
+}
+
+impl Context {
+    pub(super) fn remember(&self, error: &Error) {
+        let messages = &mut *lock(&self.messages);
+        messages.count += 1;
+        messages.by_thread.insert(thread::current().id(), (messages.count, error.message.clone()));
+        if messages.by_thread.len() > MAX_MESSAGES
+            && let Some(oldest) = messages.by_thread.iter().min_by_key(|(_, (count, _))| *count).map(|(id, _)| *id)
+        {
+            messages.by_thread.remove(&oldest);
+        }
+    }
+
+    /// Takes `bytes` from the memory budget for as long as the charge lives.
+    pub(super) fn charge(self: &Arc<Self>, bytes: u64) -> Result<Charge> {
+        let take = |used: u64| used.checked_add(bytes).filter(|&sum| self.budget == 0 || sum <= self.budget);
+        match self.used.fetch_update(Ordering::Relaxed, Ordering::Relaxed, take) {
+            Ok(_) => Ok(Charge { context: self.clone(), bytes }),
+            Err(used) => {
+                let mib = |bytes: u64| bytes as f64 / (1 << 20) as f64;
+                Err(Error::new(
+                    ErrorKind::OutOfMemory,
+                    format!(
+                        "{:.1} MiB are needed and {:.1} of the context's budget of {:.1} MiB are in use; release \
+                         objects or raise luxfer_context_params.memory_budget_mib",
+                        mib(bytes),
+                        mib(used),
+                        mib(self.budget)
+                    ),
+                ))
+            }
+        }
+    }
+}
+
+/// A share of the memory budget.
+pub(super) struct Charge {
+    context: Arc<Context>,
+    bytes: u64,
+}
+
+impl Charge {
+    pub(super) fn context(&self) -> &Arc<Context> {
+        &self.context
+    }
+}
+
+impl Drop for Charge {
+    fn drop(&mut self) {
+        self.context.used.fetch_sub(self.bytes, Ordering::Relaxed);
+    }
+}
+
+/// A handle's own reference to its context.
+pub(super) struct ContextObject(Arc<Context>);
+
+impl Owned for ContextObject {
+    fn context(&self) -> &Arc<Context> {
+        &self.0
+    }
+}
+
+impl Handle for luxfer_context {
+    type Object = ContextObject;
+    const TAG: u64 = tag(b"lux.ctxt");
+    const NAME: &'static str = "luxfer_context";
+}
+
+/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is not that
+/// of any version of the struct.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_context_params_init(params: *mut luxfer_context_params, size: usize) -> luxfer_status {
+    guard(|| params::init(params, size))
+}
+
+/// Creates a context and its threads; params may be NULL for the defaults. The caller releases *context. Any thread.
+/// LUXFER_INVALID_ARGUMENT if context is NULL, struct_size is wrong or num_threads exceeds 1024; LUXFER_OUT_OF_MEMORY if
+/// the threads cannot be started.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_context_create(
+    params: *const luxfer_context_params,
+    context: *mut *mut luxfer_context,
+) -> luxfer_status {
+    guard(|| {
+        let out = Out::new(context, "context")?;
+        let params = params::read(params)?;
+        crate::error::check_range("num_threads", params.num_threads, 0, 1024)?;
+        let context = Arc::new(Context {
+            pool: Pool::new(params.num_threads as usize)?,
+            budget: params.memory_budget_mib.saturating_mul(1 << 20),
+            used: AtomicU64::new(0),
+            messages: Mutex::default(),
+        });
+        out.set(handle::give(Arc::new(ContextObject(context))));
+        Ok(())
+    })
+}
+
+/// Adds a reference. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_context_retain(context: *mut luxfer_context) -> luxfer_status {
+    handle::retain(context)
+}
+
+/// Gives a reference back. The threads end, and are waited for, when the context and everything made in it are released.
+/// Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_context_release(context: *mut luxfer_context) -> luxfer_status {
+    handle::release(context)
+}
+
+/// Copies the message of the calling thread's latest failure in this context into buffer, as UTF-8 that ends with a zero,
+/// cut if it does not fit into capacity bytes. *needed, unless NULL, becomes the capacity for all of it. Without a failure
+/// the message is empty. Messages stay until the thread's next failure; those of the last 256 threads are kept. buffer may
+/// be NULL if capacity is 0. A call that fails because its first handle is no handle leaves no message. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_context_last_error(
+    context: *mut luxfer_context,
+    buffer: *mut c_char,
+    capacity: usize,
+    needed: *mut usize,
+) -> luxfer_status {
+    enter(context, |object| {
+        if buffer.is_null() && capacity > 0 {
+            return Err(Error::argument(format!("buffer is NULL; it must have capacity = {capacity} bytes")));
+        }
+        let messages = lock(&object.context().messages);
+        let message = messages.by_thread.get(&thread::current().id()).map_or("", |(_, text)| text.as_str());
+        // Cut between characters, never inside one.
+        let mut len = message.len().min(capacity.saturating_sub(1));
+        while !message.is_char_boundary(len) {
+            len -= 1;
+        }
+        if capacity > 0 {
+            // SAFETY: not null; `len` + 1 <= `capacity` bytes, which the caller says are writable.
+            unsafe {
+                std::ptr::copy_nonoverlapping(message.as_ptr(), buffer.cast(), len);
+                buffer.add(len).write(0);
+            }
+        }
+        set_optional(needed, message.len() + 1);
+        Ok(())
+    })
+}

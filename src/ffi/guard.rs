@@ -1,0 +1,68 @@
+//! What stands between an entry point and its host: no panic gets out, every error becomes a status.
+
+use super::handle::{self, Handle, Owned};
+use super::status::{LUXFER_OK, luxfer_status};
+use crate::error::{Error, ErrorKind, Result};
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::{Arc, Mutex, MutexGuard};
+
+/// Runs an entry point that has no object yet.
+pub(super) fn guard(work: impl FnOnce() -> Result<()>) -> luxfer_status {
+    match catch(work) {
+        Ok(()) => LUXFER_OK,
+        Err(error) => error.kind as luxfer_status,
+    }
+}
+
+/// Runs an entry point on an object; an error's message is kept in the object's context for the calling thread.
+pub(super) fn enter<H: Handle>(
+    handle: *const H,
+    work: impl FnOnce(&Arc<H::Object>) -> Result<()>,
+) -> luxfer_status {
+    guard(|| {
+        let object = handle::borrow(handle, "the handle")?;
+        let result = catch(|| work(&object));
+        if let Err(error) = &result {
+            object.context().remember(error);
+        }
+        result
+    })
+}
+
+/// A panic becomes an error. What it left half-written is never read: results are stored only after success.
+pub(super) fn catch<T>(work: impl FnOnce() -> Result<T>) -> Result<T> {
+    catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|panic| {
+        let message = format!("a defect in luxfer, please report it: {}", panic_text(&*panic));
+        // A payload may panic as it is dropped.
+        std::mem::forget(panic);
+        Err(Error::new(ErrorKind::Internal, message))
+    })
+}
+
+fn panic_text(panic: &(dyn Any + Send)) -> &str {
+    match (panic.downcast_ref::<&str>(), panic.downcast_ref::<String>()) {
+        (Some(text), _) => text,
+        (_, Some(text)) => text,
+        _ => "panic without a message",
+    }
+}
+
+/// Locks whether or not a panic passed while it was held: every holder leaves the state whole.
+pub(super) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ffi::status::{LUXFER_FORMAT, LUXFER_INTERNAL};
+
+    #[test]
+    fn panics_and_errors_become_statuses() {
+        assert_eq!(guard(|| Ok(())), LUXFER_OK);
+        assert_eq!(guard(|| Err(Error::format("broken"))), LUXFER_FORMAT);
+        assert_eq!(guard(|| panic!("{}", 7)), LUXFER_INTERNAL);
+        assert!(catch::<()>(|| panic!("code {}", 7)).unwrap_err().message.ends_with("code 7"));
+    }
+}

@@ -1,0 +1,104 @@
+//! Handles: pointers to a tagged shell that holds one reference to the object.
+//!
+//! The shell counts the references of the host, the object inside those of the library (a job keeps its stage, an image
+//! its context). So a host that releases once too often spoils its own count at worst, and its handle goes stale while
+//! the object may live on.
+
+use super::context::Context;
+use super::guard::guard;
+use super::status::luxfer_status;
+use crate::error::{Error, Result};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Anything behind a handle.
+pub(super) trait Owned {
+    /// The context the object belongs to.
+    fn context(&self) -> &Arc<Context>;
+}
+
+/// An opaque C type and the object behind it.
+pub(super) trait Handle {
+    type Object: Owned;
+    /// First word of the shell, different for every kind.
+    const TAG: u64;
+    /// Name of the C type.
+    const NAME: &'static str;
+}
+
+/// Written over the tag when the last reference of the host is gone.
+const RELEASED: u64 = tag(b"released");
+
+/// A tag that shows as text in a memory dump.
+pub(super) const fn tag(name: &[u8; 8]) -> u64 {
+    u64::from_ne_bytes(*name)
+}
+
+#[repr(C)]
+struct Shell<T> {
+    tag: AtomicU64,
+    object: Arc<T>,
+}
+
+impl<T> Drop for Shell<T> {
+    fn drop(&mut self) {
+        // Atomic, so that it is not removed as a store to memory about to be freed.
+        self.tag.store(RELEASED, Ordering::Release);
+    }
+}
+
+/// A new handle with one reference, for the host.
+pub(super) fn give<H: Handle>(object: Arc<H::Object>) -> *mut H {
+    let shell = Shell { tag: AtomicU64::new(H::TAG), object };
+    Arc::into_raw(Arc::new(shell)).cast_mut().cast()
+}
+
+/// The shell behind a pointer, once its tag says that it is one.
+fn shell<H: Handle>(handle: *const H, name: &str) -> Result<*const Shell<H::Object>> {
+    if handle.is_null() {
+        return Err(Error::argument(format!("{name} is NULL; it must be a {}", H::NAME)));
+    }
+    let shell: *const Shell<H::Object> = handle.cast();
+    // SAFETY: the tag of any handle of ours is readable, also while others use it; a pointer that is none of ours is the
+    // host's mistake, and reading one aligned word there is the least harm that can tell.
+    let is_ours = shell.is_aligned() && unsafe { (*shell).tag.load(Ordering::Acquire) } == H::TAG;
+    if is_ours { Ok(shell) } else { Err(Error::argument(format!("{name} is not a live {}", H::NAME))) }
+}
+
+/// The object behind a handle, kept alive for the length of the call.
+pub(super) fn borrow<H: Handle>(handle: *const H, name: &str) -> Result<Arc<H::Object>> {
+    let shell = shell(handle, name)?;
+    // SAFETY: the tag is right, so the shell is alive and holds an object.
+    Ok(unsafe { Arc::clone(&(*shell).object) })
+}
+
+/// The object behind a handle given as an argument to another object of the same context.
+pub(super) fn borrow_in<H: Handle>(context: &Arc<Context>, handle: *const H, name: &str) -> Result<Arc<H::Object>> {
+    let object = borrow(handle, name)?;
+    if Arc::ptr_eq(object.context(), context) {
+        Ok(object)
+    } else {
+        Err(Error::argument(format!("{name} belongs to another context; objects of two contexts cannot be mixed")))
+    }
+}
+
+pub(super) fn retain<H: Handle>(handle: *mut H) -> luxfer_status {
+    guard(|| {
+        let shell = shell(handle, "the handle")?;
+        // SAFETY: the shell came from `Arc::into_raw` in `give` and is alive.
+        unsafe { Arc::increment_strong_count(shell) };
+        Ok(())
+    })
+}
+
+pub(super) fn release<H: Handle>(handle: *mut H) -> luxfer_status {
+    guard(|| {
+        if handle.is_null() {
+            return Ok(());
+        }
+        let shell = shell(handle, "the handle")?;
+        // SAFETY: as above; this is the reference that the host gives back.
+        drop(unsafe { Arc::from_raw(shell) });
+        Ok(())
+    })
+}

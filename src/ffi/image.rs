@@ -1,0 +1,384 @@
+//! Image
+//!
+//! An image holds 32-bit floating-point samples: scene-linear Rec.709 colour (D65 white), or data. Rows run downwards.
+//! Images never change after they are made, so results are shared and not copied. The caller's pixels are described by a
+//! view; the library never keeps a pointer to them. Sides are at most 65536 pixels.
+
+use super::context::{Charge, Context, luxfer_context};
+use super::guard::{enter, guard};
+use super::handle::{self, Handle, Owned, tag};
+use super::params::{self, Versioned};
+use super::pointer::{Out, bytes, bytes_mut, set_optional, text};
+use super::status::luxfer_status;
+use crate::error::{Error, Result};
+use crate::image::view::{ColourSpace, Layout, Sample};
+use crate::image::{Image, io, view};
+use std::ffi::{c_char, c_void};
+use std::path::Path;
+use std::sync::Arc;
+
+/// An image. See luxfer_image_create.
+pub struct luxfer_image {
+    _opaque: [u8; 0],
+}
+
+/// How a sample is stored: a LUXFER_SAMPLE_ value, in the machine's byte order.
+pub type luxfer_sample = i32;
+/// 8-bit unsigned integer that stands for [0, 1].
+pub const LUXFER_SAMPLE_U8: luxfer_sample = 0;
+/// 16-bit unsigned integer that stands for [0, 1].
+pub const LUXFER_SAMPLE_U16: luxfer_sample = 1;
+/// 16-bit floating point (IEEE 754 half).
+pub const LUXFER_SAMPLE_F16: luxfer_sample = 2;
+/// 32-bit floating point.
+pub const LUXFER_SAMPLE_F32: luxfer_sample = 3;
+
+/// What the numbers mean: a LUXFER_COLOUR_ value.
+pub type luxfer_colour_space = i32;
+/// Scene-linear Rec.709, or data that is no colour.
+pub const LUXFER_COLOUR_LINEAR: luxfer_colour_space = 0;
+/// Colour encoded with the sRGB curve; the second of two and the fourth of four channels is alpha, which is linear.
+pub const LUXFER_COLOUR_SRGB: luxfer_colour_space = 1;
+
+/// Flag of a view: the first row in memory is the bottom one.
+pub const LUXFER_VIEW_BOTTOM_UP: u32 = 1;
+
+/// An image in the caller's memory. Fill it with luxfer_image_view_init, then set size, sample and data.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_image_view {
+    /// sizeof(luxfer_image_view), set by luxfer_image_view_init.
+    pub struct_size: u32,
+    /// Samples per pixel in [1, 4]; default 3.
+    pub channels: u32,
+    /// LUXFER_SAMPLE_ value; default LUXFER_SAMPLE_F32.
+    pub sample: luxfer_sample,
+    /// LUXFER_COLOUR_ value; default LUXFER_COLOUR_LINEAR.
+    pub colour_space: luxfer_colour_space,
+    /// Pixels in a row, in [1, 65536]; default 0, to be set.
+    pub width: u32,
+    /// Rows, in [1, 65536]; default 0, to be set.
+    pub height: u32,
+    /// LUXFER_VIEW_ flags, or 0, the default. Unknown flags are refused.
+    pub flags: u32,
+    /// Must be 0.
+    pub reserved: u32,
+    /// Bytes from a pixel to the next; at least the pixel's size, or 0, the default: packed.
+    pub pixel_stride: usize,
+    /// Bytes from a row to the next; at least the row's size, or 0, the default: packed.
+    pub row_stride: usize,
+    /// Bytes at data that may be accessed; what the layout needs beyond is LUXFER_INVALID_ARGUMENT. To be set.
+    pub byte_size: usize,
+    /// The pixels; any alignment. Bytes between pixels and rows are never touched. To be set.
+    pub data: *mut c_void,
+}
+
+const VIEW_SIZE: usize = 32 + 4 * size_of::<usize>();
+
+// SAFETY: integers, and a pointer that is checked before use.
+unsafe impl Versioned for luxfer_image_view {
+    const NAME: &'static str = "luxfer_image_view";
+    const SIZES: &'static [usize] = &[VIEW_SIZE];
+    fn defaults() -> Self {
+        Self {
+            struct_size: VIEW_SIZE as u32,
+            channels: 3,
+            sample: LUXFER_SAMPLE_F32,
+            colour_space: LUXFER_COLOUR_LINEAR,
+            width: 0,
+            height: 0,
+            flags: 0,
+            reserved: 0,
+            pixel_stride: 0,
+            row_stride: 0,
+            byte_size: 0,
+            data: std::ptr::null_mut(),
+        }
+    }
+}
+
+impl luxfer_image_view {
+    fn layout(&self) -> Result<Layout> {
+        let sample = match self.sample {
+            LUXFER_SAMPLE_U8 => Sample::U8,
+            LUXFER_SAMPLE_U16 => Sample::U16,
+            LUXFER_SAMPLE_F16 => Sample::F16,
+            LUXFER_SAMPLE_F32 => Sample::F32,
+            other => return Err(Error::argument(format!("view.sample is {other}; it must be a LUXFER_SAMPLE_ value"))),
+        };
+        if self.flags & !LUXFER_VIEW_BOTTOM_UP != 0 || self.reserved != 0 {
+            return Err(Error::argument(format!(
+                "view.flags is {:#x} and view.reserved {}; only LUXFER_VIEW_ flags may be set",
+                self.flags, self.reserved
+            )));
+        }
+        let layout = Layout {
+            sample,
+            channels: self.channels as usize,
+            colour_space: colour_space("view.colour_space", self.colour_space)?,
+            width: self.width as usize,
+            height: self.height as usize,
+            pixel_stride: self.pixel_stride,
+            row_stride: self.row_stride,
+            bottom_up: self.flags & LUXFER_VIEW_BOTTOM_UP != 0,
+        };
+        layout.checked(self.byte_size)
+    }
+}
+
+fn colour_space(name: &str, value: luxfer_colour_space) -> Result<ColourSpace> {
+    match value {
+        LUXFER_COLOUR_LINEAR => Ok(ColourSpace::Linear),
+        LUXFER_COLOUR_SRGB => Ok(ColourSpace::Srgb),
+        other => Err(Error::argument(format!("{name} is {other}; it must be a LUXFER_COLOUR_ value"))),
+    }
+}
+
+/// What a `luxfer_image` refers to.
+pub(super) struct Pixels {
+    context: Arc<Context>,
+    source: Source,
+}
+
+/// Who owns the pixels.
+enum Source {
+    Own(Image, #[expect(dead_code, reason = "held until the image goes")] Charge),
+    Result(Arc<dyn Holder>),
+}
+
+/// A result of a stage, of which an image is a part.
+trait Holder: Send + Sync {
+    fn image(&self) -> &Image;
+}
+
+struct Part<O> {
+    output: Arc<O>,
+    pick: fn(&O) -> &Image,
+}
+
+impl<O: Send + Sync> Holder for Part<O> {
+    fn image(&self) -> &Image {
+        (self.pick)(&self.output)
+    }
+}
+
+impl Pixels {
+    pub(super) fn image(&self) -> &Image {
+        match &self.source {
+            Source::Own(image, _) => image,
+            Source::Result(holder) => holder.image(),
+        }
+    }
+
+    /// Pixels of the caller's, counted in the budget.
+    fn own(context: &Arc<Context>, image: Image, charge: Charge) -> Arc<Self> {
+        Arc::new(Self { context: context.clone(), source: Source::Own(image, charge) })
+    }
+
+    /// An image inside a result, shared with it.
+    pub(super) fn part<O: Send + Sync + 'static>(
+        context: &Arc<Context>,
+        output: &Arc<O>,
+        pick: fn(&O) -> &Image,
+    ) -> Arc<Self> {
+        let holder = Part { output: output.clone(), pick };
+        Arc::new(Self { context: context.clone(), source: Source::Result(Arc::new(holder)) })
+    }
+}
+
+impl Owned for Pixels {
+    fn context(&self) -> &Arc<Context> {
+        &self.context
+    }
+}
+
+impl Handle for luxfer_image {
+    type Object = Pixels;
+    const TAG: u64 = tag(b"lux.imag");
+    const NAME: &'static str = "luxfer_image";
+}
+
+/// Bytes of an image of the library.
+fn cost(width: usize, height: usize, channels: usize) -> u64 {
+    (width as u64) * (height as u64) * (channels as u64) * size_of::<f32>() as u64
+}
+
+/// Fills *view with the defaults; size is sizeof *view. LUXFER_INVALID_ARGUMENT if view is NULL or size is not that of any
+/// version of the struct.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_image_view_init(view: *mut luxfer_image_view, size: usize) -> luxfer_status {
+    guard(|| params::init(view, size))
+}
+
+/// Creates an image from a copy of the caller's pixels; integers and sRGB are decoded, NaN and infinities kept. The caller
+/// releases *image. Any thread.
+/// LUXFER_INVALID_ARGUMENT if the view contradicts itself; LUXFER_OUT_OF_MEMORY beyond the context's memory budget.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_image_create(
+    context: *mut luxfer_context,
+    view: *const luxfer_image_view,
+    image: *mut *mut luxfer_image,
+) -> luxfer_status {
+    enter(context, |object| {
+        let context = object.context();
+        let out = Out::new(image, "image")?;
+        let view = params::read_required(view)?;
+        let layout = view.layout()?;
+        let pixels = bytes(view.data.cast(), view.byte_size, "view.data")?;
+        let charge = context.charge(cost(layout.width, layout.height, layout.channels))?;
+        out.set(handle::give(Pixels::own(context, view::read(layout, pixels)?, charge)));
+        Ok(())
+    })
+}
+
+/// Loads a PNG, JPEG, Radiance HDR or OpenEXR file; path is UTF-8. colour_space says how integer samples are encoded:
+/// LUXFER_COLOUR_SRGB for pictures, LUXFER_COLOUR_LINEAR for data such as masks and depth; files with floating-point
+/// samples are linear. The caller releases *image. Any thread.
+/// LUXFER_IO if the file cannot be read, LUXFER_FORMAT if it is damaged or of another format, LUXFER_UNSUPPORTED if an
+/// OpenEXR file has neither R, G, B nor a single channel, LUXFER_OUT_OF_MEMORY beyond the memory budget.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_image_load(
+    context: *mut luxfer_context,
+    path: *const c_char,
+    colour_space: luxfer_colour_space,
+    image: *mut *mut luxfer_image,
+) -> luxfer_status {
+    enter(context, |object| {
+        let out = Out::new(image, "image")?;
+        let path = text(path, "path")?;
+        let encoding = encoding(colour_space)?;
+        let bytes = io::read_file(Path::new(path))?;
+        let decoded = decode(object.context(), &bytes, encoding).map_err(|e| e.within(path))?;
+        out.set(handle::give(decoded));
+        Ok(())
+    })
+}
+
+/// Loads an image from the size bytes of a file held in memory, otherwise as luxfer_image_load.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_image_load_memory(
+    context: *mut luxfer_context,
+    data: *const c_void,
+    size: usize,
+    colour_space: luxfer_colour_space,
+    image: *mut *mut luxfer_image,
+) -> luxfer_status {
+    enter(context, |object| {
+        let out = Out::new(image, "image")?;
+        let bytes = bytes(data.cast(), size, "data")?;
+        out.set(handle::give(decode(object.context(), bytes, encoding(colour_space)?)?));
+        Ok(())
+    })
+}
+
+fn encoding(value: luxfer_colour_space) -> Result<io::Encoding> {
+    Ok(match colour_space("colour_space", value)? {
+        ColourSpace::Srgb => io::Encoding::Srgb,
+        ColourSpace::Linear => io::Encoding::Linear,
+    })
+}
+
+/// Decodes a file once its header is known to fit the budget.
+fn decode(context: &Arc<Context>, bytes: &[u8], encoding: io::Encoding) -> Result<Arc<Pixels>> {
+    let (width, height, channels) = io::probe(bytes)?;
+    let charge = context.charge(cost(width, height, channels))?;
+    Ok(Pixels::own(context, io::decode(bytes, encoding)?, charge))
+}
+
+/// Saves an image; path is UTF-8 and its extension chooses the format. .png: 1, 3 or 4 channels, multiplied by exposure
+/// (> 0, finite; 1 shows the value 1 as white), clamped to [0, 1] and encoded as 8-bit sRGB. .exr: up to 64 channels as
+/// they are, in 32-bit floating point; exposure is not used. An existing file is replaced only by a complete one. Any
+/// thread.
+/// LUXFER_INVALID_ARGUMENT for another extension or number of channels; LUXFER_IO if the file cannot be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_image_save(
+    image: *mut luxfer_image,
+    path: *const c_char,
+    exposure: f32,
+) -> luxfer_status {
+    enter(image, |object| {
+        let path = Path::new(text(path, "path")?);
+        let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
+        let encoded = match extension.as_str() {
+            "png" if exposure > 0.0 && exposure.is_finite() => io::encode_png(object.image(), exposure)?,
+            "png" => return Err(Error::argument(format!("exposure is {exposure}; it must be positive and finite"))),
+            "exr" => encode_exr(object.image())?,
+            _ => return Err(Error::argument(format!("{} ends neither in .png nor in .exr", path.display()))),
+        };
+        io::write_file(path, &encoded)
+    })
+}
+
+/// Channels are named as other programs expect them for colours, and numbered otherwise.
+fn encode_exr(image: &Image) -> Result<Vec<u8>> {
+    let numbered: Vec<String> = (0..image.channels).map(|c| format!("C{c:02}")).collect();
+    let names: Vec<&str> = match image.channels {
+        1 => vec!["Y"],
+        3 => vec!["R", "G", "B"],
+        4 => vec!["R", "G", "B", "A"],
+        _ => numbered.iter().map(String::as_str).collect(),
+    };
+    io::encode_exr(&[io::Layer { name: "", image, channels: &names }])
+}
+
+/// Tells width and height in pixels and the number of channels; any of the three may be NULL. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_image_size(
+    image: *mut luxfer_image,
+    width: *mut u32,
+    height: *mut u32,
+    channels: *mut u32,
+) -> luxfer_status {
+    enter(image, |object| {
+        let image = object.image();
+        set_optional(width, image.width as u32);
+        set_optional(height, image.height as u32);
+        set_optional(channels, image.channels as u32);
+        Ok(())
+    })
+}
+
+/// Writes an image into the caller's pixels. The view must have the image's size; if the image has more channels than the
+/// view, those from first_channel on are written. Integers are clamped to their range and rounded, NaN becomes 0 in them.
+/// Any thread.
+/// LUXFER_INVALID_ARGUMENT if the view contradicts itself or the image.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_image_read(
+    image: *mut luxfer_image,
+    first_channel: u32,
+    view: *const luxfer_image_view,
+) -> luxfer_status {
+    enter(image, |object| {
+        let image = object.image();
+        let view = params::read_required(view)?;
+        let layout = view.layout()?;
+        let (first, count) = (first_channel as usize, layout.channels);
+        if first + count > image.channels {
+            return Err(Error::argument(format!(
+                "first_channel is {first} and the view has {count} channels; the image has only {}",
+                image.channels
+            )));
+        }
+        let pixels = bytes_mut(view.data.cast(), view.byte_size, "view.data")?;
+        if count == image.channels {
+            return view::write(image, layout, pixels);
+        }
+        let mut part = Image::new(image.width, image.height, count)?;
+        for (to, from) in part.data.chunks_exact_mut(count).zip(image.data.chunks_exact(image.channels)) {
+            to.copy_from_slice(&from[first..first + count]);
+        }
+        view::write(&part, layout, pixels)
+    })
+}
+
+/// Adds a reference. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_image_retain(image: *mut luxfer_image) -> luxfer_status {
+    handle::retain(image)
+}
+
+/// Gives a reference back. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_image_release(image: *mut luxfer_image) -> luxfer_status {
+    handle::release(image)
+}

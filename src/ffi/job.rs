@@ -1,0 +1,185 @@
+//! Job
+//!
+//! Long work is started with X_start, which returns a job at once; it runs on threads of the library. Inputs are taken as
+//! they are at the start: changing or releasing them later does not affect the job. While a job runs its object refuses
+//! changes and further jobs (LUXFER_INVALID_OPERATION). Results are read from the object after the job has succeeded.
+//! Releasing the last reference to a job that runs cancels it and waits for it to end.
+
+use super::context::Context;
+use super::guard::{catch, enter, lock};
+use super::handle::{self, Handle, Owned, tag};
+use super::pointer::set_optional;
+use super::status::luxfer_status;
+use crate::error::{Error, ErrorKind, Result};
+use crate::job::Monitor;
+use std::ffi::c_void;
+use std::sync::{Arc, Condvar, Mutex};
+use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
+
+/// Work in progress. See luxfer_job_wait.
+pub struct luxfer_job {
+    _opaque: [u8; 0],
+}
+
+/// Told how far a job is: fraction rises from 0, never falls, and is exactly 1 once, last, and only after success. Returns
+/// 0 to go on, anything else to cancel the job. Called about 50 times a second, only on the thread that is inside
+/// luxfer_job_wait and with no lock held, so any luxfer function may be called from it. Must not throw or jump out.
+pub type luxfer_progress_fn = Option<unsafe extern "C" fn(user: *mut c_void, fraction: f64) -> i32>;
+
+/// How often a waiting thread reports.
+const REPORT_INTERVAL: Duration = Duration::from_millis(20);
+
+/// What a `luxfer_job` refers to. It holds the context until its thread has ended, so neither that thread nor a worker of
+/// the pool ever drops the last reference to the pool, which would have it wait for itself.
+pub(super) struct Job {
+    context: Arc<Context>,
+    shared: Arc<Shared>,
+    thread: Mutex<Option<JoinHandle<()>>>,
+}
+
+/// What the working and the waiting threads share.
+struct Shared {
+    monitor: Monitor,
+    result: Mutex<Option<Result<()>>>,
+    finished: Condvar,
+}
+
+impl Owned for Job {
+    fn context(&self) -> &Arc<Context> {
+        &self.context
+    }
+}
+
+impl Handle for luxfer_job {
+    type Object = Job;
+    const TAG: u64 = tag(b"lux.jobs");
+    const NAME: &'static str = "luxfer_job";
+}
+
+impl Job {
+    /// Runs `work` in the context's pool, from a thread of its own.
+    pub(super) fn start(
+        context: &Arc<Context>,
+        work: impl FnOnce(crate::job::Job) -> Result<()> + Send + 'static,
+    ) -> Result<Self> {
+        let shared =
+            Arc::new(Shared { monitor: Monitor::default(), result: Mutex::new(None), finished: Condvar::new() });
+        let run = {
+            let (context, shared) = (context.clone(), shared.clone());
+            move || {
+                let result = catch(|| context.pool.run(|| work(shared.monitor.job())));
+                *lock(&shared.result) = Some(result);
+                shared.finished.notify_all();
+            }
+        };
+        let thread = thread::Builder::new().name("luxfer-job".into()).spawn(run).map_err(|e| {
+            Error::new(ErrorKind::OutOfMemory, format!("could not start a thread for the job: {e}"))
+        })?;
+        Ok(Self { context: context.clone(), shared, thread: Mutex::new(Some(thread)) })
+    }
+
+    /// The result, or `None` if there is none within `time`.
+    fn wait(&self, time: Duration) -> Option<Result<()>> {
+        let result = lock(&self.shared.result);
+        let waited = self.shared.finished.wait_timeout_while(result, time, |r| r.is_none());
+        waited.unwrap_or_else(|poisoned| poisoned.into_inner()).0.clone()
+    }
+
+    fn is_running() -> Error {
+        Error::new(ErrorKind::NotReady, "the job is still running; wait for it with luxfer_job_wait")
+    }
+}
+
+impl Drop for Job {
+    fn drop(&mut self) {
+        self.shared.monitor.cancel();
+        if let Some(thread) = lock(&self.thread).take() {
+            // The thread catches all panics, so it always ends well.
+            let _ = thread.join();
+        }
+    }
+}
+
+/// Waits until a job has ended, or timeout_ms milliseconds have passed; a negative timeout_ms waits without limit. progress
+/// may be NULL; user is handed to it. Any thread, several at once.
+///
+/// Returns LUXFER_OK if the job has succeeded, else why it has not, with its message: LUXFER_CANCELLED after a cancel
+/// request that came in time, LUXFER_NOT_READY if it still runs (it goes on running).
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_job_wait(
+    job: *mut luxfer_job,
+    timeout_ms: i32,
+    progress: luxfer_progress_fn,
+    user: *mut c_void,
+) -> luxfer_status {
+    enter(job, |job| {
+        let deadline = u64::try_from(timeout_ms).ok().map(|ms| Instant::now() + Duration::from_millis(ms));
+        let mut progress = progress;
+        loop {
+            // Sleep until the job ends, the next report is due, or time is up.
+            let left = deadline.map_or(Duration::MAX, |d| d.saturating_duration_since(Instant::now()));
+            let result = job.wait(left.min(REPORT_INTERVAL));
+
+            // Report; 1 is kept for the end, whatever the work has announced.
+            let fraction = match &result {
+                Some(Ok(())) => Some(1.0),
+                Some(Err(_)) => None,
+                None => Some(job.shared.monitor.progress().min(1.0 - f64::EPSILON)),
+            };
+            if let (Some(report), Some(fraction)) = (progress, fraction) {
+                // SAFETY: the caller's function, with the caller's pointer.
+                if unsafe { report(user, fraction) } != 0 {
+                    job.shared.monitor.cancel();
+                    progress = None;
+                }
+            }
+            match result {
+                Some(result) => return result,
+                None if deadline.is_some_and(|d| Instant::now() >= d) => return Err(Job::is_running()),
+                None => {}
+            }
+        }
+    })
+}
+
+/// Asks how far a job is, without waiting. *fraction becomes its progress in [0, 1], *finished 1 if it has ended, well or
+/// not, else 0; either may be NULL. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_job_poll(job: *mut luxfer_job, fraction: *mut f64, finished: *mut i32) -> luxfer_status {
+    enter(job, |job| {
+        let result = job.wait(Duration::ZERO);
+        let progress = job.shared.monitor.progress();
+        set_optional(fraction, if matches!(result, Some(Ok(()))) { 1.0 } else { progress.min(1.0 - f64::EPSILON) });
+        set_optional(finished, i32::from(result.is_some()));
+        Ok(())
+    })
+}
+
+/// How a job has ended, as luxfer_job_wait returns it; LUXFER_NOT_READY while it runs. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_job_status(job: *mut luxfer_job) -> luxfer_status {
+    enter(job, |job| job.wait(Duration::ZERO).unwrap_or_else(|| Err(Job::is_running())))
+}
+
+/// Asks a job to end early, and returns at once; the work ends within about 100 ms. A request cannot be taken back; one
+/// that comes after the end has no effect. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_job_cancel(job: *mut luxfer_job) -> luxfer_status {
+    enter(job, |job| {
+        job.shared.monitor.cancel();
+        Ok(())
+    })
+}
+
+/// Adds a reference. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_job_retain(job: *mut luxfer_job) -> luxfer_status {
+    handle::retain(job)
+}
+
+/// Gives a reference back; the last one cancels a running job and waits for it to end. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_job_release(job: *mut luxfer_job) -> luxfer_status {
+    handle::release(job)
+}

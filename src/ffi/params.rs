@@ -1,0 +1,176 @@
+//! Versioned structs, told apart by the size the caller's compiler gave them.
+//!
+//! A struct starts with `uint32_t struct_size` and grows only at its end, never into padding. An older caller's struct is
+//! shorter: what it lacks keeps its default. A newer caller's is longer: it is taken if all we do not know is zero.
+
+use crate::error::{Error, Result};
+
+/// No struct of this library will ever be longer; a larger size is an uninitialised one.
+const LARGEST: usize = 4096;
+
+/// A versioned C struct.
+///
+/// # Safety
+/// `repr(C)`, any bits are valid, and the first field is `struct_size: u32`.
+pub(super) unsafe trait Versioned: Copy {
+    /// Name of the C type.
+    const NAME: &'static str;
+    /// Its sizes in past versions and this one, rising; the last is `size_of::<Self>()`.
+    const SIZES: &'static [usize];
+    /// A struct with every field at its default.
+    fn defaults() -> Self;
+}
+
+/// Checks that a struct of `size` bytes is one that some version of this library has, or will have.
+fn check_size<P: Versioned>(size: usize) -> Result<()> {
+    debug_assert_eq!(P::SIZES.last(), Some(&size_of::<P>()));
+    if P::SIZES.contains(&size) || (size_of::<P>()..=LARGEST).contains(&size) {
+        return Ok(());
+    }
+    Err(Error::argument(format!(
+        "{}.struct_size is {size}; call {}_init with sizeof the struct, {} bytes in this version",
+        P::NAME,
+        P::NAME,
+        size_of::<P>()
+    )))
+}
+
+fn not_null<T>(place: *const T, name: &str) -> Result<()> {
+    if place.is_null() { Err(Error::argument(format!("the {name} is NULL"))) } else { Ok(()) }
+}
+
+/// Fills the caller's struct of `size` bytes with defaults.
+pub(super) fn init<P: Versioned>(place: *mut P, size: usize) -> Result<()> {
+    not_null(place, P::NAME)?;
+    check_size::<P>(size)?;
+    write(place, P::defaults(), size);
+    Ok(())
+}
+
+/// Reads the caller's struct; NULL stands for the defaults.
+pub(super) fn read<P: Versioned>(place: *const P) -> Result<P> {
+    if place.is_null() { Ok(P::defaults()) } else { read_required(place) }
+}
+
+/// Reads the caller's struct, which must be there.
+pub(super) fn read_required<P: Versioned>(place: *const P) -> Result<P> {
+    let size = size_at(place)?;
+    let known = size.min(size_of::<P>());
+    let mut params = P::defaults();
+    // SAFETY: the caller's struct has `size` bytes, of which we copy those that we have too; any bits are valid.
+    let tail = unsafe {
+        std::ptr::copy_nonoverlapping(place.cast::<u8>(), (&raw mut params).cast::<u8>(), known);
+        std::slice::from_raw_parts(place.cast::<u8>().add(known), size - known)
+    };
+    if tail.iter().any(|&b| b != 0) {
+        return Err(Error::argument(format!(
+            "{} sets fields that this version does not have; use a newer library or leave them zero",
+            P::NAME
+        )));
+    }
+    Ok(params)
+}
+
+/// A place for a report, whose `struct_size` the caller has set.
+pub(super) struct Report<P> {
+    place: *mut P,
+    size: usize,
+}
+
+impl<P: Versioned> Report<P> {
+    pub(super) fn new(place: *mut P) -> Result<Self> {
+        Ok(Self { place, size: size_at(place)? })
+    }
+
+    /// Writes as much of the report as the caller knows; what we do not know becomes zero.
+    pub(super) fn set(self, report: P) {
+        write(self.place, report, self.size);
+    }
+}
+
+/// The checked `struct_size` of the caller's struct.
+fn size_at<P: Versioned>(place: *const P) -> Result<usize> {
+    not_null(place, P::NAME)?;
+    // SAFETY: not null; every version of the struct starts with this field.
+    let size = unsafe { place.cast::<u32>().read_unaligned() } as usize;
+    check_size::<P>(size)?;
+    Ok(size)
+}
+
+fn write<P: Versioned>(place: *mut P, value: P, size: usize) {
+    let known = size.min(size_of::<P>());
+    // SAFETY: the caller's struct has `size` bytes, and `size` was checked to be at most `LARGEST`.
+    unsafe {
+        std::ptr::copy_nonoverlapping((&raw const value).cast::<u8>(), place.cast::<u8>(), known);
+        place.cast::<u8>().add(known).write_bytes(0, size - known);
+        place.cast::<u32>().write_unaligned(size as u32);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[repr(C)]
+    #[derive(Clone, Copy)]
+    struct Sample {
+        struct_size: u32,
+        first: u32,
+        second: u64,
+    }
+
+    // SAFETY: plain integers.
+    unsafe impl Versioned for Sample {
+        const NAME: &'static str = "sample";
+        const SIZES: &'static [usize] = &[8, 16];
+        fn defaults() -> Self {
+            Self { struct_size: 16, first: 1, second: 2 }
+        }
+    }
+
+    /// A caller's memory, larger than any struct, with a known pattern.
+    fn memory(size: u32) -> Vec<u8> {
+        let mut bytes = vec![0xaa; 2 * LARGEST];
+        bytes[..4].copy_from_slice(&size.to_ne_bytes());
+        bytes
+    }
+
+    #[test]
+    fn only_sizes_of_some_version_are_taken() {
+        for size in 0..2 * LARGEST {
+            let mut bytes = memory(size as u32);
+            let accepted = size == 8 || (16..=LARGEST).contains(&size);
+            assert_eq!(init::<Sample>(bytes.as_mut_ptr().cast(), size).is_ok(), accepted, "{size}");
+            if accepted {
+                assert_eq!(bytes[..4], (size as u32).to_ne_bytes());
+                assert!(bytes[size.min(16)..size].iter().all(|&b| b == 0) && bytes[size..].iter().all(|&b| b == 0xaa));
+            } else {
+                assert_eq!(bytes, memory(size as u32), "nothing is written on failure");
+            }
+        }
+    }
+
+    #[test]
+    fn an_old_struct_gets_defaults_and_a_new_one_must_not_ask_for_more() {
+        let mut bytes = memory(8);
+        let old: Sample = read(bytes.as_ptr().cast()).unwrap();
+        assert_eq!((old.first, old.second), (0xaaaa_aaaa, 2));
+
+        bytes[..4].copy_from_slice(&24u32.to_ne_bytes());
+        assert!(read::<Sample>(bytes.as_ptr().cast()).is_err());
+        bytes[16..24].fill(0);
+        assert_eq!(read::<Sample>(bytes.as_ptr().cast()).unwrap().second, 0xaaaa_aaaa_aaaa_aaaa);
+        assert_eq!(read::<Sample>(std::ptr::null()).unwrap().second, 2);
+    }
+
+    #[test]
+    fn a_report_fits_the_caller() {
+        for size in [8usize, 16, 40] {
+            let mut bytes = memory(size as u32);
+            Report::new(bytes.as_mut_ptr().cast::<Sample>()).unwrap().set(Sample::defaults());
+            assert_eq!(bytes[..8], [(size as u32).to_ne_bytes(), 1u32.to_ne_bytes()].concat());
+            assert!(bytes[size..].iter().all(|&b| b == 0xaa));
+        }
+        assert!(Report::new(memory(12).as_mut_ptr().cast::<Sample>()).is_err());
+    }
+}

@@ -1,0 +1,64 @@
+//! The caller's other pointers: places for results, strings and arrays. Nothing is assumed to be aligned.
+
+use crate::error::{Error, Result};
+use std::ffi::{CStr, c_char};
+
+/// A place for a result, known not to be null before any work is done, written once on success.
+#[derive(Clone, Copy)]
+pub(super) struct Out<T>(*mut T);
+
+impl<T> Out<T> {
+    pub(super) fn new(place: *mut T, name: &str) -> Result<Self> {
+        if place.is_null() { Err(Error::argument(format!("{name} is NULL; it must point to a place for the result"))) } else { Ok(Self(place)) }
+    }
+
+    pub(super) fn set(self, value: T) {
+        // SAFETY: not null, and the caller says it is writable for the length of the call.
+        unsafe { self.0.write_unaligned(value) }
+    }
+}
+
+/// Writes a result the caller may not want.
+pub(super) fn set_optional<T>(place: *mut T, value: T) {
+    if !place.is_null() {
+        // SAFETY: not null, and the caller says it is writable for the length of the call.
+        unsafe { place.write_unaligned(value) }
+    }
+}
+
+/// A zero-terminated string in UTF-8.
+pub(super) fn text<'a>(text: *const c_char, name: &str) -> Result<&'a str> {
+    if text.is_null() {
+        return Err(Error::argument(format!("{name} is NULL; it must be a string in UTF-8")));
+    }
+    // SAFETY: not null, and the caller says it ends with a zero.
+    let text = unsafe { CStr::from_ptr(text) };
+    text.to_str().map_err(|e| {
+        Error::argument(format!("{name} is not valid UTF-8 at byte {}; paths and names are UTF-8", e.valid_up_to()))
+    })
+}
+
+/// `len` bytes in the caller's memory.
+pub(super) fn bytes<'a>(data: *const u8, len: usize, name: &str) -> Result<&'a [u8]> {
+    check_region(data, len, name)?;
+    // SAFETY: not null, no longer than an object can be, and the caller says it is readable for the length of the call.
+    Ok(unsafe { std::slice::from_raw_parts(data, len) })
+}
+
+/// `len` bytes in the caller's memory, to be written.
+pub(super) fn bytes_mut<'a>(data: *mut u8, len: usize, name: &str) -> Result<&'a mut [u8]> {
+    check_region(data, len, name)?;
+    // SAFETY: as above, and writable.
+    Ok(unsafe { std::slice::from_raw_parts_mut(data, len) })
+}
+
+fn check_region(data: *const u8, len: usize, name: &str) -> Result<()> {
+    if data.is_null() {
+        return Err(Error::argument(format!("{name} is NULL; it must point to {len} bytes")));
+    }
+    let end = (data as usize).checked_add(len);
+    if len > isize::MAX as usize || end.is_none() {
+        return Err(Error::argument(format!("{name} has {len} bytes; that is more than the address space holds")));
+    }
+    Ok(())
+}
