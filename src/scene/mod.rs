@@ -10,6 +10,7 @@ pub mod material;
 pub mod mesh;
 pub mod surface;
 pub mod texture;
+mod validate;
 
 pub use camera::Camera;
 pub use light::{Environment, PunctualLight};

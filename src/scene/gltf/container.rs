@@ -1,0 +1,202 @@
+//! The outer layers of a file: GLB chunks, buffers and images inside the file, in `data:` URIs, or beside it.
+
+use crate::error::{Error, ErrorKind, Result};
+use gltf::json::{Index, Root, buffer};
+use std::borrow::Cow;
+use std::path::{Component, Path, PathBuf};
+
+const MAGIC: &[u8] = b"glTF";
+const JSON_CHUNK: &[u8] = b"JSON";
+const BINARY_CHUNK: &[u8] = b"BIN\0";
+
+/// A parsed file with the bytes of all its buffers.
+pub struct File<'a> {
+    pub root: Root,
+    buffers: Vec<Cow<'a, [u8]>>,
+    base: Option<&'a Path>,
+}
+
+impl<'a> File<'a> {
+    pub fn parse(bytes: &'a [u8], base: Option<&'a Path>) -> Result<Self> {
+        let (json, blob) = split(bytes)?;
+        let root: Root = gltf::json::deserialize::from_slice(json)
+            .map_err(|e| Error::format(format!("not a glTF file, or its JSON is broken: {e}")))?;
+        let mut file = Self { root, buffers: Vec::new(), base };
+        for (i, buffer) in file.root.buffers.iter().enumerate() {
+            let bytes = file.buffer(i, buffer, blob).map_err(|e| e.within(format_args!("buffer {i}")))?;
+            file.buffers.push(bytes);
+        }
+        Ok(file)
+    }
+
+    fn buffer(&self, index: usize, buffer: &buffer::Buffer, blob: Option<&'a [u8]>) -> Result<Cow<'a, [u8]>> {
+        let bytes = match (&buffer.uri, blob) {
+            (Some(uri), _) => Cow::Owned(self.resolve(uri)?),
+            (None, Some(blob)) if index == 0 => Cow::Borrowed(blob),
+            _ => return Err(Error::format("it has no URI, and the file has no binary chunk for it")),
+        };
+        if (bytes.len() as u64) < buffer.byte_length.0 {
+            let (has, says) = (bytes.len(), buffer.byte_length.0);
+            return Err(Error::format(format!("its byteLength is {says}, but only {has} bytes are there")));
+        }
+        Ok(bytes)
+    }
+
+    /// The bytes of a buffer view.
+    pub fn view(&self, index: Index<buffer::View>) -> Result<&[u8]> {
+        let number = index.value();
+        let view = self.root.get(index).ok_or_else(|| missing("buffer view", number, self.root.buffer_views.len()))?;
+        let whole = self
+            .buffers
+            .get(view.buffer.value())
+            .ok_or_else(|| missing("buffer", view.buffer.value(), self.buffers.len()))?;
+        let start = view.byte_offset.map_or(0, |o| o.0);
+        let end = start.checked_add(view.byte_length.0).filter(|&end| end <= whole.len() as u64);
+        match end {
+            Some(end) => Ok(&whole[start as usize..end as usize]),
+            None => Err(Error::format(format!(
+                "buffer view {number} covers {} bytes from {start}, but its buffer has {}",
+                view.byte_length.0,
+                whole.len()
+            ))),
+        }
+    }
+
+    /// The bytes a URI stands for.
+    pub fn resolve(&self, uri: &str) -> Result<Vec<u8>> {
+        if let Some(data) = uri.strip_prefix("data:") {
+            let (kind, payload) = data.split_once(',').ok_or_else(|| Error::format("a data: URI without a comma"))?;
+            if !kind.ends_with(";base64") {
+                return Err(Error::new(ErrorKind::Unsupported, "a data: URI that is not base64"));
+            }
+            return decode_base64(payload);
+        }
+        let relative = safe_path(uri)?;
+        let base = self.base.ok_or_else(|| {
+            Error::argument(format!("the file refers to {uri:?} beside it: say in which folder that is, or load by path"))
+        })?;
+        let path = base.join(relative);
+        let failed = |e: std::io::Error| Error::new(ErrorKind::Io, format!("{}: {e}", path.display()));
+        // A device or a pipe might never end.
+        if !std::fs::metadata(&path).map_err(failed)?.is_file() {
+            return Err(Error::new(ErrorKind::Io, format!("{} is not a regular file", path.display())));
+        }
+        std::fs::read(&path).map_err(failed)
+    }
+}
+
+pub fn missing(kind: &str, index: usize, count: usize) -> Error {
+    Error::format(format!("the file refers to {kind} {index}, but has {count}"))
+}
+
+/// Splits a GLB into its JSON and binary chunks; anything else is taken as JSON.
+fn split(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>)> {
+    if !bytes.starts_with(MAGIC) {
+        return Ok((bytes, None));
+    }
+    let word = |at: usize| -> Option<u32> { Some(u32::from_le_bytes(bytes.get(at..at + 4)?.try_into().ok()?)) };
+    let truncated = || Error::format("the GLB file is truncated");
+    let (version, length) = (word(4).ok_or_else(truncated)?, word(8).ok_or_else(truncated)? as usize);
+    if version != 2 {
+        return Err(Error::new(ErrorKind::Unsupported, format!("GLB version {version}; only version 2 is read")));
+    }
+    if length > bytes.len() {
+        return Err(Error::format(format!("the GLB header says {length} bytes, but the file has {}", bytes.len())));
+    }
+    let (mut json, mut binary) = (None, None);
+    let mut at = 12;
+    while at + 8 <= length {
+        let size = word(at).ok_or_else(truncated)? as usize;
+        let (kind, start) = (&bytes[at + 4..at + 8], at + 8);
+        let end = start.checked_add(size).filter(|&end| end <= length).ok_or_else(truncated)?;
+        // Unknown chunks are passed over, as the specification asks.
+        match kind {
+            JSON_CHUNK if json.is_none() => json = Some(&bytes[start..end]),
+            BINARY_CHUNK if binary.is_none() => binary = Some(&bytes[start..end]),
+            _ => {}
+        }
+        at = end;
+    }
+    json.map(|json| (json, binary)).ok_or_else(|| Error::format("the GLB file has no JSON chunk"))
+}
+
+/// A relative path that cannot leave its folder.
+fn safe_path(uri: &str) -> Result<PathBuf> {
+    let refused = |why: &str| Error::format(format!("the outside file {uri:?} {why}"));
+    let bytes = decode_percent(uri).ok_or_else(|| refused("is not validly percent-encoded"))?;
+    let name = String::from_utf8(bytes).map_err(|_| refused("is not valid UTF-8"))?;
+    if name.contains(['\\', ':', '\0']) {
+        return Err(refused("is not a relative path"));
+    }
+    let path = PathBuf::from(name);
+    let inside = path.components().all(|c| matches!(c, Component::Normal(_) | Component::CurDir));
+    if !inside || path.file_name().is_none() {
+        return Err(refused("must lie in the file's own folder or below"));
+    }
+    Ok(path)
+}
+
+fn decode_percent(text: &str) -> Option<Vec<u8>> {
+    let mut out = Vec::with_capacity(text.len());
+    let mut rest = text.as_bytes();
+    while let Some((&first, tail)) = rest.split_first() {
+        if first == b'%' {
+            let digit = |b: u8| (b as char).to_digit(16);
+            let (high, low) = (digit(*tail.first()?)?, digit(*tail.get(1)?)?);
+            out.push((high * 16 + low) as u8);
+            rest = &tail[2..];
+        } else {
+            out.push(first);
+            rest = tail;
+        }
+    }
+    Some(out)
+}
+
+/// RFC 4648, section 4; padding is optional.
+fn decode_base64(text: &str) -> Result<Vec<u8>> {
+    let digits = text.trim_end_matches('=');
+    let mut out = Vec::with_capacity(digits.len() / 4 * 3 + 2);
+    let (mut bits, mut count) = (0u32, 0);
+    for byte in digits.bytes() {
+        let value = match byte {
+            b'A'..=b'Z' => byte - b'A',
+            b'a'..=b'z' => byte - b'a' + 26,
+            b'0'..=b'9' => byte - b'0' + 52,
+            b'+' => 62,
+            b'/' => 63,
+            _ => return Err(Error::format(format!("byte 0x{byte:02x} in a data: URI is not base64"))),
+        };
+        bits = bits << 6 | u32::from(value);
+        count += 6;
+        if count >= 8 {
+            count -= 8;
+            out.push((bits >> count) as u8);
+        }
+    }
+    Ok(out)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn base64_meets_the_vectors_of_rfc_4648() {
+        for (text, want) in
+            [("", ""), ("Zg==", "f"), ("Zm8=", "fo"), ("Zm9v", "foo"), ("Zm9vYg", "foob"), ("Zm9vYmFy", "foobar")]
+        {
+            assert_eq!(decode_base64(text).unwrap(), want.as_bytes());
+        }
+        assert_eq!(decode_base64("Zm9v*").unwrap_err().kind, ErrorKind::Format);
+    }
+
+    #[test]
+    fn paths_cannot_leave_their_folder() {
+        assert_eq!(safe_path("a%20b/c.png").unwrap(), PathBuf::from("a b/c.png"));
+        for bad in ["../x", "a/../../x", "/etc/passwd", "%2e%2e/x", "http://host/x", "a\\..\\x", "C:/x", "", ".", "%zz", "%2"]
+        {
+            assert_eq!(safe_path(bad).unwrap_err().kind, ErrorKind::Format, "{bad}");
+        }
+    }
+}

@@ -1,0 +1,330 @@
+//! Nodes, meshes, cameras and lights of a file, brought into world space.
+
+use super::accessor;
+use super::container::{File, missing};
+use super::material::Materials;
+use crate::error::{Error, ErrorKind, Result};
+use crate::image::try_vec;
+use crate::scene::{Camera, Material, Mesh, PunctualLight, Scene};
+use glam::{DMat3, DMat4, DQuat, DVec3, Vec2, Vec3};
+use gltf::json::extensions::scene::khr_lights_punctual::{Light, Type};
+use gltf::json::mesh::{Mode, Primitive, Semantic};
+use gltf::json::validation::Checked;
+use gltf::json::{self, Index};
+use std::path::Path;
+
+/// Most vertices, and most triangles, of all meshes together once instances are written out.
+const MAX_ELEMENTS: u64 = 1 << 26;
+
+const EXTENSIONS: [&str; 7] = [
+    "KHR_lights_punctual",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",
+    "KHR_materials_transmission",
+    "KHR_materials_unlit",
+    "KHR_mesh_quantization",
+    "KHR_texture_transform",
+];
+
+/// Reads a GLB or glTF file held in memory; outside files it names are looked up in `base` and below.
+///
+/// Errors: `Format` for broken, truncated or lying files, `Unsupported` for what this library does not do, `Io` for
+/// outside files that cannot be read.
+pub fn import(bytes: &[u8], base: Option<&Path>) -> Result<Scene> {
+    let file = File::parse(bytes, base)?;
+    if let Some(unknown) = file.root.extensions_required.iter().find(|e| !EXTENSIONS.contains(&e.as_str())) {
+        let message = format!("the file requires the extension {unknown}; save it without that extension");
+        return Err(Error::new(ErrorKind::Unsupported, message));
+    }
+    let mut scene = Scene::default();
+    let mut materials = Materials::new(&file);
+    for (i, json) in file.root.materials.iter().enumerate() {
+        scene.materials.push(materials.read(i, json).map_err(|e| e.within(format_args!("material {i}")))?);
+    }
+    scene.textures = materials.textures;
+    let mut importer = Importer { file: &file, scene, default_material: None, vertices: 0, triangles: 0 };
+    importer.nodes()?;
+    let scene = importer.scene;
+    scene.validate().map_err(|e| Error { kind: ErrorKind::Format, ..e })?;
+    Ok(scene)
+}
+
+struct Importer<'a> {
+    file: &'a File<'a>,
+    scene: Scene,
+    /// Made when the first primitive without a material is met.
+    default_material: Option<usize>,
+    vertices: u64,
+    triangles: u64,
+}
+
+impl Importer<'_> {
+    /// Visits every node of the default scene once, parents first, in the order of the file.
+    fn nodes(&mut self) -> Result<()> {
+        let file = self.file;
+        let mut visited = try_vec(file.root.nodes.len(), false)?;
+        let mut stack: Vec<(usize, DMat4)> =
+            roots(file)?.into_iter().rev().map(|root| (root, DMat4::IDENTITY)).collect();
+        while let Some((index, parent)) = stack.pop() {
+            let node = file.root.nodes.get(index).ok_or_else(|| missing("node", index, file.root.nodes.len()))?;
+            if std::mem::replace(&mut visited[index], true) {
+                return Err(Error::format(format!("node {index} is reached twice: the nodes must form a tree")));
+            }
+            let transform = parent * local_transform(node);
+            if !transform.is_finite() {
+                return Err(Error::format(format!("node {index} has a transform that is not finite")));
+            }
+            self.node(node, transform).map_err(|e| e.within(format_args!("node {index}")))?;
+            for child in node.children.iter().flatten().rev() {
+                stack.push((child.value(), transform));
+            }
+        }
+        Ok(())
+    }
+
+    fn node(&mut self, node: &json::Node, transform: DMat4) -> Result<()> {
+        let root = &self.file.root;
+        let name = node.name.as_ref().filter(|n| !n.is_empty());
+        if let Some(index) = node.mesh {
+            let mesh = root.get(index).ok_or_else(|| missing("mesh", index.value(), root.meshes.len()))?;
+            let own_name = mesh.name.as_ref().filter(|n| !n.is_empty());
+            let name = name.or(own_name).cloned().unwrap_or_else(|| format!("Mesh {}", index.value()));
+            for primitive in &mesh.primitives {
+                self.primitive(&name, primitive, transform).map_err(|e| e.within(format_args!("mesh {name:?}")))?;
+            }
+        }
+        if let Some(index) = node.camera {
+            let camera = root.get(index).ok_or_else(|| missing("camera", index.value(), root.cameras.len()))?;
+            let name = name.or(camera.name.as_ref()).cloned().unwrap_or_else(|| format!("Camera {}", index.value()));
+            self.camera(name, camera, transform)?;
+        }
+        if let Some(reference) = node.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref()) {
+            let lights = root.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref());
+            let lights = lights.map_or(&[][..], |l| &l.lights);
+            let at = reference.light.value();
+            let light = lights.get(at).ok_or_else(|| missing("light", at, lights.len()))?;
+            self.scene.lights.push(punctual(light, transform).map_err(|e| e.within(format_args!("light {at}")))?);
+        }
+        Ok(())
+    }
+
+    fn primitive(&mut self, name: &str, primitive: &Primitive, transform: DMat4) -> Result<()> {
+        let Checked::Valid(mode) = primitive.mode else {
+            return Err(Error::format("a primitive's mode is unknown"));
+        };
+        if !matches!(mode, Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan) {
+            return Ok(());
+        }
+        let attribute = |semantic| primitive.attributes.get(&Checked::Valid(semantic)).copied();
+        let positions = attribute(Semantic::Positions).ok_or_else(|| Error::format("a primitive has no POSITION"))?;
+        self.reserve(positions, primitive.indices)?;
+
+        // Vertices; each attribute must have one value for each position.
+        let mut positions = bring_in(accessor::vectors(self.file, positions)?, |p: [f32; 3]| {
+            transform.transform_point3(Vec3::from(p).as_dvec3()).as_vec3()
+        })?;
+        let count = positions.len();
+        let checked = |what: &str, len: usize| {
+            if len == count {
+                return Ok(());
+            }
+            Err(Error::format(format!("{count} positions, but {len} values of {what}")))
+        };
+        // Normals are turned by the cofactor matrix: the inverse transpose, but for scale, and finite for flat scalings.
+        let linear = DMat3::from_mat4(transform);
+        let flipped = linear.determinant() < 0.0;
+        let cofactor = DMat3::from_cols(
+            linear.y_axis.cross(linear.z_axis),
+            linear.z_axis.cross(linear.x_axis),
+            linear.x_axis.cross(linear.y_axis),
+        );
+        let side = if flipped { -1.0 } else { 1.0 };
+        let mut normals = match attribute(Semantic::Normals) {
+            Some(index) => bring_in(accessor::vectors(self.file, index)?, |n: [f32; 3]| {
+                (cofactor * Vec3::from(n).as_dvec3() * side).normalize_or_zero().as_vec3()
+            })?,
+            None => Vec::new(),
+        };
+        let mut uvs = [Vec::new(), Vec::new()];
+        for (set, uv) in uvs.iter_mut().enumerate() {
+            if let Some(index) = attribute(Semantic::TexCoords(set as u32)) {
+                *uv = bring_in(accessor::vectors(self.file, index)?, |uv: [f32; 2]| Vec2::from(uv))?;
+                checked("TEXCOORD", uv.len())?;
+            }
+        }
+
+        // Triangles of all three kinds, with their winding restored after a reflection.
+        let indices = match primitive.indices {
+            Some(index) => accessor::indices(self.file, index)?,
+            None => (0..count as u32).collect(),
+        };
+        if let Some(beyond) = indices.iter().find(|&&i| i as usize >= count) {
+            return Err(Error::format(format!("an index is {beyond}, but there are {count} vertices")));
+        }
+        let mut triangles = triangulate(mode, &indices)?;
+        if flipped {
+            triangles.iter_mut().for_each(|t| t.swap(1, 2));
+        }
+        if !normals.is_empty() {
+            checked("NORMAL", normals.len())?;
+            mend_normals(&positions, &mut normals, &triangles);
+        }
+        let material = match primitive.material {
+            Some(index) if index.value() < self.file.root.materials.len() => index.value(),
+            Some(index) => return Err(missing("material", index.value(), self.file.root.materials.len())),
+            None => self.default_material(),
+        };
+        positions.shrink_to_fit();
+        self.scene.meshes.push(Mesh { name: name.into(), material, positions, normals, uvs, triangles });
+        Ok(())
+    }
+
+    /// Counts what a primitive will add before anything is allocated: instances multiply what a small file holds.
+    fn reserve(
+        &mut self,
+        positions: Index<json::Accessor>,
+        indices: Option<Index<json::Accessor>>,
+    ) -> Result<()> {
+        let vertices = accessor::count(self.file, positions)?;
+        let corners = indices.map_or(Ok(vertices), |index| accessor::count(self.file, index))?;
+        self.vertices = self.vertices.saturating_add(vertices);
+        self.triangles = self.triangles.saturating_add(corners / 3);
+        if self.vertices.max(self.triangles) <= MAX_ELEMENTS {
+            return Ok(());
+        }
+        Err(Error::new(
+            ErrorKind::Unsupported,
+            format!("the file has more than {MAX_ELEMENTS} vertices or triangles, counting every instance"),
+        ))
+    }
+
+    fn default_material(&mut self) -> usize {
+        let materials = &mut self.scene.materials;
+        *self.default_material.get_or_insert_with(|| {
+            materials.push(Material { name: "Default".into(), ..Material::default() });
+            materials.len() - 1
+        })
+    }
+
+    fn camera(&mut self, name: String, camera: &json::Camera, transform: DMat4) -> Result<()> {
+        let Some(perspective) = &camera.perspective else { return Ok(()) };
+        let axis = |v: DVec3| {
+            let axis = transform.transform_vector3(v).try_normalize();
+            axis.ok_or_else(|| Error::format(format!("camera {name:?} is scaled to nothing")))
+        };
+        let forward = axis(DVec3::NEG_Z)?;
+        // A scaling that is not uniform shears the axes; up is made orthogonal again.
+        let up = axis(DVec3::Y)?;
+        let up = (up - forward * forward.dot(up)).try_normalize();
+        let up = up.ok_or_else(|| Error::format(format!("camera {name:?} has parallel axes")))?;
+        self.scene.cameras.push(Camera {
+            position: transform.w_axis.truncate().as_vec3(),
+            forward: forward.as_vec3(),
+            up: up.as_vec3(),
+            fov_y: perspective.yfov,
+            name,
+        });
+        Ok(())
+    }
+}
+
+/// The nodes to start from: those of the default or first scene, or where there is none, those that are nobody's child.
+fn roots(file: &File) -> Result<Vec<usize>> {
+    let root = &file.root;
+    let number = root.scene.map_or(0, |s| s.value());
+    match root.scenes.get(number) {
+        Some(scene) => Ok(scene.nodes.iter().map(|n| n.value()).collect()),
+        None if root.scene.is_some() => Err(missing("scene", number, root.scenes.len())),
+        None => {
+            let mut is_child = try_vec(root.nodes.len(), false)?;
+            for child in root.nodes.iter().flat_map(|n| n.children.iter().flatten()) {
+                if let Some(flag) = is_child.get_mut(child.value()) {
+                    *flag = true;
+                }
+            }
+            Ok((0..root.nodes.len()).filter(|&i| !is_child[i]).collect())
+        }
+    }
+}
+
+fn local_transform(node: &json::Node) -> DMat4 {
+    if let Some(matrix) = node.matrix {
+        return DMat4::from_cols_array(&matrix.map(f64::from));
+    }
+    let scale = node.scale.unwrap_or([1.0; 3]);
+    let rotation = node.rotation.unwrap_or_default().0.map(f64::from);
+    let rotation = DQuat::from_array(rotation);
+    let rotation = if rotation.length_squared() > 0.0 { rotation.normalize() } else { DQuat::IDENTITY };
+    let translation = node.translation.unwrap_or([0.0; 3]);
+    DMat4::from_scale_rotation_translation(
+        Vec3::from(scale).as_dvec3(),
+        rotation,
+        Vec3::from(translation).as_dvec3(),
+    )
+}
+
+fn bring_in<T, U: Clone + Default>(values: Vec<T>, change: impl Fn(T) -> U) -> Result<Vec<U>> {
+    let mut out = try_vec(values.len(), U::default())?;
+    out.iter_mut().zip(values).for_each(|(o, v)| *o = change(v));
+    Ok(out)
+}
+
+fn triangulate(mode: Mode, indices: &[u32]) -> Result<Vec<[u32; 3]>> {
+    let count = if mode == Mode::Triangles { indices.len() / 3 } else { indices.len().saturating_sub(2) };
+    let mut triangles = try_vec(count, [0; 3])?;
+    for (i, t) in triangles.iter_mut().enumerate() {
+        *t = match mode {
+            Mode::TriangleStrip => [indices[i], indices[i + 1 + i % 2], indices[i + 2 - i % 2]],
+            Mode::TriangleFan => [indices[i + 1], indices[i + 2], indices[0]],
+            _ => [indices[3 * i], indices[3 * i + 1], indices[3 * i + 2]],
+        };
+    }
+    // Strips join their parts with triangles that have no area.
+    if mode != Mode::Triangles {
+        triangles.retain(|t| t[0] != t[1] && t[1] != t[2] && t[2] != t[0]);
+    }
+    Ok(triangles)
+}
+
+/// Gives vertices whose normal has no direction the mean normal of the faces around them.
+fn mend_normals(positions: &[Vec3], normals: &mut [Vec3], triangles: &[[u32; 3]]) {
+    let broken: Vec<bool> = normals.iter().map(|n| *n == Vec3::ZERO).collect();
+    if !broken.contains(&true) {
+        return;
+    }
+    for t in triangles {
+        let [a, b, c] = t.map(|i| positions[i as usize]);
+        for &i in t.iter().filter(|&&i| broken[i as usize]) {
+            normals[i as usize] += (b - a).cross(c - a);
+        }
+    }
+    for (normal, _) in normals.iter_mut().zip(&broken).filter(|(_, broken)| **broken) {
+        *normal = normal.normalize_or(Vec3::Y);
+    }
+}
+
+fn punctual(light: &Light, transform: DMat4) -> Result<PunctualLight> {
+    let position = transform.w_axis.truncate().as_vec3();
+    let strength = Vec3::from(light.color) * light.intensity;
+    let direction = || {
+        let direction = transform.transform_vector3(DVec3::NEG_Z).try_normalize();
+        direction.map(|d| d.as_vec3()).ok_or_else(|| Error::format("its node is scaled to nothing"))
+    };
+    match light.type_ {
+        Checked::Valid(Type::Point) => Ok(PunctualLight::Point { position, intensity: strength }),
+        Checked::Valid(Type::Directional) => {
+            Ok(PunctualLight::Directional { direction: direction()?, illuminance: strength })
+        }
+        Checked::Valid(Type::Spot) => {
+            let spot = light.spot.as_ref().ok_or_else(|| Error::format("a spot light without its cone"))?;
+            Ok(PunctualLight::Spot {
+                position,
+                direction: direction()?,
+                intensity: strength,
+                inner_angle: spot.inner_cone_angle,
+                outer_angle: spot.outer_cone_angle,
+            })
+        }
+        Checked::Invalid => Err(Error::format("its type is unknown")),
+    }
+}

@@ -1,0 +1,151 @@
+//! The rectangle around a planar patch, with axes that do not depend on how its triangles are stored.
+
+use glam::{DVec2, DVec3};
+
+/// Axes within this angle of a world axis are taken to mean it: 1°.
+const COS_SNAP: f64 = 0.999_847_695;
+/// The rectangle along the world axes wins unless another is smaller by this share.
+const WORTH_TURNING: f64 = 1e-3;
+/// Planes at more than 45° to the horizontal are walls.
+const WALL: f64 = std::f64::consts::FRAC_1_SQRT_2;
+
+pub struct Frame {
+    /// Where u = v = 0.
+    pub origin: DVec3,
+    pub u: DVec3,
+    pub v: DVec3,
+    pub size: DVec2,
+}
+
+/// The smallest rectangle around points of the plane through `centre` at right angles to the unit `normal`, which
+/// points at the viewer: u runs to the viewer's right, v down.
+pub fn fit(points: &[DVec3], centre: DVec3, normal: DVec3) -> Frame {
+    let upright = upright(normal);
+    let turned = smallest(points, centre, upright, normal);
+    let (aligned_frame, turned_frame) = (bound(points, centre, upright, normal), bound(points, centre, turned, normal));
+    let aligned = turned.dot(upright) >= COS_SNAP
+        || turned_frame.size.element_product() > (1.0 - WORTH_TURNING) * aligned_frame.size.element_product();
+    if aligned { aligned_frame } else { turned_frame }
+}
+
+/// The direction of u along the world axes.
+fn upright(normal: DVec3) -> DVec3 {
+    let candidate = if normal.y.abs() < WALL {
+        // On a wall v is as near to straight down as can be, and u = normal × v... turned back from it.
+        let down = DVec3::NEG_Y - normal * DVec3::NEG_Y.dot(normal);
+        normal.cross(-down)
+    } else {
+        DVec3::X - normal * normal.x
+    };
+    candidate.normalize_or(normal.any_orthonormal_vector())
+}
+
+/// v for a given u: `u × v = -normal`.
+fn down_of(u: DVec3, normal: DVec3) -> DVec3 {
+    u.cross(normal)
+}
+
+fn bound(points: &[DVec3], centre: DVec3, u: DVec3, normal: DVec3) -> Frame {
+    let v = down_of(u, normal);
+    let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+    for p in points {
+        let at = DVec2::new((*p - centre).dot(u), (*p - centre).dot(v));
+        low = low.min(at);
+        high = high.max(at);
+    }
+    Frame { origin: centre + u * low.x + v * low.y, u, v, size: high - low }
+}
+
+/// Direction of u of the rectangle of least area, turned from `upright` by at most 45°. One of its sides lies along
+/// an edge of the convex hull (Freeman and Shapira 1975).
+fn smallest(points: &[DVec3], centre: DVec3, upright: DVec3, normal: DVec3) -> DVec3 {
+    let v = down_of(upright, normal);
+    let flat = points.iter().map(|p| DVec2::new((*p - centre).dot(upright), (*p - centre).dot(v)));
+    let hull = convex_hull(flat.collect());
+    let mut best = (f64::INFINITY, DVec2::X);
+    for (i, a) in hull.iter().enumerate() {
+        let Some(edge) = (hull[(i + 1) % hull.len()] - *a).try_normalize() else { continue };
+        let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+        for p in &hull {
+            let at = DVec2::new(p.dot(edge), p.perp_dot(edge));
+            low = low.min(at);
+            high = high.max(at);
+        }
+        let area = (high - low).element_product();
+        if area < best.0 * (1.0 - 1e-9) {
+            best = (area, edge);
+        }
+    }
+    // Of the four directions along the sides, the one nearest to upright.
+    let edge = best.1;
+    let turns = [edge, edge.perp(), -edge, -edge.perp()];
+    let nearest = turns.into_iter().fold(edge, |a, b| if b.x > a.x + 1e-12 { b } else { a });
+    (upright * nearest.x + v * nearest.y).normalize_or(upright)
+}
+
+/// Andrew's monotone chain (1979), counter-clockwise in a plane with y up.
+fn convex_hull(mut points: Vec<DVec2>) -> Vec<DVec2> {
+    points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+    points.dedup();
+    let mut hull: Vec<DVec2> = Vec::new();
+    let half = |hull: &mut Vec<DVec2>, start: usize, p: DVec2| {
+        while hull.len() >= start + 2 {
+            let (a, b) = (hull[hull.len() - 2], hull[hull.len() - 1]);
+            if (b - a).perp_dot(p - b) > 0.0 {
+                break;
+            }
+            hull.pop();
+        }
+        hull.push(p);
+    };
+    for &p in &points {
+        half(&mut hull, 0, p);
+    }
+    let start = hull.len().saturating_sub(1);
+    for &p in points.iter().rev().skip(1) {
+        half(&mut hull, start, p);
+    }
+    if hull.len() > 1 {
+        hull.pop();
+    }
+    hull
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_smallest_rectangle_of_a_turned_one_is_itself() {
+        for degrees in [0.0f64, 0.5, 10.0, 30.0, 44.0, 80.0] {
+            let turn = DVec2::from_angle(degrees.to_radians());
+            let points: Vec<DVec3> = [(0.0, 0.0), (3.0, 0.0), (3.0, 2.0), (0.0, 2.0), (1.0, 1.0)]
+                .map(|(x, y)| DVec2::new(x, y).rotate(turn))
+                .map(|p| DVec3::new(p.x, 2.5, p.y))
+                .into();
+            let frame = fit(&points, points[4], DVec3::NEG_Y);
+            assert!((frame.u.cross(frame.v) - DVec3::Y).length() < 1e-12, "{degrees}");
+            let slack = if degrees == 0.5 { 0.06 } else { 1e-9 };
+            let (long, short) = (frame.size.max_element(), frame.size.min_element());
+            assert!((long - 3.0).abs() < slack && (short - 2.0).abs() < slack, "{degrees}: {}", frame.size);
+            // Half a degree snaps to the world's axes.
+            assert!((degrees > 1.0) != (frame.u == DVec3::X), "{degrees}: {}", frame.u);
+            assert!(frame.u.x >= WALL - 1e-9);
+        }
+    }
+
+    #[test]
+    fn frames_are_oriented_as_seen_from_the_room() {
+        let square = |u: DVec3, v: DVec3| [DVec3::ZERO, u, u + v, v];
+        // A ceiling, a floor, and the wall behind which -z lies.
+        for (normal, u, v) in [
+            (DVec3::NEG_Y, DVec3::X, DVec3::NEG_Z),
+            (DVec3::Y, DVec3::X, DVec3::Z),
+            (DVec3::Z, DVec3::X, DVec3::NEG_Y),
+            (DVec3::X, DVec3::NEG_Z, DVec3::NEG_Y),
+        ] {
+            let frame = fit(&square(u, v), DVec3::ZERO, normal);
+            assert!((frame.u - u).length() < 1e-12 && (frame.v - v).length() < 1e-12, "{normal}: {} {}", frame.u, frame.v);
+        }
+    }
+}

@@ -1,0 +1,154 @@
+//! Groups triangles into planes.
+
+use crate::error::{Error, Result};
+use crate::scene::Scene;
+use glam::DVec3;
+use std::collections::BTreeMap;
+
+/// How far a triangle may be turned against its plane: 2°.
+const COS_ANGLE: f64 = 0.999_390_827;
+/// How far its corners may be off the plane, relative to the diagonal of the object.
+const OFFSET: f64 = 5e-4;
+/// Edge of a cell of directions: about 2°.
+const DIRECTION_CELL: f64 = 0.035;
+/// Directions that are looked at, largest area first.
+const DIRECTIONS: usize = 32;
+/// Planes that are handed on, and the least area of one relative to the largest.
+const PLANES: usize = 16;
+const LEAST_AREA: f64 = 0.05;
+
+/// Triangles that lie in one plane.
+pub struct Patch {
+    pub triangles: Vec<(usize, usize)>,
+    /// Unit; its sign means nothing yet.
+    pub normal: DVec3,
+    /// Centroid.
+    pub centre: DVec3,
+    /// m².
+    pub area: f64,
+    /// How far corners may be off the plane, in metres.
+    pub tolerance: f64,
+}
+
+#[derive(Clone, Copy)]
+struct Facet {
+    id: (usize, usize),
+    /// Twice its length is the area.
+    area_vector: DVec3,
+    area: f64,
+    centre: DVec3,
+    corners: [DVec3; 3],
+}
+
+/// The planes among the triangles, largest first; small ones are left out.
+///
+/// Orientation is taken without sign, since sheets may be wound either way. Directions are counted in cells of a
+/// grid, weighted by area; in the heaviest ones the planes are found along the direction's offset.
+pub fn planes(scene: &Scene, triangles: &[(usize, usize)]) -> Result<Vec<Patch>> {
+    let facets: Vec<Facet> = triangles.iter().filter_map(|&id| facet(scene, id)).collect();
+    let no_area = || Error::degenerate(format!("its {} triangles have no area", triangles.len()));
+    let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    for corner in facets.iter().flat_map(|f| f.corners) {
+        low = low.min(corner);
+        high = high.max(corner);
+    }
+    let tolerance = OFFSET * (high - low).length();
+
+    // Area in each cell of directions, opposite ones taken together.
+    let mut cells: BTreeMap<[i32; 3], (f64, DVec3)> = BTreeMap::new();
+    for f in &facets {
+        let direction = unsigned(f.area_vector / f.area);
+        let cell = cells.entry((direction / DIRECTION_CELL).round().as_ivec3().to_array()).or_default();
+        cell.0 += f.area;
+        cell.1 += direction * f.area;
+    }
+    let mut directions: Vec<(f64, DVec3)> = cells.into_values().collect();
+    directions.sort_by(|a, b| b.0.total_cmp(&a.0));
+
+    // Planes along each direction. A triangle belongs to the first plane that takes it.
+    let mut free = vec![true; facets.len()];
+    let mut patches: Vec<Patch> = Vec::new();
+    for &(_, direction) in directions.iter().take(DIRECTIONS) {
+        let Some(direction) = direction.try_normalize() else { continue };
+        while let Some(members) = heaviest(&facets, &free, direction, tolerance) {
+            let largest = patches.iter().map(|p| p.area).fold(0.0, f64::max);
+            let patch = gather(&facets, &members, tolerance);
+            if patch.area < LEAST_AREA * largest || patches.len() >= DIRECTIONS * PLANES {
+                break;
+            }
+            members.iter().for_each(|&i| free[i] = false);
+            patches.push(patch);
+        }
+    }
+    patches.sort_by(|a, b| b.area.total_cmp(&a.area));
+    let largest = patches.first().ok_or_else(no_area)?.area;
+    patches.retain(|p| p.area >= LEAST_AREA * largest);
+    patches.truncate(PLANES);
+    Ok(patches)
+}
+
+fn facet(scene: &Scene, id: (usize, usize)) -> Option<Facet> {
+    let corners = scene.meshes[id.0].corners(id.1).map(|p| p.as_dvec3());
+    let [a, b, c] = corners;
+    let area_vector = (b - a).cross(c - a) / 2.0;
+    let area = area_vector.length();
+    (area > 0.0 && area.is_finite()).then_some(Facet { id, area_vector, area, centre: (a + b + c) / 3.0, corners })
+}
+
+/// The direction or its opposite, whichever comes first by a fixed rule.
+fn unsigned(direction: DVec3) -> DVec3 {
+    let largest = direction.abs().max_element();
+    let leading = direction.to_array().into_iter().find(|c| c.abs() > 0.5 * largest).unwrap_or(1.0);
+    direction * leading.signum()
+}
+
+/// The free facets of the heaviest plane at right angles to a direction.
+fn heaviest(facets: &[Facet], free: &[bool], direction: DVec3, tolerance: f64) -> Option<Vec<usize>> {
+    let mut offsets: Vec<(f64, usize)> = facets
+        .iter()
+        .enumerate()
+        .filter(|&(i, f)| free[i] && f.area_vector.dot(direction).abs() >= COS_ANGLE * f.area)
+        .map(|(i, f)| (direction.dot(f.centre), i))
+        .collect();
+    offsets.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+
+    // A window of twice the tolerance slides over the sorted offsets.
+    let (mut first, mut area) = (0, 0.0);
+    let mut best = (0.0, 0..0);
+    for last in 0..offsets.len() {
+        area += facets[offsets[last].1].area;
+        while offsets[last].0 - offsets[first].0 > 2.0 * tolerance {
+            area -= facets[offsets[first].1].area;
+            first += 1;
+        }
+        if area > best.0 {
+            best = (area, first..last + 1);
+        }
+    }
+    let window = &offsets[best.1];
+    if window.is_empty() {
+        return None;
+    }
+
+    // The plane's own normal and offset decide who belongs to it: the cell's direction is only near.
+    let members: Vec<usize> = window.iter().map(|w| w.1).collect();
+    let plane = gather(facets, &members, tolerance);
+    let belongs = |f: &Facet| {
+        f.area_vector.dot(plane.normal).abs() >= COS_ANGLE * f.area
+            && f.corners.iter().all(|c| plane.normal.dot(*c - plane.centre).abs() <= 2.0 * tolerance)
+    };
+    let refined: Vec<usize> = (0..facets.len()).filter(|&i| free[i] && belongs(&facets[i])).collect();
+    Some(if refined.is_empty() { members } else { refined })
+}
+
+fn gather(facets: &[Facet], members: &[usize], tolerance: f64) -> Patch {
+    let reference = members.first().map_or(DVec3::Y, |&i| facets[i].area_vector);
+    let (mut normal, mut centre, mut area) = (DVec3::ZERO, DVec3::ZERO, 0.0);
+    for f in members.iter().map(|&i| &facets[i]) {
+        normal += f.area_vector * f.area_vector.dot(reference).signum();
+        centre += f.centre * f.area;
+        area += f.area;
+    }
+    let triangles = members.iter().map(|&i| facets[i].id).collect();
+    Patch { triangles, normal: normal.normalize_or(DVec3::Y), centre: centre / area, area, tolerance }
+}

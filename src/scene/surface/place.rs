@@ -1,0 +1,139 @@
+//! Lays a light texture onto a surface.
+
+use super::{Surface, check_triangles};
+use crate::error::{Error, Result};
+use crate::image::Image;
+use crate::scene::{Material, Mesh, Scene, Texture, TextureRef, Wrap};
+use glam::{Vec2, Vec3};
+
+/// Where the emission went.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placed {
+    /// Index of the mesh that now holds the patch.
+    pub mesh: usize,
+    /// Index of its material; its `emission` scales the texture.
+    pub material: usize,
+}
+
+/// Lays an emissive texture over the bounding rectangle of a surface: the patch becomes a mesh of its own with a second
+/// set of texture coordinates and a copy of its material that emits `strength × texture` (cd/m²).
+///
+/// The patch's front faces the room, and only the front emits. The meshes it came from keep their place in the list and
+/// their other triangles. A patch over several meshes takes the material of the one with most of it. Errors:
+/// `InvalidArgument` for a surface of another scene, or a texture or strength that is negative or not finite.
+pub fn place(scene: &mut Scene, surface: &Surface, texture: Image, strength: Vec3) -> Result<Placed> {
+    check_triangles(scene, &surface.triangles)?;
+    if !strength.is_finite() || strength.min_element() < 0.0 {
+        return Err(Error::argument(format!("strength is {strength}; it must be finite and not negative")));
+    }
+    if !matches!(texture.channels, 1 | 3 | 4) || texture.data.is_empty() {
+        return Err(Error::argument(format!("texture has {} channels; it must have 1, 3 or 4", texture.channels)));
+    }
+    if let Some(v) = texture.data.iter().find(|v| !v.is_finite() || **v < 0.0) {
+        return Err(Error::argument(format!("texture holds {v}; light must be finite and not negative")));
+    }
+
+    if surface.size.is_nan() || surface.size.min_element() <= 0.0 {
+        return Err(Error::argument(format!("surface.size is {}; both sides must be positive", surface.size)));
+    }
+
+    let source = main_source(scene, surface)?;
+    let (name, original) = (scene.meshes[source].name.clone(), scene.meshes[source].material);
+    let mut patch = split_off(scene, surface);
+    scene.textures.push(Texture { name: "Lights".into(), image: texture, wrap: [Wrap::Clamp; 2] });
+    scene.materials.push(Material {
+        name: format!("{} (lights)", scene.materials[original].name),
+        emission: strength,
+        emission_texture: Some(TextureRef { uv_set: 1, ..TextureRef::new(scene.textures.len() - 1) }),
+        double_sided: false,
+        ..scene.materials[original].clone()
+    });
+    patch.name = format!("{name} (lights)");
+    patch.material = scene.materials.len() - 1;
+    scene.meshes.push(patch);
+    Ok(Placed { mesh: scene.meshes.len() - 1, material: scene.materials.len() - 1 })
+}
+
+/// The mesh that holds most of the surface's area.
+fn main_source(scene: &Scene, surface: &Surface) -> Result<usize> {
+    let mut areas = vec![0.0f64; scene.meshes.len()];
+    for &(mesh, triangle) in &surface.triangles {
+        let [a, b, c] = scene.meshes[mesh].corners(triangle).map(|p| p.as_dvec3());
+        areas[mesh] += (b - a).cross(c - a).length();
+    }
+    let (mesh, area) = areas.into_iter().enumerate().fold((0, 0.0), |a, b| if b.1 > a.1 { b } else { a });
+    if area > 0.0 { Ok(mesh) } else { Err(Error::argument("surface has no triangles with an area; find it again")) }
+}
+
+/// Moves the surface's triangles into a flat mesh of their own.
+fn split_off(scene: &mut Scene, surface: &Surface) -> Mesh {
+    let mut patch = Mesh::default();
+    let has_uv = surface.triangles.iter().any(|&(mesh, _)| !scene.meshes[mesh].uvs[0].is_empty());
+    for &(mesh, triangle) in &surface.triangles {
+        let mesh = &scene.meshes[mesh];
+        let mut corners = mesh.triangles[triangle].map(|i| i as usize);
+        let [a, b, c] = corners.map(|i| mesh.positions[i]);
+        if (b - a).cross(c - a).dot(surface.normal) < 0.0 {
+            corners.swap(1, 2);
+        }
+        // Corners are not shared: the patch is flat, and few triangles make up a ceiling.
+        let first = patch.positions.len() as u32;
+        patch.triangles.push([first, first + 1, first + 2]);
+        for i in corners {
+            let from_origin = mesh.positions[i] - surface.origin;
+            let at = Vec2::new(from_origin.dot(surface.u_axis), from_origin.dot(surface.v_axis)) / surface.size;
+            patch.positions.push(mesh.positions[i]);
+            patch.uvs[1].push(at.clamp(Vec2::ZERO, Vec2::ONE));
+            if has_uv {
+                patch.uvs[0].push(mesh.uvs[0].get(i).copied().unwrap_or_default());
+            }
+        }
+    }
+    // Triangles leave their meshes from the back, so that those still to go keep their place.
+    let mut leaving = surface.triangles.clone();
+    leaving.sort_unstable();
+    leaving.dedup();
+    let mut rest = leaving.as_slice();
+    while let Some(&(mesh, _)) = rest.first() {
+        let (here, after) = rest.split_at(rest.partition_point(|t| t.0 == mesh));
+        let mut index = 0;
+        scene.meshes[mesh].triangles.retain(|_| {
+            let stays = here.binary_search(&(mesh, index)).is_err();
+            index += 1;
+            stays
+        });
+        rest = after;
+    }
+    patch
+}
+
+/// Lays a horizontal sheet of diffuse white over the top of the scene's bounding box, for models without a ceiling;
+/// returns the index of its mesh. Errors: `Degenerate` if the scene has no triangles or no extent.
+pub fn cover(scene: &mut Scene, name: &str) -> Result<usize> {
+    let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+    for mesh in &scene.meshes {
+        for corner in (0..mesh.triangles.len()).flat_map(|t| mesh.corners(t)) {
+            low = low.min(corner);
+            high = high.max(corner);
+        }
+    }
+    if !(high.x > low.x && high.z > low.z) {
+        return Err(Error::degenerate("the scene has no triangles to lay a cover over"));
+    }
+    let y = high.y;
+    scene.materials.push(Material::diffuse(name, Vec3::splat(0.8)));
+    scene.meshes.push(Mesh {
+        name: name.into(),
+        material: scene.materials.len() - 1,
+        positions: vec![
+            Vec3::new(low.x, y, low.z),
+            Vec3::new(high.x, y, low.z),
+            Vec3::new(high.x, y, high.z),
+            Vec3::new(low.x, y, high.z),
+        ],
+        normals: Vec::new(),
+        uvs: [vec![Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y], Vec::new()],
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+    });
+    Ok(scene.meshes.len() - 1)
+}

@@ -1,0 +1,144 @@
+//! Which side of which plane faces the room.
+
+use super::patch::Patch;
+use crate::error::{Error, Result};
+use crate::rng::Rng;
+use crate::scene::Scene;
+use glam::{DVec3, Vec3};
+
+/// Probes sent from each side of each plane.
+const PROBES: usize = 128;
+/// Triangles that share a bounding box.
+const CHUNK: usize = 64;
+/// How much more a side counts that all cameras are on.
+const CAMERA_WEIGHT: f64 = 1.0;
+
+/// The plane that faces the room, and its unit normal into the room.
+///
+/// A side sees the room where rays that leave it travel a good way, measured against the size of the plane, and then
+/// land on something. The upper side of a ceiling looks into the void; the inside of a slab ends at once. The score of a
+/// side is its area times the mean of `min(1, distance / √area)`, with 0 for a ray that lands nowhere; cameras in
+/// front add to it. Where nothing else is in the scene, the side decides from which the triangles are counter-clockwise.
+pub fn facing(scene: &Scene, patches: &[Patch]) -> Result<(usize, DVec3)> {
+    let chunks = chunks(scene);
+    let mut best: Option<(f64, usize, DVec3)> = None;
+    for (i, patch) in patches.iter().enumerate() {
+        for normal in [wound(scene, patch), -wound(scene, patch)] {
+            let score = patch.area * sight(scene, &chunks, patch, normal) * (1.0 + CAMERA_WEIGHT * cameras(scene, patch, normal));
+            if best.is_none_or(|(b, ..)| score > b) {
+                best = Some((score, i, normal));
+            }
+        }
+    }
+    best.map(|(_, i, normal)| (i, normal)).ok_or_else(|| Error::degenerate("the surface has no area"))
+}
+
+/// The plane's normal on the side that most of its area is wound towards.
+fn wound(scene: &Scene, patch: &Patch) -> DVec3 {
+    let signed: f64 = patch
+        .triangles
+        .iter()
+        .map(|&(mesh, triangle)| {
+            let [a, b, c] = scene.meshes[mesh].corners(triangle).map(|p| p.as_dvec3());
+            (b - a).cross(c - a).dot(patch.normal)
+        })
+        .sum();
+    if signed < 0.0 { -patch.normal } else { patch.normal }
+}
+
+/// Share of the cameras that are in front.
+fn cameras(scene: &Scene, patch: &Patch, normal: DVec3) -> f64 {
+    let in_front = scene.cameras.iter().filter(|c| (c.position.as_dvec3() - patch.centre).dot(normal) > 0.0).count();
+    in_front as f64 / scene.cameras.len().max(1) as f64
+}
+
+/// How much of the scene is seen from one side of a plane, in `[0, 1]`.
+fn sight(scene: &Scene, chunks: &[Chunk], patch: &Patch, normal: DVec3) -> f64 {
+    // Areas summed up, to choose triangles by.
+    let mut sums = Vec::with_capacity(patch.triangles.len());
+    let mut sum = 0.0;
+    for &(mesh, triangle) in &patch.triangles {
+        let [a, b, c] = scene.meshes[mesh].corners(triangle).map(|p| p.as_dvec3());
+        sum += (b - a).cross(c - a).length();
+        sums.push(sum);
+    }
+    let reach = patch.area.sqrt();
+    let (u, v) = normal.any_orthonormal_pair();
+    let mut seen = 0.0;
+    for probe in 0..PROBES {
+        // A point uniform in area, a direction by the cosine to the normal (Malley's method).
+        let mut rng = Rng::new(0, &[probe as u64]);
+        let at = sums.partition_point(|s| *s < rng.next_f64() * sum).min(sums.len() - 1);
+        let (mesh, triangle) = patch.triangles[at];
+        let [a, b, c] = scene.meshes[mesh].corners(triangle).map(|p| p.as_dvec3());
+        let (root, share) = (rng.next_f64().sqrt(), rng.next_f64());
+        let point = a * (1.0 - root) + (b * (1.0 - share) + c * share) * root;
+        let (radius2, angle) = (rng.next_f64(), std::f64::consts::TAU * rng.next_f64());
+        let (s, t) = angle.sin_cos();
+        let direction = (u * t + v * s) * radius2.sqrt() + normal * (1.0 - radius2).sqrt();
+        // The plane's own triangles lie within four tolerances of each other.
+        let start = point + normal * (4.0 * patch.tolerance);
+        if let Some(distance) = nearest(scene, chunks, start.as_vec3(), direction.as_vec3()) {
+            seen += (f64::from(distance) / reach).min(1.0);
+        }
+    }
+    seen / PROBES as f64
+}
+
+/// A run of triangles of one mesh and the box around them: neighbours in a file are mostly neighbours in space.
+struct Chunk {
+    mesh: usize,
+    triangles: std::ops::Range<usize>,
+    low: Vec3,
+    high: Vec3,
+}
+
+fn chunks(scene: &Scene) -> Vec<Chunk> {
+    let mut out = Vec::new();
+    for (index, mesh) in scene.meshes.iter().enumerate() {
+        for start in (0..mesh.triangles.len()).step_by(CHUNK) {
+            let triangles = start..(start + CHUNK).min(mesh.triangles.len());
+            let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+            for corner in triangles.clone().flat_map(|t| mesh.corners(t)) {
+                low = low.min(corner);
+                high = high.max(corner);
+            }
+            out.push(Chunk { mesh: index, triangles, low, high });
+        }
+    }
+    out
+}
+
+/// Distance to the nearest triangle along a ray.
+fn nearest(scene: &Scene, chunks: &[Chunk], origin: Vec3, direction: Vec3) -> Option<f32> {
+    let inverse = direction.recip();
+    let mut closest = f32::INFINITY;
+    for chunk in chunks {
+        // Slabs; the max and min ignore the NaN of a ray that runs inside a face of the box.
+        let (a, b) = ((chunk.low - origin) * inverse, (chunk.high - origin) * inverse);
+        let (near, far) = (a.min(b).max_element().max(0.0), a.max(b).min_element());
+        if near > far || near > closest {
+            continue;
+        }
+        for triangle in chunk.triangles.clone() {
+            let [a, b, c] = scene.meshes[chunk.mesh].corners(triangle);
+            if let Some(t) = hit(origin, direction, a, b, c) {
+                closest = closest.min(t);
+            }
+        }
+    }
+    closest.is_finite().then_some(closest)
+}
+
+/// Möller and Trumbore (1997), both sides.
+fn hit(origin: Vec3, direction: Vec3, a: Vec3, b: Vec3, c: Vec3) -> Option<f32> {
+    let (ab, ac) = (b - a, c - a);
+    let p = direction.cross(ac);
+    let determinant = ab.dot(p);
+    let s = origin - a;
+    let u = s.dot(p) / determinant;
+    let q = s.cross(ab);
+    let v = direction.dot(q) / determinant;
+    let t = ac.dot(q) / determinant;
+    (determinant != 0.0 && u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > 0.0).then_some(t)
+}

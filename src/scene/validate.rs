@@ -1,0 +1,257 @@
+//! Checks a scene before anything is built from it.
+
+use super::{AlphaMode, Camera, Environment, Material, Mesh, PunctualLight, Scene, Texture, TextureRef};
+use crate::error::{Error, Result, check_range};
+use crate::image::Image;
+use glam::{Mat3, Vec3};
+use std::f32::consts::{FRAC_PI_2, PI};
+
+/// How far a direction may be from unit length or right angles.
+const DIRECTION_TOLERANCE: f32 = 1e-3;
+
+impl Scene {
+    /// Checks every index, length and range; the error names the first offending object, its value and what is allowed.
+    pub fn validate(&self) -> Result<()> {
+        for (i, texture) in self.textures.iter().enumerate() {
+            check_texture(texture).map_err(|e| e.within(format_args!("texture {i} {:?}", texture.name)))?;
+        }
+        for (i, material) in self.materials.iter().enumerate() {
+            self.check_material(material).map_err(|e| e.within(format_args!("material {i} {:?}", material.name)))?;
+        }
+        for (i, mesh) in self.meshes.iter().enumerate() {
+            self.check_mesh(mesh).map_err(|e| e.within(format_args!("mesh {i} {:?}", mesh.name)))?;
+        }
+        for (i, light) in self.lights.iter().enumerate() {
+            check_light(light).map_err(|e| e.within(format_args!("light {i}")))?;
+        }
+        for (i, camera) in self.cameras.iter().enumerate() {
+            check_camera(camera).map_err(|e| e.within(format_args!("camera {i} {:?}", camera.name)))?;
+        }
+        match &self.environment {
+            Some(Environment::Constant(colour)) => check_light_colour("environment", *colour),
+            Some(Environment::Image(image)) => {
+                check_image(image).and_then(|()| check_positive(image)).map_err(|e| e.within("environment"))
+            }
+            None => Ok(()),
+        }
+    }
+
+    fn check_material(&self, material: &Material) -> Result<()> {
+        check_colour("base_color", material.base_color)?;
+        check_range("alpha", material.alpha, 0.0, 1.0)?;
+        if let AlphaMode::Mask(cutoff) = material.alpha_mode {
+            check_range("alpha cutoff", cutoff, 0.0, f32::MAX)?;
+        }
+        check_range("metallic", material.metallic, 0.0, 1.0)?;
+        check_range("roughness", material.roughness, 0.0, 1.0)?;
+        check_range("transmission", material.transmission, 0.0, 1.0)?;
+        check_range("ior", material.ior, 1.0, f32::MAX)?;
+        check_range("normal_scale", material.normal_scale, f32::MIN, f32::MAX)?;
+        check_light_colour("emission", material.emission)?;
+        self.check_reference("base_color_texture", material.base_color_texture)?;
+        self.check_reference("metallic_roughness_texture", material.metallic_roughness_texture)?;
+        self.check_reference("normal_texture", material.normal_texture)?;
+        self.check_reference("emission_texture", material.emission_texture)?;
+        match material.emission_texture {
+            Some(reference) => check_positive(&self.textures[reference.texture].image)
+                .map_err(|e| e.within(format_args!("emission_texture {}", reference.texture))),
+            None => Ok(()),
+        }
+    }
+
+    fn check_reference(&self, what: &str, reference: Option<TextureRef>) -> Result<()> {
+        let Some(TextureRef { texture, uv_set, transform }) = reference else { return Ok(()) };
+        check_index(&format!("{what}.texture"), texture, self.textures.len(), "textures")?;
+        check_range(&format!("{what}.uv_set"), uv_set, 0, 1)?;
+        if transform.is_finite() && Mat3::row(&transform, 2) == Vec3::Z {
+            return Ok(());
+        }
+        Err(Error::argument(format!("{what}.transform is {transform}; it must be finite with the last row 0 0 1")))
+    }
+
+    fn check_mesh(&self, mesh: &Mesh) -> Result<()> {
+        check_index("its material", mesh.material, self.materials.len(), "materials")?;
+        let count = mesh.positions.len();
+        let bad = |what: &str, i: usize, value: &dyn std::fmt::Display| {
+            Err(Error::argument(format!("the {what} of vertex {i} is {value}; it must be finite")))
+        };
+        if let Some(i) = mesh.positions.iter().position(|p| !p.is_finite()) {
+            return bad("position", i, &mesh.positions[i]);
+        }
+        if let Some(i) = mesh.normals.iter().position(|n| !n.is_finite()) {
+            return bad("normal", i, &mesh.normals[i]);
+        }
+        for uvs in &mesh.uvs {
+            if let Some(i) = uvs.iter().position(|uv| !uv.is_finite()) {
+                return bad("texture coordinate", i, &uvs[i]);
+            }
+        }
+        let lengths = [("normals", mesh.normals.len()), ("uvs[0]", mesh.uvs[0].len()), ("uvs[1]", mesh.uvs[1].len())];
+        for (what, len) in lengths {
+            if len != 0 && len != count {
+                return Err(Error::argument(format!("it has {len} {what}; there must be none or {count}, as positions")));
+            }
+        }
+        match mesh.triangles.iter().enumerate().find(|(_, t)| t.iter().any(|&i| i as usize >= count)) {
+            Some((i, t)) => {
+                Err(Error::argument(format!("triangle {i} is {t:?}; its indices must be below {count}, the vertex count")))
+            }
+            None => Ok(()),
+        }
+    }
+}
+
+fn check_index(what: &str, index: usize, count: usize, list: &str) -> Result<()> {
+    if index < count {
+        return Ok(());
+    }
+    Err(Error::argument(format!("{what} is {index}; the scene has {count} {list}")))
+}
+
+fn check_image(image: &Image) -> Result<()> {
+    let Image { width, height, channels, .. } = *image;
+    if !matches!(channels, 1 | 3 | 4) {
+        return Err(Error::argument(format!("the image has {channels} channels; it must have 1, 3 or 4")));
+    }
+    let needed = width.checked_mul(height).and_then(|n| n.checked_mul(channels));
+    if width == 0 || height == 0 || needed != Some(image.data.len()) {
+        let len = image.data.len();
+        return Err(Error::argument(format!("the image is {width} x {height} x {channels} with {len} samples")));
+    }
+    match image.count_non_finite() {
+        0 => Ok(()),
+        n => Err(Error::argument(format!("{n} samples of the image are NaN or infinite"))),
+    }
+}
+
+/// Light and its reflection are never negative.
+fn check_positive(image: &Image) -> Result<()> {
+    match image.data.iter().position(|&v| v < 0.0) {
+        Some(i) => Err(Error::argument(format!("sample {i} of the image is {}; light must not be negative", image.data[i]))),
+        None => Ok(()),
+    }
+}
+
+fn check_texture(texture: &Texture) -> Result<()> {
+    check_image(&texture.image)
+}
+
+fn check_colour(what: &str, colour: Vec3) -> Result<()> {
+    colour.to_array().into_iter().try_for_each(|v| check_range(what, v, 0.0, 1.0).map(|_| ()))
+}
+
+fn check_light_colour(what: &str, colour: Vec3) -> Result<()> {
+    colour.to_array().into_iter().try_for_each(|v| check_range(what, v, 0.0, f32::MAX).map(|_| ()))
+}
+
+fn check_unit(what: &str, direction: Vec3) -> Result<()> {
+    if (direction.length() - 1.0).abs() <= DIRECTION_TOLERANCE {
+        return Ok(());
+    }
+    Err(Error::argument(format!("{what} is {direction}; it must be a unit vector")))
+}
+
+fn check_finite(what: &str, position: Vec3) -> Result<()> {
+    if position.is_finite() {
+        return Ok(());
+    }
+    Err(Error::argument(format!("{what} is {position}; it must be finite")))
+}
+
+fn check_light(light: &PunctualLight) -> Result<()> {
+    match *light {
+        PunctualLight::Point { position, intensity } => {
+            check_finite("position", position)?;
+            check_light_colour("intensity", intensity)
+        }
+        PunctualLight::Spot { position, direction, intensity, inner_angle, outer_angle } => {
+            check_finite("position", position)?;
+            check_unit("direction", direction)?;
+            check_light_colour("intensity", intensity)?;
+            check_range("outer_angle", outer_angle, 0.0, FRAC_PI_2)?;
+            check_range("inner_angle", inner_angle, 0.0, outer_angle).map(|_| ())
+        }
+        PunctualLight::Directional { direction, illuminance } => {
+            check_unit("direction", direction)?;
+            check_light_colour("illuminance", illuminance)
+        }
+    }
+}
+
+fn check_camera(camera: &Camera) -> Result<()> {
+    check_finite("position", camera.position)?;
+    check_unit("forward", camera.forward)?;
+    check_unit("up", camera.up)?;
+    let cosine = camera.forward.dot(camera.up);
+    if cosine.abs() > DIRECTION_TOLERANCE {
+        return Err(Error::argument(format!("forward · up is {cosine}; they must be at right angles")));
+    }
+    if camera.fov_y > 0.0 && camera.fov_y < PI {
+        return Ok(());
+    }
+    Err(Error::argument(format!("fov_y is {}; it must lie in (0, π) radians", camera.fov_y)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::ErrorKind;
+    use glam::Vec2;
+
+    fn scene() -> Scene {
+        let image = Image::from_fn(2, 2, |_, _| [0.5, 0.5, 0.5]).unwrap();
+        let mesh = Mesh {
+            name: "Desk".into(),
+            positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y],
+            triangles: vec![[0, 1, 2]],
+            ..Mesh::default()
+        };
+        let material = Material { emission_texture: Some(TextureRef::new(0)), ..Material::diffuse("Oak", Vec3::ONE) };
+        Scene {
+            meshes: vec![mesh],
+            materials: vec![material],
+            textures: vec![Texture::new("Grain", image)],
+            lights: vec![PunctualLight::Directional { direction: Vec3::NEG_Y, illuminance: Vec3::ONE }],
+            environment: Some(Environment::Constant(Vec3::ONE)),
+            cameras: vec![Camera::look_at(Vec3::ONE, Vec3::ZERO, 1.0)],
+        }
+    }
+
+    #[test]
+    fn each_defect_is_refused_and_its_object_named() {
+        assert_eq!(scene().validate(), Ok(()));
+        assert_eq!(Scene::default().validate(), Ok(()));
+        type Defect = (&'static str, fn(&mut Scene));
+        let defects: [Defect; 22] = [
+            ("Desk", |s| s.meshes[0].positions[1].y = f32::NAN),
+            ("vertex 1", |s| s.meshes[0].positions[1].y = f32::INFINITY),
+            ("Desk", |s| s.meshes[0].triangles[0][2] = 3),
+            ("Desk", |s| s.meshes[0].material = 1),
+            ("Desk", |s| s.meshes[0].normals = vec![Vec3::Z; 2]),
+            ("Desk", |s| s.meshes[0].normals = vec![Vec3::NAN; 3]),
+            ("Desk", |s| s.meshes[0].uvs[1] = vec![Vec2::ZERO; 4]),
+            ("Desk", |s| s.meshes[0].uvs[0] = vec![Vec2::NAN; 3]),
+            ("Oak", |s| s.materials[0].base_color.x = 1.5),
+            ("Oak", |s| s.materials[0].roughness = -0.1),
+            ("Oak", |s| s.materials[0].ior = 0.5),
+            ("Oak", |s| s.materials[0].emission.z = f32::INFINITY),
+            ("Oak", |s| s.materials[0].normal_texture = Some(TextureRef::new(1))),
+            ("Oak", |s| s.materials[0].normal_texture = Some(TextureRef { uv_set: 2, ..TextureRef::new(0) })),
+            ("Oak", |s| s.textures[0].image.data[3] = -1.0),
+            ("Grain", |s| s.textures[0].image.data[3] = f32::NAN),
+            ("Grain", |s| s.textures[0].image.width = 3),
+            ("Grain", |s| s.textures[0].image = Image::new(1, 1, 2).unwrap()),
+            ("light 0", |s| s.lights[0] = PunctualLight::Point { position: Vec3::NAN, intensity: Vec3::ONE }),
+            ("environment", |s| s.environment = Some(Environment::Constant(Vec3::NEG_ONE))),
+            ("camera 0", |s| s.cameras[0].fov_y = PI),
+            ("camera 0", |s| s.cameras[0].up = s.cameras[0].forward),
+        ];
+        for (i, (name, spoil)) in defects.iter().enumerate() {
+            let mut spoilt = scene();
+            spoil(&mut spoilt);
+            let error = spoilt.validate().unwrap_err();
+            assert_eq!(error.kind, ErrorKind::InvalidArgument);
+            assert!(error.message.contains(name), "defect {i}: {error}");
+        }
+    }
+}
