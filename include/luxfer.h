@@ -38,26 +38,18 @@ extern "C" {
  * version are compatible (libluxfer.so.0.1); from 1.0 on those of one major version.
  * ==================================================================================================================== */
 
-/**
- * The version of this header.
- */
+/** The version of this header. */
 #define LUXFER_VERSION_MAJOR 0
 #define LUXFER_VERSION_MINOR 1
 #define LUXFER_VERSION_PATCH 0
 
-/**
- * The version of this header as one number, comparable with luxfer_version().
- */
+/** The version of this header as one number, comparable with luxfer_version(). */
 #define LUXFER_VERSION (10000 * LUXFER_VERSION_MAJOR + 100 * LUXFER_VERSION_MINOR + LUXFER_VERSION_PATCH)
 
-/**
- * The version of the loaded library, comparable with LUXFER_VERSION. Any thread.
- */
+/** The version of the loaded library, comparable with LUXFER_VERSION. Any thread. */
 uint32_t luxfer_version(void);
 
-/**
- * The version of the loaded library as text, such as "0.1.0". The string is static: never free it. Any thread.
- */
+/** The version of the loaded library as text, such as "0.1.0". The string is static: never free it. Any thread. */
 const char *luxfer_version_string(void);
 
 /* ====================================================================================================================
@@ -67,79 +59,49 @@ const char *luxfer_version_string(void);
  * Outputs are written only when LUXFER_OK is returned. luxfer_context_last_error says in words what went wrong.
  * ==================================================================================================================== */
 
-/**
- * The result of a call: LUXFER_OK, or why it failed.
- */
+/** The result of a call: LUXFER_OK, or why it failed. */
 typedef int32_t luxfer_status;
 
-/**
- * Success.
- */
+/** Success. */
 #define LUXFER_OK 0
 
-/**
- * A cause that has no status of its own.
- */
+/** A cause that has no status of its own. */
 #define LUXFER_UNKNOWN 1
 
-/**
- * A parameter is NULL, out of range, of the wrong kind or from another context, or contradicts another.
- */
+/** A parameter is NULL, out of range, of the wrong kind or from another context, or contradicts another. */
 #define LUXFER_INVALID_ARGUMENT 2
 
-/**
- * The call is not allowed in the object's present state: a job is still running on it, or an input is missing.
- */
+/** The call is not allowed in the object's present state: a job is still running on it, or an input is missing. */
 #define LUXFER_INVALID_OPERATION 3
 
-/**
- * The memory budget of the context, or the machine, is used up.
- */
+/** The memory budget of the context, or the machine, is used up. */
 #define LUXFER_OUT_OF_MEMORY 4
 
-/**
- * The file or the request is valid, but uses something this library does not do.
- */
+/** The file or the request is valid, but uses something this library does not do. */
 #define LUXFER_UNSUPPORTED 5
 
-/**
- * The job was cancelled by the caller.
- */
+/** The job was cancelled by the caller. */
 #define LUXFER_CANCELLED 6
 
-/**
- * The operating system could not read or write a file, or the caller's writer refused.
- */
+/** The operating system could not read or write a file, or the caller's writer refused. */
 #define LUXFER_IO 7
 
-/**
- * A file is truncated, corrupt, or not what it claims to be.
- */
+/** A file is truncated, corrupt, or not what it claims to be. */
 #define LUXFER_FORMAT 8
 
-/**
- * A result was asked for before the job that makes it has succeeded, or a wait timed out.
- */
+/** A result was asked for before the job that makes it has succeeded, or a wait timed out. */
 #define LUXFER_NOT_READY 9
 
-/**
- * A defect in this library: please report it.
- */
+/** A defect in this library: please report it. */
 #define LUXFER_INTERNAL 10
 
-/**
- * The input is well formed but has no answer: no lines, a plane seen edge-on, strokes of one class only.
- */
+/** The input is well formed but has no answer: no lines, a plane seen edge-on, strokes of one class only. */
 #define LUXFER_DEGENERATE 11
 
-/**
- * No surface, image or entry has the given name or index.
- */
+/** No surface, image or entry has the given name or index. */
 #define LUXFER_NOT_FOUND 12
 
-/**
- * No light can reach the target: no path, a channel fully absorbed, or negative light would be needed.
- */
+/** No light can reach the target: no path, a channel fully absorbed, or negative light would be needed. */
 #define LUXFER_UNREACHABLE 13
 
 /**
@@ -166,22 +128,14 @@ const char *luxfer_status_name(luxfer_status status);
  * no handlers. With equal inputs, parameters and seeds results are equal to the bit, whatever the number of threads.
  * ==================================================================================================================== */
 
-/**
- * A context: threads, memory budget and error messages. See luxfer_context_create.
- */
+/** A context: threads, memory budget and error messages. See luxfer_context_create. */
 typedef struct luxfer_context luxfer_context;
 
-/**
- * How a context is set up. Fill it with luxfer_context_params_init.
- */
-typedef struct {
-    /**
-     * sizeof(luxfer_context_params), set by luxfer_context_params_init.
-     */
+/** How a context is set up. Fill it with luxfer_context_params_init. */
+typedef struct luxfer_context_params {
+    /** sizeof(luxfer_context_params), set by luxfer_context_params_init. */
     uint32_t struct_size;
-    /**
-     * Number of worker threads in [0, 1024]; 0, the default, is one for each core the process may use.
-     */
+    /** Number of worker threads in [0, 1024]; 0, the default, is one for each core the process may use. */
     uint32_t num_threads;
     /**
      * Limit in MiB for the pixels, meshes and textures of all objects the caller makes in this context; what exceeds it
@@ -194,7 +148,7 @@ typedef struct {
  * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is not that
  * of any version of the struct.
  */
-luxfer_status luxfer_context_params_init(luxfer_context_params *params,
+luxfer_status luxfer_context_params_init(struct luxfer_context_params *params,
                                          size_t size);
 
 /**
@@ -202,19 +156,17 @@ luxfer_status luxfer_context_params_init(luxfer_context_params *params,
  * LUXFER_INVALID_ARGUMENT if context is NULL, struct_size is wrong or num_threads exceeds 1024; LUXFER_OUT_OF_MEMORY if
  * the threads cannot be started.
  */
-luxfer_status luxfer_context_create(const luxfer_context_params *params,
-                                    luxfer_context **context);
+luxfer_status luxfer_context_create(const struct luxfer_context_params *params,
+                                    struct luxfer_context **context);
 
-/**
- * Adds a reference. Any thread.
- */
-luxfer_status luxfer_context_retain(luxfer_context *context);
+/** Adds a reference. Any thread. */
+luxfer_status luxfer_context_retain(struct luxfer_context *context);
 
 /**
  * Gives a reference back. The threads end, and are waited for, when the context and everything made in it are released.
  * Any thread.
  */
-luxfer_status luxfer_context_release(luxfer_context *context);
+luxfer_status luxfer_context_release(struct luxfer_context *context);
 
 /**
  * Copies the message of the calling thread's latest failure in this context into buffer, as UTF-8 that ends with a zero,
@@ -222,7 +174,7 @@ luxfer_status luxfer_context_release(luxfer_context *context);
  * the message is empty. Messages stay until the thread's next failure; those of the last 256 threads are kept. buffer may
  * be NULL if capacity is 0. A call that fails because its first handle is no handle leaves no message. Any thread.
  */
-luxfer_status luxfer_context_last_error(luxfer_context *context,
+luxfer_status luxfer_context_last_error(struct luxfer_context *context,
                                         char *buffer,
                                         size_t capacity,
                                         size_t *needed);
@@ -235,115 +187,69 @@ luxfer_status luxfer_context_last_error(luxfer_context *context,
  * view; the library never keeps a pointer to them. Sides are at most 65536 pixels.
  * ==================================================================================================================== */
 
-/**
- * Flag of a view: the first row in memory is the bottom one.
- */
+/** Flag of a view: the first row in memory is the bottom one. */
 #define LUXFER_VIEW_BOTTOM_UP 1
 
-/**
- * An image. See luxfer_image_create.
- */
+/** An image. See luxfer_image_create. */
 typedef struct luxfer_image luxfer_image;
 
-/**
- * How a sample is stored: a LUXFER_SAMPLE_ value, in the machine's byte order.
- */
+/** How a sample is stored: a LUXFER_SAMPLE_ value, in the machine's byte order. */
 typedef int32_t luxfer_sample;
 
-/**
- * What the numbers mean: a LUXFER_COLOUR_ value.
- */
+/** What the numbers mean: a LUXFER_COLOUR_ value. */
 typedef int32_t luxfer_colour_space;
 
-/**
- * An image in the caller's memory. Fill it with luxfer_image_view_init, then set size, sample and data.
- */
-typedef struct {
-    /**
-     * sizeof(luxfer_image_view), set by luxfer_image_view_init.
-     */
+/** An image in the caller's memory. Fill it with luxfer_image_view_init, then set size, sample and data. */
+typedef struct luxfer_image_view {
+    /** sizeof(luxfer_image_view), set by luxfer_image_view_init. */
     uint32_t struct_size;
-    /**
-     * Samples per pixel in [1, 4]; default 3.
-     */
+    /** Samples per pixel in [1, 4]; default 3. */
     uint32_t channels;
-    /**
-     * LUXFER_SAMPLE_ value; default LUXFER_SAMPLE_F32.
-     */
+    /** LUXFER_SAMPLE_ value; default LUXFER_SAMPLE_F32. */
     luxfer_sample sample;
-    /**
-     * LUXFER_COLOUR_ value; default LUXFER_COLOUR_LINEAR.
-     */
+    /** LUXFER_COLOUR_ value; default LUXFER_COLOUR_LINEAR. */
     luxfer_colour_space colour_space;
-    /**
-     * Pixels in a row, in [1, 65536]; default 0, to be set.
-     */
+    /** Pixels in a row, in [1, 65536]; default 0, to be set. */
     uint32_t width;
-    /**
-     * Rows, in [1, 65536]; default 0, to be set.
-     */
+    /** Rows, in [1, 65536]; default 0, to be set. */
     uint32_t height;
-    /**
-     * LUXFER_VIEW_ flags, or 0, the default. Unknown flags are refused.
-     */
+    /** LUXFER_VIEW_ flags, or 0, the default. Unknown flags are refused. */
     uint32_t flags;
-    /**
-     * Must be 0.
-     */
+    /** Must be 0. */
     uint32_t reserved;
-    /**
-     * Bytes from a pixel to the next; at least the pixel's size, or 0, the default: packed.
-     */
+    /** Bytes from a pixel to the next; at least the pixel's size, or 0, the default: packed. */
     size_t pixel_stride;
-    /**
-     * Bytes from a row to the next; at least the row's size, or 0, the default: packed.
-     */
+    /** Bytes from a row to the next; at least the row's size, or 0, the default: packed. */
     size_t row_stride;
-    /**
-     * Bytes at data that may be accessed; what the layout needs beyond is LUXFER_INVALID_ARGUMENT. To be set.
-     */
+    /** Bytes at data that may be accessed; what the layout needs beyond is LUXFER_INVALID_ARGUMENT. To be set. */
     size_t byte_size;
-    /**
-     * The pixels; any alignment. Bytes between pixels and rows are never touched. To be set.
-     */
+    /** The pixels; any alignment. Bytes between pixels and rows are never touched. To be set. */
     void *data;
 } luxfer_image_view;
 
-/**
- * 8-bit unsigned integer that stands for [0, 1].
- */
+/** 8-bit unsigned integer that stands for [0, 1]. */
 #define LUXFER_SAMPLE_U8 0
 
-/**
- * 16-bit unsigned integer that stands for [0, 1].
- */
+/** 16-bit unsigned integer that stands for [0, 1]. */
 #define LUXFER_SAMPLE_U16 1
 
-/**
- * 16-bit floating point (IEEE 754 half).
- */
+/** 16-bit floating point (IEEE 754 half). */
 #define LUXFER_SAMPLE_F16 2
 
-/**
- * 32-bit floating point.
- */
+/** 32-bit floating point. */
 #define LUXFER_SAMPLE_F32 3
 
-/**
- * Scene-linear Rec.709, or data that is no colour.
- */
+/** Scene-linear Rec.709, or data that is no colour. */
 #define LUXFER_COLOUR_LINEAR 0
 
-/**
- * Colour encoded with the sRGB curve; the second of two and the fourth of four channels is alpha, which is linear.
- */
+/** Colour encoded with the sRGB curve; the second of two and the fourth of four channels is alpha, which is linear. */
 #define LUXFER_COLOUR_SRGB 1
 
 /**
  * Fills *view with the defaults; size is sizeof *view. LUXFER_INVALID_ARGUMENT if view is NULL or size is not that of any
  * version of the struct.
  */
-luxfer_status luxfer_image_view_init(luxfer_image_view *view,
+luxfer_status luxfer_image_view_init(struct luxfer_image_view *view,
                                      size_t size);
 
 /**
@@ -352,8 +258,8 @@ luxfer_status luxfer_image_view_init(luxfer_image_view *view,
  * LUXFER_INVALID_ARGUMENT if the view contradicts itself; LUXFER_OUT_OF_MEMORY beyond the context's memory budget.
  */
 luxfer_status luxfer_image_create(luxfer_context *context,
-                                  const luxfer_image_view *view,
-                                  luxfer_image **image);
+                                  const struct luxfer_image_view *view,
+                                  struct luxfer_image **image);
 
 /**
  * Loads a PNG, JPEG, Radiance HDR or OpenEXR file; path is UTF-8. colour_space says how integer samples are encoded:
@@ -365,16 +271,14 @@ luxfer_status luxfer_image_create(luxfer_context *context,
 luxfer_status luxfer_image_load(luxfer_context *context,
                                 const char *path,
                                 luxfer_colour_space colour_space,
-                                luxfer_image **image);
+                                struct luxfer_image **image);
 
-/**
- * Loads an image from the size bytes of a file held in memory, otherwise as luxfer_image_load.
- */
+/** Loads an image from the size bytes of a file held in memory, otherwise as luxfer_image_load. */
 luxfer_status luxfer_image_load_memory(luxfer_context *context,
                                        const void *data,
                                        size_t size,
                                        luxfer_colour_space colour_space,
-                                       luxfer_image **image);
+                                       struct luxfer_image **image);
 
 /**
  * Saves an image; path is UTF-8 and its extension chooses the format. .png: 1, 3 or 4 channels, multiplied by exposure
@@ -383,14 +287,15 @@ luxfer_status luxfer_image_load_memory(luxfer_context *context,
  * thread.
  * LUXFER_INVALID_ARGUMENT for another extension or number of channels; LUXFER_IO if the file cannot be written.
  */
-luxfer_status luxfer_image_save(luxfer_image *image,
+luxfer_status luxfer_image_save(struct luxfer_image *image,
                                 const char *path,
                                 float exposure);
 
-/**
- * Tells width and height in pixels and the number of channels; any of the three may be NULL. Any thread.
- */
-luxfer_status luxfer_image_size(luxfer_image *image, uint32_t *width, uint32_t *height, uint32_t *channels);
+/** Tells width and height in pixels and the number of channels; any of the three may be NULL. Any thread. */
+luxfer_status luxfer_image_size(struct luxfer_image *image,
+                                uint32_t *width,
+                                uint32_t *height,
+                                uint32_t *channels);
 
 /**
  * Writes an image into the caller's pixels. The view must have the image's size; if the image has more channels than the
@@ -398,19 +303,15 @@ luxfer_status luxfer_image_size(luxfer_image *image, uint32_t *width, uint32_t *
  * Any thread.
  * LUXFER_INVALID_ARGUMENT if the view contradicts itself or the image.
  */
-luxfer_status luxfer_image_read(luxfer_image *image,
+luxfer_status luxfer_image_read(struct luxfer_image *image,
                                 uint32_t first_channel,
-                                const luxfer_image_view *view);
+                                const struct luxfer_image_view *view);
 
-/**
- * Adds a reference. Any thread.
- */
-luxfer_status luxfer_image_retain(luxfer_image *image);
+/** Adds a reference. Any thread. */
+luxfer_status luxfer_image_retain(struct luxfer_image *image);
 
-/**
- * Gives a reference back. Any thread.
- */
-luxfer_status luxfer_image_release(luxfer_image *image);
+/** Gives a reference back. Any thread. */
+luxfer_status luxfer_image_release(struct luxfer_image *image);
 
 /* ====================================================================================================================
  * Job
@@ -421,9 +322,7 @@ luxfer_status luxfer_image_release(luxfer_image *image);
  * Releasing the last reference to a job that runs cancels it and waits for it to end.
  * ==================================================================================================================== */
 
-/**
- * Work in progress. See luxfer_job_wait.
- */
+/** Work in progress. See luxfer_job_wait. */
 typedef struct luxfer_job luxfer_job;
 
 /**
@@ -440,7 +339,7 @@ typedef int32_t (*luxfer_progress_fn)(void *user, double fraction);
  * Returns LUXFER_OK if the job has succeeded, else why it has not, with its message: LUXFER_CANCELLED after a cancel
  * request that came in time, LUXFER_NOT_READY if it still runs (it goes on running).
  */
-luxfer_status luxfer_job_wait(luxfer_job *job,
+luxfer_status luxfer_job_wait(struct luxfer_job *job,
                               int32_t timeout_ms,
                               luxfer_progress_fn progress,
                               void *user);
@@ -449,30 +348,24 @@ luxfer_status luxfer_job_wait(luxfer_job *job,
  * Asks how far a job is, without waiting. *fraction becomes its progress in [0, 1], *finished 1 if it has ended, well or
  * not, else 0; either may be NULL. Any thread.
  */
-luxfer_status luxfer_job_poll(luxfer_job *job,
+luxfer_status luxfer_job_poll(struct luxfer_job *job,
                               double *fraction,
                               int32_t *finished);
 
-/**
- * How a job has ended, as luxfer_job_wait returns it; LUXFER_NOT_READY while it runs. Any thread.
- */
-luxfer_status luxfer_job_status(luxfer_job *job);
+/** How a job has ended, as luxfer_job_wait returns it; LUXFER_NOT_READY while it runs. Any thread. */
+luxfer_status luxfer_job_status(struct luxfer_job *job);
 
 /**
  * Asks a job to end early, and returns at once; the work ends within about 100 ms. A request cannot be taken back; one
  * that comes after the end has no effect. Any thread.
  */
-luxfer_status luxfer_job_cancel(luxfer_job *job);
+luxfer_status luxfer_job_cancel(struct luxfer_job *job);
 
-/**
- * Adds a reference. Any thread.
- */
-luxfer_status luxfer_job_retain(luxfer_job *job);
+/** Adds a reference. Any thread. */
+luxfer_status luxfer_job_retain(struct luxfer_job *job);
 
-/**
- * Gives a reference back; the last one cancels a running job and waits for it to end. Any thread.
- */
-luxfer_status luxfer_job_release(luxfer_job *job);
+/** Gives a reference back; the last one cancels a running job and waits for it to end. Any thread. */
+luxfer_status luxfer_job_release(struct luxfer_job *job);
 
 /* ====================================================================================================================
  * Scene
@@ -482,9 +375,7 @@ luxfer_status luxfer_job_release(luxfer_job *job);
  * was at the start of the job. Calls that change a scene take turns; each either succeeds or leaves it as it was.
  * ==================================================================================================================== */
 
-/**
- * A scene. See luxfer_scene_load and luxfer_scene_create.
- */
+/** A scene. See luxfer_scene_load and luxfer_scene_create. */
 typedef struct luxfer_scene luxfer_scene;
 
 /**
@@ -493,71 +384,43 @@ typedef struct luxfer_scene luxfer_scene;
  */
 typedef int32_t (*luxfer_write_fn)(void *user, const void *data, size_t size);
 
-/**
- * How much there is in a scene. Set struct_size before the call.
- */
-typedef struct {
-    /**
-     * sizeof(luxfer_scene_counts), set by the caller.
-     */
+/** How much there is in a scene. Set struct_size before the call. */
+typedef struct luxfer_scene_counts {
+    /** sizeof(luxfer_scene_counts), set by the caller. */
     uint32_t struct_size;
     uint32_t meshes;
     uint32_t materials;
     uint32_t textures;
     uint32_t lights;
     uint32_t cameras;
-    /**
-     * Triangles of all meshes.
-     */
+    /** Triangles of all meshes. */
     uint64_t triangles;
 } luxfer_scene_counts;
 
-/**
- * A planar surface of a scene. Set struct_size before the call.
- */
-typedef struct {
-    /**
-     * sizeof(luxfer_surface), set by the caller.
-     */
+/** A planar surface of a scene. Set struct_size before the call. */
+typedef struct luxfer_surface {
+    /** sizeof(luxfer_surface), set by the caller. */
     uint32_t struct_size;
-    /**
-     * Number of its triangles.
-     */
+    /** Number of its triangles. */
     uint32_t triangles;
-    /**
-     * Corner of its bounding rectangle where u = v = 0, in metres.
-     */
+    /** Corner of its bounding rectangle where u = v = 0, in metres. */
     float origin[3];
-    /**
-     * Unit direction of u, along the first side of the rectangle.
-     */
+    /** Unit direction of u, along the first side of the rectangle. */
     float u_axis[3];
-    /**
-     * Unit direction of v, along the second side.
-     */
+    /** Unit direction of v, along the second side. */
     float v_axis[3];
-    /**
-     * Unit normal on the side that will emit: into the room.
-     */
+    /** Unit normal on the side that will emit: into the room. */
     float normal[3];
-    /**
-     * Lengths of the sides along u and v, in metres.
-     */
+    /** Lengths of the sides along u and v, in metres. */
     float size[2];
-    /**
-     * Area of the triangles in m².
-     */
+    /** Area of the triangles in m². */
     float area;
-    /**
-     * 0.
-     */
+    /** 0. */
     uint32_t reserved;
 } luxfer_surface;
 
-/**
- * Creates an empty scene. The caller releases *scene. Any thread.
- */
-luxfer_status luxfer_scene_create(luxfer_context *context, luxfer_scene **scene);
+/** Creates an empty scene. The caller releases *scene. Any thread. */
+luxfer_status luxfer_scene_create(luxfer_context *context, struct luxfer_scene **scene);
 
 /**
  * Loads a glTF 2.0 file, .glb or .gltf with the files it names; path is UTF-8. The caller releases *scene. Any thread.
@@ -566,7 +429,7 @@ luxfer_status luxfer_scene_create(luxfer_context *context, luxfer_scene **scene)
  */
 luxfer_status luxfer_scene_load(luxfer_context *context,
                                 const char *path,
-                                luxfer_scene **scene);
+                                struct luxfer_scene **scene);
 
 /**
  * Loads a scene from the size bytes of a GLB or glTF file held in memory. Other files that it names are looked up in the
@@ -576,32 +439,30 @@ luxfer_status luxfer_scene_load_memory(luxfer_context *context,
                                        const void *data,
                                        size_t size,
                                        const char *base_path,
-                                       luxfer_scene **scene);
+                                       struct luxfer_scene **scene);
 
 /**
  * Saves a scene as a GLB file with all of its textures inside; path is UTF-8. An existing file is replaced only by a
  * complete one. Any thread.
  * LUXFER_IO if the file cannot be written.
  */
-luxfer_status luxfer_scene_export(luxfer_scene *scene,
+luxfer_status luxfer_scene_export(struct luxfer_scene *scene,
                                   const char *path);
 
 /**
  * Writes a scene as GLB through the caller's function, which gets user. Any thread.
  * LUXFER_IO if the function gives up.
  */
-luxfer_status luxfer_scene_export_memory(luxfer_scene *scene, luxfer_write_fn write, void *user);
+luxfer_status luxfer_scene_export_memory(struct luxfer_scene *scene, luxfer_write_fn write, void *user);
 
-/**
- * Tells how much there is in a scene. Any thread.
- */
-luxfer_status luxfer_scene_get_counts(luxfer_scene *scene, luxfer_scene_counts *counts);
+/** Tells how much there is in a scene. Any thread. */
+luxfer_status luxfer_scene_get_counts(struct luxfer_scene *scene, struct luxfer_scene_counts *counts);
 
 /**
  * Surrounds a scene with light of one colour from all directions, red, green and blue in cd/m², each finite and >= 0;
  * replaces any environment it had. Any thread.
  */
-luxfer_status luxfer_scene_set_environment(luxfer_scene *scene,
+luxfer_status luxfer_scene_set_environment(struct luxfer_scene *scene,
                                            float red,
                                            float green,
                                            float blue);
@@ -611,7 +472,7 @@ luxfer_status luxfer_scene_set_environment(luxfer_scene *scene,
  * finite and >= 0. Any thread.
  * LUXFER_NOT_FOUND if there is no such material.
  */
-luxfer_status luxfer_scene_set_emission(luxfer_scene *scene,
+luxfer_status luxfer_scene_set_emission(struct luxfer_scene *scene,
                                         uint32_t material,
                                         float red,
                                         float green,
@@ -621,9 +482,9 @@ luxfer_status luxfer_scene_set_emission(luxfer_scene *scene,
  * Finds the planar surface, of the object or material of that name, that faces the room; name is UTF-8. Any thread.
  * LUXFER_NOT_FOUND if nothing has that name, the message lists names that exist; LUXFER_DEGENERATE if it has no plane.
  */
-luxfer_status luxfer_scene_find_surface(luxfer_scene *scene,
+luxfer_status luxfer_scene_find_surface(struct luxfer_scene *scene,
                                         const char *name,
-                                        luxfer_surface *found);
+                                        struct luxfer_surface *found);
 
 /**
  * Lays an emissive texture (linear, 3 channels) over the bounding rectangle of the surface that luxfer_scene_find_surface
@@ -631,7 +492,7 @@ luxfer_status luxfer_scene_find_surface(luxfer_scene *scene,
  * texture * (red, green, blue) in cd/m², each finite and >= 0. mesh and material may be NULL. Any thread.
  * As luxfer_scene_find_surface; LUXFER_OUT_OF_MEMORY beyond the memory budget.
  */
-luxfer_status luxfer_scene_place_emission(luxfer_scene *scene,
+luxfer_status luxfer_scene_place_emission(struct luxfer_scene *scene,
                                           const char *name,
                                           luxfer_image *texture,
                                           float red,
@@ -640,15 +501,11 @@ luxfer_status luxfer_scene_place_emission(luxfer_scene *scene,
                                           uint32_t *mesh,
                                           uint32_t *material);
 
-/**
- * Adds a reference. Any thread.
- */
-luxfer_status luxfer_scene_retain(luxfer_scene *scene);
+/** Adds a reference. Any thread. */
+luxfer_status luxfer_scene_retain(struct luxfer_scene *scene);
 
-/**
- * Gives a reference back. Any thread.
- */
-luxfer_status luxfer_scene_release(luxfer_scene *scene);
+/** Gives a reference back. Any thread. */
+luxfer_status luxfer_scene_release(struct luxfer_scene *scene);
 
 /* ====================================================================================================================
  * Scene description
@@ -657,152 +514,90 @@ luxfer_status luxfer_scene_release(luxfer_scene *scene);
  * are copied during the call, from any alignment and with any stride.
  * ==================================================================================================================== */
 
-/**
- * A material: metallic-roughness, as in glTF 2.0. Fill it with luxfer_material_params_init.
- */
-typedef struct {
-    /**
-     * sizeof(luxfer_material_params), set by luxfer_material_params_init.
-     */
+/** A material: metallic-roughness, as in glTF 2.0. Fill it with luxfer_material_params_init. */
+typedef struct luxfer_material_params {
+    /** sizeof(luxfer_material_params), set by luxfer_material_params_init. */
     uint32_t struct_size;
-    /**
-     * Whether back faces reflect and emit as front faces do: 0 or 1, the default.
-     */
+    /** Whether back faces reflect and emit as front faces do: 0 or 1, the default. */
     uint32_t double_sided;
-    /**
-     * Name in UTF-8, copied; NULL, the default, is none.
-     */
+    /** Name in UTF-8, copied; NULL, the default, is none. */
     const char *name;
-    /**
-     * Linear colour of the surface, each in [0, 1]; default 0.8.
-     */
+    /** Linear colour of the surface, each in [0, 1]; default 0.8. */
     float base_color[3];
-    /**
-     * In [0, 1]; default 0.
-     */
+    /** In [0, 1]; default 0. */
     float metallic;
-    /**
-     * Perceptual roughness in [0, 1]; default 1.
-     */
+    /** Perceptual roughness in [0, 1]; default 1. */
     float roughness;
-    /**
-     * Emitted luminance per channel in cd/m², >= 0; default 0.
-     */
+    /** Emitted luminance per channel in cd/m², >= 0; default 0. */
     float emission[3];
-    /**
-     * Share of light that passes through instead of being reflected diffusely, in [0, 1]; default 0.
-     */
+    /** Share of light that passes through instead of being reflected diffusely, in [0, 1]; default 0. */
     float transmission;
-    /**
-     * Index of refraction in [1, 4]; default 1.5.
-     */
+    /** Index of refraction in [1, 4]; default 1.5. */
     float ior;
 } luxfer_material_params;
 
-/**
- * A triangle mesh in world space. Fill it with luxfer_mesh_params_init.
- */
-typedef struct {
-    /**
-     * sizeof(luxfer_mesh_params), set by luxfer_mesh_params_init.
-     */
+/** A triangle mesh in world space. Fill it with luxfer_mesh_params_init. */
+typedef struct luxfer_mesh_params {
+    /** sizeof(luxfer_mesh_params), set by luxfer_mesh_params_init. */
     uint32_t struct_size;
-    /**
-     * Index of its material, as luxfer_scene_add_material has returned it; default 0.
-     */
+    /** Index of its material, as luxfer_scene_add_material has returned it; default 0. */
     uint32_t material;
-    /**
-     * Name in UTF-8, copied; surfaces are found by it. NULL, the default, is none.
-     */
+    /** Name in UTF-8, copied; surfaces are found by it. NULL, the default, is none. */
     const char *name;
-    /**
-     * Number of vertices in [3, 2^32 - 1]; to be set.
-     */
+    /** Number of vertices in [3, 2^32 - 1]; to be set. */
     size_t vertex_count;
-    /**
-     * Three floats for each vertex, in metres, finite; to be set.
-     */
+    /** Three floats for each vertex, in metres, finite; to be set. */
     const void *positions;
-    /**
-     * Bytes from a position to the next; at least 12, or 0, the default: packed.
-     */
+    /** Bytes from a position to the next; at least 12, or 0, the default: packed. */
     size_t position_stride;
-    /**
-     * Three floats for each vertex, finite; NULL, the default: faces are flat.
-     */
+    /** Three floats for each vertex, finite; NULL, the default: faces are flat. */
     const void *normals;
-    /**
-     * Bytes from a normal to the next; at least 12, or 0, the default: packed.
-     */
+    /** Bytes from a normal to the next; at least 12, or 0, the default: packed. */
     size_t normal_stride;
-    /**
-     * Two floats for each vertex, finite, (0, 0) the top-left corner of a texture; NULL, the default: none.
-     */
+    /** Two floats for each vertex, finite, (0, 0) the top-left corner of a texture; NULL, the default: none. */
     const void *uvs;
-    /**
-     * Bytes from a pair of texture coordinates to the next; at least 8, or 0, the default: packed.
-     */
+    /** Bytes from a pair of texture coordinates to the next; at least 8, or 0, the default: packed. */
     size_t uv_stride;
-    /**
-     * Number of triangles, at least 1; to be set.
-     */
+    /** Number of triangles, at least 1; to be set. */
     size_t triangle_count;
-    /**
-     * Three uint32_t for each triangle, each below vertex_count, counter-clockwise seen from the front; to be set.
-     */
+    /** Three uint32_t for each triangle, each below vertex_count, counter-clockwise seen from the front; to be set. */
     const void *indices;
-    /**
-     * Bytes from a triangle to the next; at least 12, or 0, the default: packed.
-     */
+    /** Bytes from a triangle to the next; at least 12, or 0, the default: packed. */
     size_t index_stride;
 } luxfer_mesh_params;
 
-/**
- * A pinhole camera. Fill it with luxfer_camera_params_init.
- */
-typedef struct {
-    /**
-     * sizeof(luxfer_camera_params), set by luxfer_camera_params_init.
-     */
+/** A pinhole camera. Fill it with luxfer_camera_params_init. */
+typedef struct luxfer_camera_params {
+    /** sizeof(luxfer_camera_params), set by luxfer_camera_params_init. */
     uint32_t struct_size;
-    /**
-     * Full vertical angle of view in radians, in [0.001, 3.1]; default 1.
-     */
+    /** Full vertical angle of view in radians, in [0.001, 3.1]; default 1. */
     float fov_y;
-    /**
-     * Where it stands, in metres; default (0, 0, 0).
-     */
+    /** Where it stands, in metres; default (0, 0, 0). */
     float position[3];
-    /**
-     * What it looks at, another point; default (0, 0, -1).
-     */
+    /** What it looks at, another point; default (0, 0, -1). */
     float target[3];
-    /**
-     * Direction that is up in the image, not along the view; default (0, 1, 0).
-     */
+    /** Direction that is up in the image, not along the view; default (0, 1, 0). */
     float up[3];
-    /**
-     * Must be 0.
-     */
+    /** Must be 0. */
     uint32_t reserved;
 } luxfer_camera_params;
 
 /**
  * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
  */
-luxfer_status luxfer_material_params_init(luxfer_material_params *params,
+luxfer_status luxfer_material_params_init(struct luxfer_material_params *params,
                                           size_t size);
 
 /**
  * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
  */
-luxfer_status luxfer_mesh_params_init(luxfer_mesh_params *params,
+luxfer_status luxfer_mesh_params_init(struct luxfer_mesh_params *params,
                                       size_t size);
 
 /**
  * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
  */
-luxfer_status luxfer_camera_params_init(luxfer_camera_params *params,
+luxfer_status luxfer_camera_params_init(struct luxfer_camera_params *params,
                                         size_t size);
 
 /**
@@ -810,7 +605,7 @@ luxfer_status luxfer_camera_params_init(luxfer_camera_params *params,
  * LUXFER_INVALID_ARGUMENT if a value is out of range.
  */
 luxfer_status luxfer_scene_add_material(luxfer_scene *scene,
-                                        const luxfer_material_params *params,
+                                        const struct luxfer_material_params *params,
                                         uint32_t *index);
 
 /**
@@ -819,7 +614,7 @@ luxfer_status luxfer_scene_add_material(luxfer_scene *scene,
  * LUXFER_NOT_FOUND if the scene has no such material; LUXFER_OUT_OF_MEMORY beyond the memory budget.
  */
 luxfer_status luxfer_scene_add_mesh(luxfer_scene *scene,
-                                    const luxfer_mesh_params *params,
+                                    const struct luxfer_mesh_params *params,
                                     uint32_t *index);
 
 /**
@@ -827,7 +622,7 @@ luxfer_status luxfer_scene_add_mesh(luxfer_scene *scene,
  * LUXFER_INVALID_ARGUMENT if a value is out of range.
  */
 luxfer_status luxfer_scene_add_camera(luxfer_scene *scene,
-                                      const luxfer_camera_params *params,
+                                      const struct luxfer_camera_params *params,
                                       uint32_t *index);
 
 /**
@@ -836,13 +631,15 @@ luxfer_status luxfer_scene_add_camera(luxfer_scene *scene,
  */
 luxfer_status luxfer_scene_set_camera(luxfer_scene *scene,
                                       uint32_t index,
-                                      const luxfer_camera_params *params);
+                                      const struct luxfer_camera_params *params);
 
 /**
  * Reads a camera; set params->struct_size before the call. Any thread.
  * LUXFER_NOT_FOUND if there is no such camera.
  */
-luxfer_status luxfer_scene_get_camera(luxfer_scene *scene, uint32_t index, luxfer_camera_params *params);
+luxfer_status luxfer_scene_get_camera(luxfer_scene *scene,
+                                      uint32_t index,
+                                      struct luxfer_camera_params *params);
 #ifdef __cplusplus
 }
 #endif

@@ -49,7 +49,7 @@ fn every_exported_item_is_documented() {
     for line in header.lines() {
         let starts_item = line.starts_with("typedef struct") && !line.ends_with(';')
             || line.starts_with("luxfer_status ") && line.contains('(')
-            || line.starts_with("#define LUXFER_") && !line.contains("VERSION_M") && !line.contains("VERSION_P")
+            || line.starts_with("#define LUXFER_") && !line.contains("VERSION_") && !line.ends_with("_H")
             || line.starts_with("typedef int32_t");
         assert!(!starts_item || previous.ends_with("*/"), "{line} has no documentation");
         previous = line;
@@ -171,10 +171,31 @@ fn generate() -> String {
         let bindings = cbindgen::Builder::new().with_config(config.clone()).with_src(&path).generate();
         let mut items = Vec::new();
         bindings.unwrap_or_else(|e| panic!("{}: {e}", path.display())).write(&mut items);
-        out += String::from_utf8(items).unwrap().trim();
-        out += "\n";
+        out += &one_line_comments(String::from_utf8(items).unwrap().trim());
     }
     (out + &trailer).trim_start().to_string()
+}
+
+/// Puts comments that fit onto one line.
+fn one_line_comments(text: &str) -> String {
+    let mut lines = text.lines();
+    let mut out = String::new();
+    while let Some(line) = lines.next() {
+        if line.trim() != "/**" {
+            writeln!(out, "{line}").unwrap();
+            continue;
+        }
+        let mut comment = vec![line];
+        comment.extend(lines.by_ref().take_while(|l| l.trim() != "*/"));
+        let first = comment.get(1).map_or("", |l| l.trim().trim_start_matches("* "));
+        if comment.len() == 2 && line.len() + first.len() + 4 <= 120 {
+            writeln!(out, "{line} {first} */").unwrap();
+        } else {
+            comment.iter().for_each(|l| writeln!(out, "{l}").unwrap());
+            writeln!(out, "{} */", line.trim_end_matches("/**")).unwrap();
+        }
+    }
+    out
 }
 
 /// The head comment of a source file, set off by rules.
@@ -188,9 +209,9 @@ fn banner(source: &str) -> String {
 fn version_macros() -> String {
     let [major, minor, patch] = version();
     format!(
-        "/**\n * The version of this header.\n */\n#define LUXFER_VERSION_MAJOR {major}\n#define LUXFER_VERSION_MINOR {minor}\n\
-         #define LUXFER_VERSION_PATCH {patch}\n\n/**\n * The version of this header as one number, comparable with \
-         luxfer_version().\n */\n#define LUXFER_VERSION (10000 * LUXFER_VERSION_MAJOR + 100 * LUXFER_VERSION_MINOR + \
+        "/** The version of this header. */\n#define LUXFER_VERSION_MAJOR {major}\n#define LUXFER_VERSION_MINOR {minor}\n\
+         #define LUXFER_VERSION_PATCH {patch}\n\n/** The version of this header as one number, comparable with \
+         luxfer_version(). */\n#define LUXFER_VERSION (10000 * LUXFER_VERSION_MAJOR + 100 * LUXFER_VERSION_MINOR + \
          LUXFER_VERSION_PATCH)\n\n"
     )
 }
