@@ -1,58 +1,277 @@
 //! The header is generated, complete, and true: it equals what cbindgen makes of the sources, compiles as C99 and C++17
-//! without a warning, and its structs have the size and the offsets that Rust gives them.
+//! without a warning, its structs have the size and the offsets that Rust gives them, and its functions are what the
+//! library exports.
 //!
 //! `LUXFER_BLESS=1 cargo test --test abi_header` rewrites `include/luxfer.h`.
 
+use luxfer::ffi::*;
+use std::collections::BTreeMap;
 use std::fmt::Write;
+use std::mem::offset_of;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Files of `src/ffi` with exported items, in the order of the header.
-const GROUPS: &[&str] = &["version", "status", "context", "image", "job"];
+const GROUPS: &[&str] = &["version", "status", "context", "image", "job", "scene", "scene_parts"];
+
+#[test]
+fn the_header_is_what_the_sources_say() {
+    let generated = generate();
+    let path = root().join("include/luxfer.h");
+    if std::env::var_os("LUXFER_BLESS").is_some() {
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(&path, &generated).unwrap();
+    }
+    let checked_in = header();
+    if let Some((a, b)) = checked_in.lines().zip(generated.lines()).find(|(a, b)| a != b) {
+        panic!("include/luxfer.h says {a:?} where the sources say {b:?}; run with LUXFER_BLESS=1 and review the change");
+    }
+    assert_eq!(checked_in.len(), generated.len(), "include/luxfer.h ends early or late; run with LUXFER_BLESS=1");
+}
+
+#[test]
+fn the_header_compiles_as_c99_and_as_cpp17_without_a_warning() {
+    let source = "#include \"luxfer.h\"\n#include \"luxfer.h\"\nint main(void) { return (int)(luxfer_version() - LUXFER_VERSION); }\n";
+    for (compiler, standard, name) in [("cc", "-std=c99", "alone.c"), ("c++", "-std=c++17", "alone.cpp")] {
+        let file = scratch(name);
+        std::fs::write(&file, source).unwrap();
+        run(Command::new(compiler)
+            .args([standard, "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-fsyntax-only", "-I"])
+            .arg(root().join("include"))
+            .arg(file));
+    }
+}
+
+#[test]
+fn every_exported_item_is_documented() {
+    let header = header();
+    let mut previous = "";
+    for line in header.lines() {
+        let starts_item = line.starts_with("typedef struct") && !line.ends_with(';')
+            || line.starts_with("luxfer_status ") && line.contains('(')
+            || line.starts_with("#define LUXFER_") && !line.contains("VERSION_") && !line.ends_with("_H")
+            || line.starts_with("typedef int32_t");
+        assert!(!starts_item || previous.ends_with("*/"), "{line} has no documentation");
+        previous = line;
+    }
+}
+
+#[test]
+fn structs_have_the_same_layout_in_c_and_rust() {
+    let header = header();
+    let structs = structs(&header);
+    assert!(structs.len() > 5);
+
+    // A C program that prints what the C compiler makes of each field the header has.
+    let mut source = "#include \"luxfer.h\"\n#include <stdio.h>\nint main(void) {\n".to_string();
+    for (name, fields) in &structs {
+        writeln!(source, "printf(\"{name} = %zu\\n\", sizeof({name}));").unwrap();
+        for field in fields {
+            writeln!(
+                source,
+                "printf(\"{name}.{field} = %zu + %zu\\n\", offsetof({name}, {field}), sizeof((({name} *)0)->{field}));"
+            )
+            .unwrap();
+        }
+    }
+    source += "return 0;\n}\n";
+    let (file, program) = (scratch("layout.c"), scratch("layout"));
+    std::fs::write(&file, source).unwrap();
+    run(Command::new("cc").args(["-std=c99", "-o"]).arg(&program).arg("-I").arg(root().join("include")).arg(&file));
+    let seen_by_c = run(&mut Command::new(&program));
+
+    let in_rust = rust_layouts();
+    assert_eq!(structs.keys().collect::<Vec<_>>(), in_rust.keys().collect::<Vec<_>>(), "a struct is not in the test");
+    let mut seen_by_rust = String::new();
+    for (name, (size, fields)) in &in_rust {
+        writeln!(seen_by_rust, "{name} = {size}").unwrap();
+        for (field, offset, field_size) in fields {
+            writeln!(seen_by_rust, "{name}.{field} = {offset} + {field_size}").unwrap();
+        }
+        // New fields are told from old ones by the size alone, so none may hide in padding at the end.
+        let (_, offset, field_size) = fields.last().unwrap();
+        assert_eq!(offset + field_size, *size, "{name} has padding at its end");
+        assert_eq!(fields[0], ("struct_size", 0, 4), "{name} does not start with its size");
+    }
+    assert_eq!(seen_by_c, seen_by_rust);
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn the_library_exports_the_header_and_nothing_else_under_its_soname() {
+    let library = library();
+    let symbols = run(Command::new("nm").args(["-D", "--defined-only", "--format=posix"]).arg(&library));
+    let mut exported: Vec<&str> = symbols.lines().map(|l| l.split(' ').next().unwrap()).collect();
+    exported.sort_unstable();
+    let header = header();
+    let mut declared = functions(&header);
+    declared.sort_unstable();
+    assert_eq!(exported, declared);
+
+    let dynamic = run(Command::new("readelf").arg("-d").arg(&library));
+    let soname = format!("[libluxfer.so.{}.{}]", env!("CARGO_PKG_VERSION_MAJOR"), env!("CARGO_PKG_VERSION_MINOR"));
+    let line = dynamic.lines().find(|l| l.contains("(SONAME)")).expect("the library has no SONAME");
+    assert!(line.ends_with(&soname), "{line}");
+}
+
+#[test]
+fn the_version_is_cargos() {
+    let [major, minor, patch] = version().map(|v| v.parse::<u32>().unwrap());
+    assert_eq!(luxfer_version(), 10_000 * major + 100 * minor + patch);
+    // SAFETY: a static string.
+    let text = unsafe { std::ffi::CStr::from_ptr(luxfer_version_string()) };
+    assert_eq!(text.to_str().unwrap(), env!("CARGO_PKG_VERSION"));
+    let header = header();
+    for (name, value) in [("MAJOR", major), ("MINOR", minor), ("PATCH", patch)] {
+        assert!(header.contains(&format!("#define LUXFER_VERSION_{name} {value}\n")), "{name}");
+    }
+}
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-fn read(path: &str) -> String {
-    std::fs::read_to_string(root().join(path)).unwrap_or_else(|e| panic!("{path}: {e}"))
+fn header() -> String {
+    std::fs::read_to_string(root().join("include/luxfer.h")).expect("include/luxfer.h")
 }
 
-/// The head comment of a source file: title and text.
-fn head(source: &str) -> (String, String) {
-    let mut lines = source.lines().map_while(|l| l.strip_prefix("//!")).map(str::trim);
-    let title = lines.next().expect("a group starts with its title").to_string();
-    let text = lines.skip_while(|l| l.is_empty()).fold(String::new(), |text, l| text + " *" + if l.is_empty() { "" } else { " " } + l + "\n");
-    (title, text)
+/// A file beside the test programs, which are not in the source tree.
+fn scratch(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_TARGET_TMPDIR")).join(name)
 }
 
+/// The shared library that cargo built with this test.
+fn library() -> PathBuf {
+    let test = std::env::current_exe().unwrap();
+    test.parent().unwrap().join("libluxfer.so")
+}
+
+fn version() -> [&'static str; 3] {
+    [env!("CARGO_PKG_VERSION_MAJOR"), env!("CARGO_PKG_VERSION_MINOR"), env!("CARGO_PKG_VERSION_PATCH")]
+}
+
+/// Runs a program that must succeed; returns what it prints.
+fn run(command: &mut Command) -> String {
+    let output = command.output().unwrap_or_else(|e| panic!("{command:?}: {e}"));
+    assert!(output.status.success(), "{command:?}:\n{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// One pass of cbindgen for each file, under the head comment of the file.
 fn generate() -> String {
-    let config = cbindgen::Config::from_file(root().join("cbindgen.toml")).unwrap();
-    let mut header = read("include/luxfer.head.h");
+    let mut config = cbindgen::Config::from_file(root().join("cbindgen.toml")).expect("cbindgen.toml");
+    let mut out = config.header.take().unwrap();
+    let trailer = config.trailer.take().unwrap();
     for group in GROUPS {
-        let path = format!("src/ffi/{group}.rs");
-        let (title, text) = head(&read(&path));
-        let rule = "=".repeat(110);
-        write!(header, "\n/* {rule}\n * {title}\n *\n{text} * {rule} */\n\n").unwrap();
+        let path = root().join(format!("src/ffi/{group}.rs"));
+        out += &banner(&std::fs::read_to_string(&path).unwrap());
         if *group == "version" {
-            header += &version_macros();
+            out += &version_macros();
         }
-        let bindings = cbindgen::Builder::new().with_config(config.clone()).with_src(root().join(&path)).generate();
+        let bindings = cbindgen::Builder::new().with_config(config.clone()).with_src(&path).generate();
         let mut items = Vec::new();
-        bindings.unwrap_or_else(|e| panic!("{path}: {e}")).write(&mut items);
-        header += String::from_utf8(items).unwrap().trim();
-        header += "\n";
+        bindings.unwrap_or_else(|e| panic!("{}: {e}", path.display())).write(&mut items);
+        out += &one_line_comments(String::from_utf8(items).unwrap().trim());
     }
-    header + "\n#ifdef __cplusplus\n}\n#endif\n\n#endif /* LUXFER_H */\n"
+    (out + &trailer).trim_start().to_string()
+}
+
+/// Puts comments that fit onto one line.
+fn one_line_comments(text: &str) -> String {
+    let mut lines = text.lines();
+    let mut out = String::new();
+    while let Some(line) = lines.next() {
+        if line.trim() != "/**" {
+            writeln!(out, "{line}").unwrap();
+            continue;
+        }
+        let mut comment = vec![line];
+        comment.extend(lines.by_ref().take_while(|l| l.trim() != "*/"));
+        let first = comment.get(1).map_or("", |l| l.trim().trim_start_matches("* "));
+        if comment.len() == 2 && line.len() + first.len() + 4 <= 120 {
+            writeln!(out, "{line} {first} */").unwrap();
+        } else {
+            comment.iter().for_each(|l| writeln!(out, "{l}").unwrap());
+            writeln!(out, "{} */", line.trim_end_matches("/**")).unwrap();
+        }
+    }
+    out
+}
+
+/// The head comment of a source file, set off by rules.
+fn banner(source: &str) -> String {
+    let rule = "=".repeat(116);
+    let lines = source.lines().map_while(|l| l.strip_prefix("//!"));
+    let text: String = lines.map(|l| format!(" *{l}\n")).collect();
+    format!("\n/* {rule}\n{text} * {rule} */\n\n")
 }
 
 fn version_macros() -> String {
-    let [major, minor, patch] =
-        [env!("CARGO_PKG_VERSION_MAJOR"), env!("CARGO_PKG_VERSION_MINOR"), env!("CARGO_PKG_VERSION_PATCH")];
+    let [major, minor, patch] = version();
     format!(
-        "/** Version of this header. */\n#define LUXFER_VERSION_MAJOR {major}\n#define LUXFER_VERSION_MINOR {minor}\n\
-         #define LUXFER_VERSION_PATCH {patch}\n/** The version as one number that can be compared: 10000 * major + 100 * \
-         minor + patch. */\n#define LUXFER_VERSION (10000 * LUXFER_VERSION_MAJOR + 100 * LUXFER_VERSION_MINOR + \
+        "/** The version of this header. */\n#define LUXFER_VERSION_MAJOR {major}\n#define LUXFER_VERSION_MINOR {minor}\n\
+         #define LUXFER_VERSION_PATCH {patch}\n\n/** The version of this header as one number, comparable with \
+         luxfer_version(). */\n#define LUXFER_VERSION (10000 * LUXFER_VERSION_MAJOR + 100 * LUXFER_VERSION_MINOR + \
          LUXFER_VERSION_PATCH)\n\n"
     )
+}
+
+/// Names of the functions a header declares.
+fn functions(header: &str) -> Vec<&str> {
+    let declarations = header.lines().filter(|l| !l.starts_with([' ', '#', '/']) && !l.starts_with("typedef"));
+    let names = declarations.filter_map(|l| l.split_once('(')).filter_map(|(before, _)| before.rsplit([' ', '*']).next());
+    names.filter(|n| n.starts_with("luxfer_")).collect()
+}
+
+/// Fields of the structs that a header defines.
+fn structs(header: &str) -> BTreeMap<&str, Vec<&str>> {
+    let mut found = BTreeMap::new();
+    let mut current = None;
+    for line in header.lines() {
+        if let Some(name) = line.strip_prefix("typedef struct ").and_then(|l| l.strip_suffix(" {")) {
+            current = Some(found.entry(name).or_insert_with(Vec::new));
+        } else if line.starts_with('}') {
+            current = None;
+        } else if let (Some(fields), Some(declaration)) = (&mut current, line.strip_suffix(';')) {
+            let name = declaration.split('[').next().unwrap();
+            fields.push(name.rsplit([' ', '*']).next().unwrap());
+        }
+    }
+    found
+}
+
+type Fields = Vec<(&'static str, usize, usize)>;
+
+/// Sizes, and offsets and sizes of the fields, as Rust has them.
+fn rust_layouts() -> BTreeMap<&'static str, (usize, Fields)> {
+    let mut layouts = BTreeMap::new();
+    macro_rules! layout {
+        ($type:ident: $($field:ident)*) => {
+            fn size_of_field<T>(_: fn(&$type) -> &T) -> usize { size_of::<T>() }
+            let fields = vec![$((stringify!($field), offset_of!($type, $field), size_of_field(|s| &s.$field))),*];
+            layouts.insert(stringify!($type), (size_of::<$type>(), fields));
+        };
+    }
+    {
+        layout!(luxfer_context_params: struct_size num_threads memory_budget_mib);
+    }
+    {
+        layout!(luxfer_image_view: struct_size channels sample colour_space width height flags reserved pixel_stride row_stride byte_size data);
+    }
+    {
+        layout!(luxfer_scene_counts: struct_size meshes materials textures lights cameras triangles);
+    }
+    {
+        layout!(luxfer_surface: struct_size triangles origin u_axis v_axis normal size area reserved);
+    }
+    {
+        layout!(luxfer_material_params: struct_size double_sided name base_color metallic roughness emission transmission ior);
+    }
+    {
+        layout!(luxfer_mesh_params: struct_size material name vertex_count positions position_stride normals normal_stride uvs uv_stride triangle_count indices index_stride);
+    }
+    {
+        layout!(luxfer_camera_params: struct_size fov_y position target up reserved);
+    }
+    layouts
 }

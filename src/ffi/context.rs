@@ -112,12 +112,6 @@ pub(super) struct Charge {
     bytes: u64,
 }
 
-impl Charge {
-    pub(super) fn context(&self) -> &Arc<Context> {
-        &self.context
-    }
-}
-
 impl Drop for Charge {
     fn drop(&mut self) {
         self.context.used.fetch_sub(self.bytes, Ordering::Relaxed);

@@ -19,15 +19,20 @@ mod guard;
 mod handle;
 mod params;
 mod pointer;
+mod stage;
 
 mod context;
 mod image;
 mod job;
+mod scene;
+mod scene_parts;
 mod status;
 mod version;
 
 pub use context::*;
 pub use image::*;
 pub use job::*;
+pub use scene::*;
+pub use scene_parts::*;
 pub use status::*;
 pub use version::*;

@@ -41,7 +41,8 @@ pub fn decode(bytes: &[u8], encoding: Encoding) -> Result<Image> {
 /// Width, height and largest number of channels of an image file, from its header alone: what decoding it will need.
 pub fn probe(bytes: &[u8]) -> Result<(usize, usize, usize)> {
     if bytes.starts_with(&EXR_MAGIC) {
-        let size = exr_headers(bytes)?.iter().map(|h| (h.layer_size.0, h.layer_size.1, h.channels.list.len().min(4)));
+        let headers = exr_headers(bytes)?;
+        let size = headers.iter().map(|h| (h.layer_size.0, h.layer_size.1, h.channels.list.len().min(4)));
         return size.max_by_key(|s| s.0 * s.1 * s.2).ok_or_else(|| Error::format("the OpenEXR file has no layers"));
     }
     let (_, decoder) = raster_decoder(bytes)?;

@@ -1,0 +1,404 @@
+//! Scene
+//!
+//! A scene is what the host describes: meshes, materials, textures, lights, cameras. Metres, right-handed, Y up, all in
+//! world space. Emission is in cd/m², punctual lights in candela and lux as in glTF 2.0. A job works on the scene as it
+//! was at the start of the job. Calls that change a scene take turns; each either succeeds or leaves it as it was.
+
+use super::context::{Charge, Context, luxfer_context};
+use super::guard::{enter, lock};
+use super::handle::{self, Handle, Owned, tag};
+use super::image::luxfer_image;
+use super::params::{Report, Versioned};
+use super::pointer::{Out, bytes, set_optional, text};
+use super::status::luxfer_status;
+use crate::error::{Error, ErrorKind, Result};
+use crate::image::io;
+use crate::job::Job;
+use crate::render::World;
+use crate::scene::{Environment, Scene, gltf, surface};
+use glam::Vec3;
+use std::ffi::{c_char, c_void};
+use std::path::Path;
+use std::sync::{Arc, Mutex};
+
+/// A scene. See luxfer_scene_load and luxfer_scene_create.
+pub struct luxfer_scene {
+    _opaque: [u8; 0],
+}
+
+/// Takes size bytes of a file that is being written; called one or more times, in order, on the calling thread with no
+/// lock held. Returns 0 to go on, anything else to give up: the export then returns LUXFER_IO. Must not throw or jump out.
+pub type luxfer_write_fn =
+    Option<unsafe extern "C" fn(user: *mut c_void, data: *const c_void, size: usize) -> i32>;
+
+/// How much there is in a scene. Set struct_size before the call.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_scene_counts {
+    /// sizeof(luxfer_scene_counts), set by the caller.
+    pub struct_size: u32,
+    pub meshes: u32,
+    pub materials: u32,
+    pub textures: u32,
+    pub lights: u32,
+    pub cameras: u32,
+    /// Triangles of all meshes.
+    pub triangles: u64,
+}
+
+// SAFETY: plain integers.
+unsafe impl Versioned for luxfer_scene_counts {
+    const NAME: &'static str = "luxfer_scene_counts";
+    const SIZES: &'static [usize] = &[32];
+    fn defaults() -> Self {
+        Self { struct_size: 32, meshes: 0, materials: 0, textures: 0, lights: 0, cameras: 0, triangles: 0 }
+    }
+}
+
+/// A planar surface of a scene. Set struct_size before the call.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_surface {
+    /// sizeof(luxfer_surface), set by the caller.
+    pub struct_size: u32,
+    /// Number of its triangles.
+    pub triangles: u32,
+    /// Corner of its bounding rectangle where u = v = 0, in metres.
+    pub origin: [f32; 3],
+    /// Unit direction of u, along the first side of the rectangle.
+    pub u_axis: [f32; 3],
+    /// Unit direction of v, along the second side.
+    pub v_axis: [f32; 3],
+    /// Unit normal on the side that will emit: into the room.
+    pub normal: [f32; 3],
+    /// Lengths of the sides along u and v, in metres.
+    pub size: [f32; 2],
+    /// Area of the triangles in m².
+    pub area: f32,
+    /// 0.
+    pub reserved: u32,
+}
+
+// SAFETY: plain numbers.
+unsafe impl Versioned for luxfer_surface {
+    const NAME: &'static str = "luxfer_surface";
+    const SIZES: &'static [usize] = &[72];
+    fn defaults() -> Self {
+        Self {
+            struct_size: 72,
+            triangles: 0,
+            origin: [0.0; 3],
+            u_axis: [0.0; 3],
+            v_axis: [0.0; 3],
+            normal: [0.0; 3],
+            size: [0.0; 2],
+            area: 0.0,
+            reserved: 0,
+        }
+    }
+}
+
+/// What a `luxfer_scene` refers to.
+pub(super) struct SceneObject {
+    context: Arc<Context>,
+    state: Mutex<State>,
+}
+
+struct State {
+    scene: Arc<Scene>,
+    /// The scene made ready for tracing, if it has been since the last change.
+    world: Option<Arc<World>>,
+    charges: Vec<Charge>,
+}
+
+impl Owned for SceneObject {
+    fn context(&self) -> &Arc<Context> {
+        &self.context
+    }
+}
+
+impl Handle for luxfer_scene {
+    type Object = SceneObject;
+    const TAG: u64 = tag(b"lux.scen");
+    const NAME: &'static str = "luxfer_scene";
+}
+
+impl SceneObject {
+    /// A scene whose size is counted in the budget.
+    pub(super) fn new(context: &Arc<Context>, scene: Arc<Scene>) -> Result<Arc<Self>> {
+        let charges = vec![context.charge(cost(&scene))?];
+        Ok(Arc::new(Self { context: context.clone(), state: Mutex::new(State { scene, world: None, charges }) }))
+    }
+
+    /// The scene as it is.
+    pub(super) fn snapshot(&self) -> Arc<Scene> {
+        lock(&self.state).scene.clone()
+    }
+
+    /// Changes the scene, which costs `bytes`; a change that fails must leave it as it was.
+    pub(super) fn change<T>(&self, bytes: u64, change: impl FnOnce(&mut Scene) -> Result<T>) -> Result<T> {
+        let charge = self.context.charge(bytes)?;
+        let state = &mut *lock(&self.state);
+        // The scene inside a world is shared, and would be copied to be changed.
+        state.world = None;
+        let result = change(Arc::make_mut(&mut state.scene))?;
+        if bytes > 0 {
+            state.charges.push(charge);
+        }
+        Ok(result)
+    }
+
+    /// The scene `scene` made ready for tracing; kept until the scene changes.
+    pub(super) fn world(&self, scene: &Arc<Scene>, job: Job) -> Result<Arc<World>> {
+        if let Some(world) = lock(&self.state).world.clone()
+            && Arc::ptr_eq(world.scene(), scene)
+        {
+            job.report(1.0);
+            return Ok(world);
+        }
+        // Not under the lock: it takes its time, and the host may ask for other things meanwhile.
+        let world = Arc::new(World::build(scene.clone(), job)?);
+        let state = &mut *lock(&self.state);
+        if Arc::ptr_eq(&state.scene, scene) {
+            state.world = Some(world.clone());
+        }
+        Ok(world)
+    }
+}
+
+/// Bytes of a scene's meshes and textures.
+fn cost(scene: &Scene) -> u64 {
+    let meshes = scene.meshes.iter().map(|m| {
+        let uvs = m.uvs.iter().map(Vec::len).sum::<usize>();
+        12 * (m.positions.len() + m.normals.len() + m.triangles.len()) + 8 * uvs
+    });
+    let textures = scene.textures.iter().map(|t| t.image.data.len() * size_of::<f32>());
+    meshes.chain(textures).map(|bytes| bytes as u64).sum()
+}
+
+/// Creates an empty scene. The caller releases *scene. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_scene_create(
+    context: *mut luxfer_context,
+    scene: *mut *mut luxfer_scene,
+) -> luxfer_status {
+    enter(context, |object| {
+        let out = Out::new(scene, "scene")?;
+        out.set(handle::give(SceneObject::new(object.context(), Arc::default())?));
+        Ok(())
+    })
+}
+
+/// Loads a glTF 2.0 file, .glb or .gltf with the files it names; path is UTF-8. The caller releases *scene. Any thread.
+/// LUXFER_IO if a file cannot be read, LUXFER_FORMAT if one is damaged or refers to what is not there, LUXFER_UNSUPPORTED
+/// for a required extension this library does not know, LUXFER_OUT_OF_MEMORY beyond the memory budget.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_scene_load(
+    context: *mut luxfer_context,
+    path: *const c_char,
+    scene: *mut *mut luxfer_scene,
+) -> luxfer_status {
+    enter(context, |object| {
+        let out = Out::new(scene, "scene")?;
+        let loaded = gltf::load(Path::new(text(path, "path")?))?;
+        out.set(handle::give(SceneObject::new(object.context(), Arc::new(loaded))?));
+        Ok(())
+    })
+}
+
+/// Loads a scene from the size bytes of a GLB or glTF file held in memory. Other files that it names are looked up in the
+/// folder base_path (UTF-8); NULL allows none. Otherwise as luxfer_scene_load.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_scene_load_memory(
+    context: *mut luxfer_context,
+    data: *const c_void,
+    size: usize,
+    base_path: *const c_char,
+    scene: *mut *mut luxfer_scene,
+) -> luxfer_status {
+    enter(context, |object| {
+        let out = Out::new(scene, "scene")?;
+        let bytes = bytes(data.cast(), size, "data")?;
+        let base = if base_path.is_null() { None } else { Some(Path::new(text(base_path, "base_path")?)) };
+        let loaded = gltf::import(bytes, base)?;
+        out.set(handle::give(SceneObject::new(object.context(), Arc::new(loaded))?));
+        Ok(())
+    })
+}
+
+/// Saves a scene as a GLB file with all of its textures inside; path is UTF-8. An existing file is replaced only by a
+/// complete one. Any thread.
+/// LUXFER_IO if the file cannot be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_scene_export(scene: *mut luxfer_scene, path: *const c_char) -> luxfer_status {
+    enter(scene, |object| {
+        let path = Path::new(text(path, "path")?);
+        io::write_file(path, &gltf::export(&object.snapshot())?)
+    })
+}
+
+/// Writes a scene as GLB through the caller's function, which gets user. Any thread.
+/// LUXFER_IO if the function gives up.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_scene_export_memory(
+    scene: *mut luxfer_scene,
+    write: luxfer_write_fn,
+    user: *mut c_void,
+) -> luxfer_status {
+    enter(scene, |object| {
+        let write = write.ok_or_else(|| Error::argument("write is NULL; it must be a function that takes the bytes"))?;
+        let bytes = gltf::export(&object.snapshot())?;
+        // SAFETY: the caller's function, with the caller's pointer.
+        let answer = unsafe { write(user, bytes.as_ptr().cast(), bytes.len()) };
+        if answer != 0 {
+            return Err(Error::new(ErrorKind::Io, format!("the caller's write function returned {answer}")));
+        }
+        Ok(())
+    })
+}
+
+/// Tells how much there is in a scene. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_scene_get_counts(
+    scene: *mut luxfer_scene,
+    counts: *mut luxfer_scene_counts,
+) -> luxfer_status {
+    enter(scene, |object| {
+        let out = Report::new(counts)?;
+        let scene = object.snapshot();
+        let count = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
+        out.set(luxfer_scene_counts {
+            meshes: count(scene.meshes.len()),
+            materials: count(scene.materials.len()),
+            textures: count(scene.textures.len()),
+            lights: count(scene.lights.len()),
+            cameras: count(scene.cameras.len()),
+            triangles: scene.meshes.iter().map(|m| m.triangles.len() as u64).sum(),
+            ..luxfer_scene_counts::defaults()
+        });
+        Ok(())
+    })
+}
+
+/// Surrounds a scene with light of one colour from all directions, red, green and blue in cd/m², each finite and >= 0;
+/// replaces any environment it had. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_scene_set_environment(
+    scene: *mut luxfer_scene,
+    red: f32,
+    green: f32,
+    blue: f32,
+) -> luxfer_status {
+    enter(scene, |object| {
+        let radiance = colour("environment", red, green, blue)?;
+        object.change(0, |scene| {
+            scene.environment = Some(Environment::Constant(radiance));
+            Ok(())
+        })
+    })
+}
+
+/// Sets the emission of a material, which multiplies its emission texture if it has one: red, green and blue in cd/m², each
+/// finite and >= 0. Any thread.
+/// LUXFER_NOT_FOUND if there is no such material.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_scene_set_emission(
+    scene: *mut luxfer_scene,
+    material: u32,
+    red: f32,
+    green: f32,
+    blue: f32,
+) -> luxfer_status {
+    enter(scene, |object| {
+        let emission = colour("emission", red, green, blue)?;
+        object.change(0, |scene| {
+            let count = scene.materials.len();
+            let found = scene.materials.get_mut(material as usize);
+            found.ok_or_else(|| missing("material", material, count))?.emission = emission;
+            Ok(())
+        })
+    })
+}
+
+/// Finds the planar surface, of the object or material of that name, that faces the room; name is UTF-8. Any thread.
+/// LUXFER_NOT_FOUND if nothing has that name, the message lists names that exist; LUXFER_DEGENERATE if it has no plane.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_scene_find_surface(
+    scene: *mut luxfer_scene,
+    name: *const c_char,
+    found: *mut luxfer_surface,
+) -> luxfer_status {
+    enter(scene, |object| {
+        let out = Report::new(found)?;
+        let surface = surface::find(&object.snapshot(), text(name, "name")?)?;
+        out.set(luxfer_surface {
+            triangles: u32::try_from(surface.triangles.len()).unwrap_or(u32::MAX),
+            origin: surface.origin.to_array(),
+            u_axis: surface.u_axis.to_array(),
+            v_axis: surface.v_axis.to_array(),
+            normal: surface.normal.to_array(),
+            size: surface.size.to_array(),
+            area: surface.area,
+            ..luxfer_surface::defaults()
+        });
+        Ok(())
+    })
+}
+
+/// Lays an emissive texture (linear, 3 channels) over the bounding rectangle of the surface that luxfer_scene_find_surface
+/// finds by name. The surface becomes a mesh of its own, *mesh, with a copy of its material, *material, that emits
+/// texture * (red, green, blue) in cd/m², each finite and >= 0. mesh and material may be NULL. Any thread.
+/// As luxfer_scene_find_surface; LUXFER_OUT_OF_MEMORY beyond the memory budget.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_scene_place_emission(
+    scene: *mut luxfer_scene,
+    name: *const c_char,
+    texture: *mut luxfer_image,
+    red: f32,
+    green: f32,
+    blue: f32,
+    mesh: *mut u32,
+    material: *mut u32,
+) -> luxfer_status {
+    enter(scene, |object| {
+        let name = text(name, "name")?;
+        let texture = handle::borrow_in(&object.context, texture, "texture")?;
+        let strength = colour("emission", red, green, blue)?;
+        let texture = texture.image().to_rgb()?;
+        let bytes = (texture.data.len() * size_of::<f32>()) as u64;
+        let placed = object.change(bytes, |scene| {
+            let surface = surface::find(scene, name)?;
+            surface::place(scene, &surface, texture, strength)
+        })?;
+        set_optional(mesh, placed.mesh as u32);
+        set_optional(material, placed.material as u32);
+        Ok(())
+    })
+}
+
+/// Adds a reference. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_scene_retain(scene: *mut luxfer_scene) -> luxfer_status {
+    handle::retain(scene)
+}
+
+/// Gives a reference back. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_scene_release(scene: *mut luxfer_scene) -> luxfer_status {
+    handle::release(scene)
+}
+
+/// A colour that light can have.
+pub(super) fn colour(name: &str, red: f32, green: f32, blue: f32) -> Result<Vec3> {
+    let colour = Vec3::new(red, green, blue);
+    if colour.is_finite() && colour.min_element() >= 0.0 {
+        Ok(colour)
+    } else {
+        Err(Error::argument(format!("{name} is ({red}, {green}, {blue}); each must be finite and not negative")))
+    }
+}
+
+/// An index into a list that is too short.
+pub(super) fn missing(what: &str, index: u32, count: usize) -> Error {
+    Error::new(ErrorKind::NotFound, format!("there is no {what} {index}; there are {count}"))
+}

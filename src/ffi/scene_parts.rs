@@ -1,0 +1,383 @@
+//! Scene description
+//!
+//! Scenes can be described by the host's own arrays: materials first, then the meshes that use them, then cameras. Arrays
+//! are copied during the call, from any alignment and with any stride.
+
+use super::guard::{enter, guard};
+use super::params::{self, Report, Versioned};
+use super::pointer::{bytes, set_optional, text};
+use super::scene::{colour, luxfer_scene, missing};
+use super::status::luxfer_status;
+use crate::error::{Error, Result, check_range};
+use crate::image::try_vec;
+use crate::scene::{Camera, Material, Mesh};
+use glam::{Vec2, Vec3};
+use std::ffi::{c_char, c_void};
+
+/// A material: metallic-roughness, as in glTF 2.0. Fill it with luxfer_material_params_init.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_material_params {
+    /// sizeof(luxfer_material_params), set by luxfer_material_params_init.
+    pub struct_size: u32,
+    /// Whether back faces reflect and emit as front faces do: 0 or 1, the default.
+    pub double_sided: u32,
+    /// Name in UTF-8, copied; NULL, the default, is none.
+    pub name: *const c_char,
+    /// Linear colour of the surface, each in [0, 1]; default 0.8.
+    pub base_color: [f32; 3],
+    /// In [0, 1]; default 0.
+    pub metallic: f32,
+    /// Perceptual roughness in [0, 1]; default 1.
+    pub roughness: f32,
+    /// Emitted luminance per channel in cd/m², >= 0; default 0.
+    pub emission: [f32; 3],
+    /// Share of light that passes through instead of being reflected diffusely, in [0, 1]; default 0.
+    pub transmission: f32,
+    /// Index of refraction in [1, 4]; default 1.5.
+    pub ior: f32,
+}
+
+const MATERIAL_SIZE: usize = 48 + size_of::<usize>();
+
+// SAFETY: numbers, and a pointer that is checked before use.
+unsafe impl Versioned for luxfer_material_params {
+    const NAME: &'static str = "luxfer_material_params";
+    const SIZES: &'static [usize] = &[MATERIAL_SIZE];
+    fn defaults() -> Self {
+        Self {
+            struct_size: MATERIAL_SIZE as u32,
+            double_sided: 1,
+            name: std::ptr::null(),
+            base_color: [0.8; 3],
+            metallic: 0.0,
+            roughness: 1.0,
+            emission: [0.0; 3],
+            transmission: 0.0,
+            ior: 1.5,
+        }
+    }
+}
+
+/// A triangle mesh in world space. Fill it with luxfer_mesh_params_init.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_mesh_params {
+    /// sizeof(luxfer_mesh_params), set by luxfer_mesh_params_init.
+    pub struct_size: u32,
+    /// Index of its material, as luxfer_scene_add_material has returned it; default 0.
+    pub material: u32,
+    /// Name in UTF-8, copied; surfaces are found by it. NULL, the default, is none.
+    pub name: *const c_char,
+    /// Number of vertices in [3, 2^32 - 1]; to be set.
+    pub vertex_count: usize,
+    /// Three floats for each vertex, in metres, finite; to be set.
+    pub positions: *const c_void,
+    /// Bytes from a position to the next; at least 12, or 0, the default: packed.
+    pub position_stride: usize,
+    /// Three floats for each vertex, finite; NULL, the default: faces are flat.
+    pub normals: *const c_void,
+    /// Bytes from a normal to the next; at least 12, or 0, the default: packed.
+    pub normal_stride: usize,
+    /// Two floats for each vertex, finite, (0, 0) the top-left corner of a texture; NULL, the default: none.
+    pub uvs: *const c_void,
+    /// Bytes from a pair of texture coordinates to the next; at least 8, or 0, the default: packed.
+    pub uv_stride: usize,
+    /// Number of triangles, at least 1; to be set.
+    pub triangle_count: usize,
+    /// Three uint32_t for each triangle, each below vertex_count, counter-clockwise seen from the front; to be set.
+    pub indices: *const c_void,
+    /// Bytes from a triangle to the next; at least 12, or 0, the default: packed.
+    pub index_stride: usize,
+}
+
+const MESH_SIZE: usize = 8 + 11 * size_of::<usize>();
+
+// SAFETY: integers, and pointers that are checked before use.
+unsafe impl Versioned for luxfer_mesh_params {
+    const NAME: &'static str = "luxfer_mesh_params";
+    const SIZES: &'static [usize] = &[MESH_SIZE];
+    fn defaults() -> Self {
+        Self {
+            struct_size: MESH_SIZE as u32,
+            material: 0,
+            name: std::ptr::null(),
+            vertex_count: 0,
+            positions: std::ptr::null(),
+            position_stride: 0,
+            normals: std::ptr::null(),
+            normal_stride: 0,
+            uvs: std::ptr::null(),
+            uv_stride: 0,
+            triangle_count: 0,
+            indices: std::ptr::null(),
+            index_stride: 0,
+        }
+    }
+}
+
+/// A pinhole camera. Fill it with luxfer_camera_params_init.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_camera_params {
+    /// sizeof(luxfer_camera_params), set by luxfer_camera_params_init.
+    pub struct_size: u32,
+    /// Full vertical angle of view in radians, in [0.001, 3.1]; default 1.
+    pub fov_y: f32,
+    /// Where it stands, in metres; default (0, 0, 0).
+    pub position: [f32; 3],
+    /// What it looks at, another point; default (0, 0, -1).
+    pub target: [f32; 3],
+    /// Direction that is up in the image, not along the view; default (0, 1, 0).
+    pub up: [f32; 3],
+    /// Must be 0.
+    pub reserved: u32,
+}
+
+// SAFETY: plain numbers.
+unsafe impl Versioned for luxfer_camera_params {
+    const NAME: &'static str = "luxfer_camera_params";
+    const SIZES: &'static [usize] = &[48];
+    fn defaults() -> Self {
+        Self {
+            struct_size: 48,
+            fov_y: 1.0,
+            position: [0.0; 3],
+            target: [0.0, 0.0, -1.0],
+            up: [0.0, 1.0, 0.0],
+            reserved: 0,
+        }
+    }
+}
+
+impl luxfer_camera_params {
+    pub(super) fn camera(&self) -> Result<Camera> {
+        let [position, target, up] = [self.position, self.target, self.up].map(Vec3::from_array);
+        check_range("camera.fov_y", self.fov_y, 0.001, 3.1)?;
+        if !(position.is_finite() && target.is_finite() && up.is_finite()) {
+            return Err(Error::argument(format!(
+                "camera.position is {position}, target {target}, up {up}; they must be finite"
+            )));
+        }
+        let forward = (target - position).try_normalize();
+        let side = forward.and_then(|f| f.cross(up).try_normalize());
+        let (Some(forward), Some(side)) = (forward, side) else {
+            return Err(Error::argument(format!(
+                "camera.position is {position}, target {target}, up {up}; the target must be elsewhere and up not along the view"
+            )));
+        };
+        Ok(Camera { name: String::new(), position, forward, up: side.cross(forward), fov_y: self.fov_y })
+    }
+}
+
+/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_material_params_init(
+    params: *mut luxfer_material_params,
+    size: usize,
+) -> luxfer_status {
+    guard(|| params::init(params, size))
+}
+
+/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_mesh_params_init(params: *mut luxfer_mesh_params, size: usize) -> luxfer_status {
+    guard(|| params::init(params, size))
+}
+
+/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_camera_params_init(params: *mut luxfer_camera_params, size: usize) -> luxfer_status {
+    guard(|| params::init(params, size))
+}
+
+/// Adds a material; *index, unless NULL, becomes its index. params may be NULL for the defaults. Any thread.
+/// LUXFER_INVALID_ARGUMENT if a value is out of range.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_scene_add_material(
+    scene: *mut luxfer_scene,
+    params: *const luxfer_material_params,
+    index: *mut u32,
+) -> luxfer_status {
+    enter(scene, |object| {
+        let material = material(&params::read(params)?)?;
+        let added = object.change(0, |scene| Ok(push(&mut scene.materials, material)))?;
+        set_optional(index, added);
+        Ok(())
+    })
+}
+
+fn material(params: &luxfer_material_params) -> Result<Material> {
+    for channel in params.base_color {
+        check_range("material.base_color", channel, 0.0, 1.0)?;
+    }
+    let [red, green, blue] = params.emission;
+    Ok(Material {
+        name: optional_text(params.name, "material.name")?,
+        base_color: Vec3::from_array(params.base_color),
+        metallic: check_range("material.metallic", params.metallic, 0.0, 1.0)?,
+        roughness: check_range("material.roughness", params.roughness, 0.0, 1.0)?,
+        emission: colour("material.emission", red, green, blue)?,
+        transmission: check_range("material.transmission", params.transmission, 0.0, 1.0)?,
+        ior: check_range("material.ior", params.ior, 1.0, 4.0)?,
+        double_sided: check_range("material.double_sided", params.double_sided, 0, 1)? == 1,
+        ..Material::default()
+    })
+}
+
+/// Adds a mesh, copying its arrays; *index, unless NULL, becomes its index. Any thread.
+/// LUXFER_INVALID_ARGUMENT if an array is missing, a stride too small, a number not finite or an index out of range;
+/// LUXFER_NOT_FOUND if the scene has no such material; LUXFER_OUT_OF_MEMORY beyond the memory budget.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_scene_add_mesh(
+    scene: *mut luxfer_scene,
+    params: *const luxfer_mesh_params,
+    index: *mut u32,
+) -> luxfer_status {
+    enter(scene, |object| {
+        let params = params::read_required(params)?;
+        let vertices = u64::try_from(params.vertex_count).unwrap_or(u64::MAX);
+        check_range("mesh.vertex_count", vertices, 3, u64::from(u32::MAX))?;
+        let cost = vertices.saturating_mul(32).saturating_add((params.triangle_count as u64).saturating_mul(12));
+        let added = object.change(cost, |scene| {
+            if params.material as usize >= scene.materials.len() {
+                return Err(missing("material", params.material, scene.materials.len()));
+            }
+            let mesh = mesh(&params)?;
+            Ok(push(&mut scene.meshes, mesh))
+        })?;
+        set_optional(index, added);
+        Ok(())
+    })
+}
+
+fn mesh(params: &luxfer_mesh_params) -> Result<Mesh> {
+    let count = params.vertex_count;
+    let positions = array(params.positions, count, params.position_stride, "mesh.positions", f32::from_ne_bytes)?;
+    let vectors = |data: *const c_void, stride, name| -> Result<Vec<Vec3>> {
+        let rows = if data.is_null() { Vec::new() } else { array(data, count, stride, name, f32::from_ne_bytes)? };
+        check_finite(rows, name)
+    };
+    let uvs = if params.uvs.is_null() {
+        Vec::new()
+    } else {
+        array(params.uvs, count, params.uv_stride, "mesh.uvs", f32::from_ne_bytes)?
+    };
+    let triangles: Vec<[u32; 3]> =
+        array(params.indices, params.triangle_count, params.index_stride, "mesh.indices", u32::from_ne_bytes)?;
+    if let Some((i, bad)) = triangles.iter().enumerate().find(|(_, t)| t.iter().any(|&v| v as usize >= count)) {
+        return Err(Error::argument(format!("triangle {i} of mesh.indices is {bad:?}; vertex_count is {count}")));
+    }
+    Ok(Mesh {
+        name: optional_text(params.name, "mesh.name")?,
+        material: params.material as usize,
+        positions: check_finite(positions, "mesh.positions")?,
+        normals: vectors(params.normals, params.normal_stride, "mesh.normals")?,
+        uvs: [check_finite::<2, Vec2>(uvs, "mesh.uvs")?, Vec::new()],
+        triangles,
+    })
+}
+
+/// `count` rows of `N` numbers of four bytes each, `stride` bytes apart.
+fn array<const N: usize, T: Copy + Default>(
+    data: *const c_void,
+    count: usize,
+    stride: usize,
+    name: &str,
+    decode: fn([u8; 4]) -> T,
+) -> Result<Vec<[T; N]>> {
+    let row = 4 * N;
+    if count == 0 {
+        return Err(Error::argument(format!("{name} has no elements; it needs at least one")));
+    }
+    let stride = if stride == 0 { row } else { stride };
+    if stride < row {
+        return Err(Error::argument(format!("the stride of {name} is {stride}; it must be 0 or at least {row} bytes")));
+    }
+    let size = stride.checked_mul(count - 1).and_then(|s| s.checked_add(row));
+    let size = size.ok_or_else(|| Error::argument(format!("{name} exceeds the address space")))?;
+    let bytes = bytes(data.cast(), size, name)?;
+    let mut rows = try_vec(count, [T::default(); N])?;
+    for (out, row) in rows.iter_mut().zip(bytes.chunks(stride)) {
+        for (value, raw) in out.iter_mut().zip(row.chunks_exact(4)) {
+            *value = decode([raw[0], raw[1], raw[2], raw[3]]);
+        }
+    }
+    Ok(rows)
+}
+
+/// Vectors of rows that are all finite.
+fn check_finite<const N: usize, V: From<[f32; N]>>(rows: Vec<[f32; N]>, name: &str) -> Result<Vec<V>> {
+    match rows.iter().position(|row| row.iter().any(|v| !v.is_finite())) {
+        Some(i) => Err(Error::argument(format!("element {i} of {name} is {:?}; it must be finite", rows[i]))),
+        None => Ok(rows.into_iter().map(V::from).collect()),
+    }
+}
+
+/// Adds a camera; *index, unless NULL, becomes its index. params may be NULL for the defaults. Any thread.
+/// LUXFER_INVALID_ARGUMENT if a value is out of range.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_scene_add_camera(
+    scene: *mut luxfer_scene,
+    params: *const luxfer_camera_params,
+    index: *mut u32,
+) -> luxfer_status {
+    enter(scene, |object| {
+        let camera = params::read(params)?.camera()?;
+        let added = object.change(0, |scene| Ok(push(&mut scene.cameras, camera)))?;
+        set_optional(index, added);
+        Ok(())
+    })
+}
+
+/// Replaces a camera. params may be NULL for the defaults. Any thread.
+/// LUXFER_NOT_FOUND if there is no such camera; LUXFER_INVALID_ARGUMENT if a value is out of range.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_scene_set_camera(
+    scene: *mut luxfer_scene,
+    index: u32,
+    params: *const luxfer_camera_params,
+) -> luxfer_status {
+    enter(scene, |object| {
+        let camera = params::read(params)?.camera()?;
+        object.change(0, |scene| {
+            let count = scene.cameras.len();
+            let place = scene.cameras.get_mut(index as usize).ok_or_else(|| missing("camera", index, count))?;
+            *place = Camera { name: std::mem::take(&mut place.name), ..camera };
+            Ok(())
+        })
+    })
+}
+
+/// Reads a camera; set params->struct_size before the call. Any thread.
+/// LUXFER_NOT_FOUND if there is no such camera.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_scene_get_camera(
+    scene: *mut luxfer_scene,
+    index: u32,
+    params: *mut luxfer_camera_params,
+) -> luxfer_status {
+    enter(scene, |object| {
+        let out = Report::new(params)?;
+        let scene = object.snapshot();
+        let camera = scene.cameras.get(index as usize).ok_or_else(|| missing("camera", index, scene.cameras.len()))?;
+        out.set(luxfer_camera_params {
+            fov_y: camera.fov_y,
+            position: camera.position.to_array(),
+            target: (camera.position + camera.forward).to_array(),
+            up: camera.up.to_array(),
+            ..luxfer_camera_params::defaults()
+        });
+        Ok(())
+    })
+}
+
+/// Appends to a list of the scene and tells the index.
+fn push<T>(list: &mut Vec<T>, item: T) -> u32 {
+    list.push(item);
+    (list.len() - 1) as u32
+}
+
+fn optional_text(pointer: *const c_char, name: &str) -> Result<String> {
+    if pointer.is_null() { Ok(String::new()) } else { Ok(text(pointer, name)?.to_string()) }
+}

@@ -1,0 +1,108 @@
+//! What all stages share: inputs that change only between jobs, one job at a time, results that appear on success.
+
+use super::context::Context;
+use super::guard::lock;
+use super::handle::{self, Owned};
+use super::job::{Job, luxfer_job};
+use super::pointer::Out;
+use crate::error::{Error, ErrorKind, Result};
+use std::sync::{Arc, Mutex};
+
+/// A stage with inputs `I` and a result `O`.
+pub(super) struct Stage<I, O> {
+    context: Arc<Context>,
+    state: Mutex<State<I, O>>,
+}
+
+struct State<I, O> {
+    busy: bool,
+    inputs: I,
+    output: Option<Arc<O>>,
+}
+
+impl<I, O> Owned for Stage<I, O> {
+    fn context(&self) -> &Arc<Context> {
+        &self.context
+    }
+}
+
+impl<I: Clone + Send + 'static, O: Send + Sync + 'static> Stage<I, O> {
+    pub(super) fn new(context: &Arc<Context>, inputs: I) -> Arc<Self> {
+        Arc::new(Self { context: context.clone(), state: Mutex::new(State { busy: false, inputs, output: None }) })
+    }
+
+    /// Changes the inputs, unless a job runs. A change that fails must leave them as they were.
+    pub(super) fn change(&self, change: impl FnOnce(&mut I) -> Result<()>) -> Result<()> {
+        let state = &mut *lock(&self.state);
+        state.check_idle()?;
+        change(&mut state.inputs)
+    }
+
+    /// The inputs as they are.
+    pub(super) fn inputs(&self) -> I {
+        lock(&self.state).inputs.clone()
+    }
+
+    /// The latest result.
+    pub(super) fn output(&self) -> Result<Arc<O>> {
+        lock(&self.state).output.clone().ok_or_else(|| {
+            Error::new(ErrorKind::NotReady, "there is no result yet; start the stage and wait for its job to succeed")
+        })
+    }
+
+    /// Replaces the result: by a job that shows how far it is, or by the caller.
+    pub(super) fn publish(&self, output: O) {
+        lock(&self.state).output = Some(Arc::new(output));
+    }
+
+    /// Starts a job on the inputs as they are; its result becomes the stage's when it succeeds.
+    pub(super) fn start(
+        self: &Arc<Self>,
+        place: *mut *mut luxfer_job,
+        work: impl FnOnce(&I, &Self, crate::job::Job) -> Result<O> + Send + 'static,
+    ) -> Result<()> {
+        let out = Out::new(place, "job")?;
+        let inputs = {
+            let state = &mut *lock(&self.state);
+            state.check_idle()?;
+            state.busy = true;
+            state.inputs.clone()
+        };
+        // Ends the claim however the job ends, also if its thread cannot be started.
+        let claim = Claim(self.clone());
+        let job = Job::start(&self.context, move |job| {
+            let output = work(&inputs, &claim.0, job)?;
+            claim.0.publish(output);
+            Ok(())
+        })?;
+        out.set(handle::give(Arc::new(job)));
+        Ok(())
+    }
+}
+
+impl<I, O> State<I, O> {
+    fn check_idle(&self) -> Result<()> {
+        if self.busy {
+            return Err(Error::new(
+                ErrorKind::InvalidOperation,
+                "a job is running on this object; wait for it or cancel it first",
+            ));
+        }
+        Ok(())
+    }
+}
+
+struct Claim<I, O>(Arc<Stage<I, O>>);
+
+impl<I, O> Drop for Claim<I, O> {
+    fn drop(&mut self) {
+        lock(&self.0.state).busy = false;
+    }
+}
+
+/// An input that a job cannot do without.
+pub(super) fn need<'a, T>(input: &'a Option<T>, setter: &str) -> Result<&'a T> {
+    input.as_ref().ok_or_else(|| {
+        Error::new(ErrorKind::InvalidOperation, format!("an input is missing: call {setter} before the start"))
+    })
+}
