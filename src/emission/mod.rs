@@ -1,10 +1,45 @@
 //! Emission: an emissive texture of any size from the unwarped lights of a photo (Lipp et al., §6).
+//!
+//! ```text
+//! unwarped photo + light + valid ─▶ exemplar ─▶ period ─▶ metadata ─▶ patches (seam) ─▶ lamps ─▶ recover ─▶ luminaires
+//! ```
+//! 1. [`exemplar`]: what may be used, its lamps (connected [`components`]), and a reduced size to work at.
+//! 2. [`period`]: the lattice the lamps lie on, from the autocorrelation of the mask ([`correlation`]).
+//! 3. [`metadata`]: confidence and signed x and y distance to the nearest light.
+//! 4. [`patches`]: quilting over colour and metadata with minimum-error [`seam`]s, held to the lattice.
+//! 5. [`lamps`]: every lamp that patches show becomes one piece again; no seam cuts it.
+//! 6. [`recover`]: full detail from the photo. 7. [`luminaires`]: the lamps as a list.
+//!
+//! A texture that fits inside the exemplar is a part of it, copied.
+//!
+//! Beyond the paper: the lattice, and lamps as pieces; image quilting alone lets regular patterns drift and cuts lamps. Not
+//! modelled: light clipped in the photo, tileable textures, and several exemplars in one texture.
 
-use crate::error::Result;
+mod components;
+mod correlation;
+mod exemplar;
+mod lamps;
+mod luminaires;
+mod metadata;
+mod patches;
+mod period;
+mod recover;
+mod seam;
+#[cfg(test)]
+mod tests;
+
+pub use period::Continuation;
+
+use crate::error::{Error, Result, check_range};
 use crate::geometry::Homography;
 use crate::image::Image;
 use crate::job::Job;
+use exemplar::{AreaSums, Exemplar};
 use glam::{DVec2, Vec3};
+use patches::{Guide, Layout, Shift};
+
+/// Most working pixels of a result; larger ones are synthesised at a coarser size.
+const MOST_WORKING_PIXELS: f64 = (1 << 26) as f64;
 
 #[derive(Clone, Copy)]
 pub struct Input<'a> {
@@ -71,10 +106,167 @@ pub struct Emission {
     /// The same of its result.
     pub metadata: Image,
     pub luminaires: Vec<Luminaire>,
+    /// How the texture goes on beyond the exemplar.
+    pub continuation: Continuation,
+    /// Correlation of the lights with themselves shifted by the lattice, the lower of both periods, in `[0, 1]`; 0 where no
+    /// period was found.
+    pub regularity: f64,
     /// Relative difference between texture and exemplar in share of lit area.
     pub error: f64,
 }
 
-pub fn run(_input: &Input, _params: &Params, _job: Job) -> Result<Emission> {
-    todo!()
+impl Params {
+    fn check(&self) -> Result<()> {
+        check_range("emission.width", self.width, 1, 65_536)?;
+        check_range("emission.height", self.height, 1, 65_536)?;
+        check_range("emission.scale", self.scale, 1e-3, 1e3)?;
+        check_range("emission.block", self.block, 0, 65_536)?;
+        check_range("emission.working_side", self.working_side, 16, 2048)?;
+        check_range("emission.metadata_weight", self.metadata_weight, 0.0, 1e3)?;
+        Ok(())
+    }
+}
+
+fn check_input(input: &Input) -> Result<()> {
+    input.unwarped.check_same_size("unwarped", input.light, "light")?;
+    input.unwarped.check_same_size("unwarped", input.valid, "valid")?;
+    for (name, image) in [("light", input.light), ("valid", input.valid)] {
+        if image.channels != 1 {
+            return Err(Error::argument(format!("{name} has {} channels; it must have 1", image.channels)));
+        }
+    }
+    if let Some((_, to_photo)) = input.photo
+        && !to_photo.0.is_finite()
+    {
+        return Err(Error::argument("the map from the unwarped image to the photo is not finite"));
+    }
+    Ok(())
+}
+
+/// Makes an emissive texture of `params.width` × `params.height` texels that continues the lights of the unwarped photo.
+///
+/// Errors: a parameter out of range, images of different size; no valid pixel; no light (`Degenerate`).
+pub fn run(input: &Input, params: &Params, job: Job) -> Result<Emission> {
+    params.check()?;
+    check_input(input)?;
+    let exemplar =
+        Exemplar::new(input.unwarped, input.light, input.valid, working_side(input, params), job.part(0.0, 0.1))?;
+    let working = &exemplar.working;
+
+    // How the pattern goes on, the size of a patch, and the metadata at that scale.
+    let inside = window(&exemplar, params)?;
+    let (continuation, regularity) = match inside {
+        Some(_) => (Continuation::Copy, 0.0),
+        None => period::find(&exemplar, job.part(0.1, 0.2))?,
+    };
+    let block = if params.block > 0 { params.block } else { default_block(&exemplar, continuation) };
+    let reach = continuation
+        .lattice()
+        .map_or(f64::INFINITY, |[a, b]| (a / working.pitch).length().max((b / working.pitch).length()) / 2.0);
+    let cap = reach.min(block as f64).max(1.0);
+    let exemplar_metadata =
+        metadata::compute(&working.confidence, &working.lit, working.width, working.height, cap, job.part(0.2, 0.25))?;
+
+    // Which part of the exemplar each part of the texture shows.
+    let size = DVec2::new(params.width as f64, params.height as f64) * params.scale;
+    let canvas = (size / working.pitch).ceil();
+    let canvas = (canvas.x as usize, canvas.y as usize);
+    let layout = match inside {
+        Some(corner) => copy(corner, canvas, working.pitch)?,
+        None => {
+            let guide = Guide { working, metadata: &exemplar_metadata, metadata_weight: params.metadata_weight };
+            patches::place(&guide, continuation, canvas, block, params.seed, job.part(0.25, 0.8))?
+        }
+    };
+
+    // Whole lamps as pieces, the rest as the patches have it; then full detail.
+    let (instances, by_pixel) = match inside {
+        Some(_) => (Vec::new(), vec![true; exemplar.whole.len()]),
+        None => {
+            let is_lattice = continuation.lattice().is_some();
+            let instances = lamps::resolve(&exemplar, &layout, is_lattice, job.part(0.8, 0.85))?;
+            (instances, exemplar.whole.iter().map(|w| !w).collect())
+        }
+    };
+    let source = recover::Source {
+        exemplar: &exemplar,
+        layout: &layout,
+        instances: &instances,
+        by_pixel: &by_pixel,
+        photo: input.photo,
+        scale: params.scale,
+    };
+    let (texture, mask) = recover::run(&source, params.width, params.height, job.part(0.85, 0.95))?;
+    let luminaires = luminaires::find(&texture, &mask, job.part(0.95, 1.0))?;
+
+    let lit = mask.data.iter().filter(|&&m| m > 0.5).count() as f64 / mask.data.len() as f64;
+    let error = (lit / exemplar.lit_share - 1.0).abs();
+    let metadata = shown_metadata(&layout, &exemplar, &exemplar_metadata)?;
+    job.report(1.0);
+    Ok(Emission { texture, mask, exemplar_metadata, metadata, luminaires, continuation, regularity, error })
+}
+
+/// Longest side of the exemplar at work: coarser than asked for where the result would have too many working pixels.
+fn working_side(input: &Input, params: &Params) -> f64 {
+    let longest = input.unwarped.width.max(input.unwarped.height) as f64;
+    let side = longest.min(params.working_side as f64);
+    let pixels = params.width as f64 * params.height as f64 * (params.scale * side / longest).powi(2);
+    side * (MOST_WORKING_PIXELS / pixels).sqrt().min(1.0)
+}
+
+/// The corner of a part of the exemplar that is the whole texture, if one is shown everywhere: that whose share of light is
+/// nearest to the exemplar's.
+fn window(exemplar: &Exemplar, params: &Params) -> Result<Option<DVec2>> {
+    let side = |n: usize| (n as f64 * params.scale - 1e-9).ceil().max(1.0);
+    let (w, h) = (side(params.width), side(params.height));
+    if w > exemplar.width as f64 || h > exemplar.height as f64 {
+        return Ok(None);
+    }
+    let (w, h) = (w as usize, h as usize);
+    let shown = AreaSums::new(|i| exemplar.shown[i], exemplar.width, exemplar.height)?;
+    let lit = AreaSums::new(|i| exemplar.components.labels[i] != 0, exemplar.width, exemplar.height)?;
+    let target = exemplar.lit_share * (w * h) as f64;
+    let mut best: Option<(f64, DVec2)> = None;
+    for y in 0..=exemplar.height - h {
+        for x in 0..=exemplar.width - w {
+            if shown.count(x, y, w, h) == w * h {
+                let off = (lit.count(x, y, w, h) as f64 - target).abs();
+                if best.is_none_or(|b| off < b.0) {
+                    best = Some((off, DVec2::new(x as f64, y as f64)));
+                }
+            }
+        }
+    }
+    Ok(best.map(|b| b.1))
+}
+
+/// The layout of a texture that is a part of the exemplar.
+fn copy(corner: DVec2, (width, height): (usize, usize), pitch: DVec2) -> Result<Layout> {
+    let working = (-corner / pitch).round();
+    let shift = Shift { working: [working.x as i32, working.y as i32], exact: -corner };
+    Ok(Layout { width, height, labels: crate::image::try_vec(width * height, 0)?, shifts: vec![shift] })
+}
+
+/// A patch that holds more than one lamp and its neighbours: one and a half times the longer period; without one, a quarter
+/// of the exemplar.
+fn default_block(exemplar: &Exemplar, continuation: Continuation) -> usize {
+    let working = &exemplar.working;
+    let quarter = working.width.min(working.height) as f64 / 4.0;
+    let side = match continuation {
+        Continuation::Lattice([a, b]) => 1.5 * (a / working.pitch).length().max((b / working.pitch).length()),
+        _ => quarter,
+    };
+    side.clamp(16.0, (2.0 * quarter).max(16.0)).round() as usize
+}
+
+/// The exemplar's metadata as the layout shows them; where it shows nothing, nothing is near.
+fn shown_metadata(layout: &Layout, exemplar: &Exemplar, metadata: &Image) -> Result<Image> {
+    let mut out = Image::new(layout.width, layout.height, 3)?;
+    for (i, pixel) in out.data.chunks_exact_mut(3).enumerate() {
+        match layout.source(i % layout.width, i / layout.width, &exemplar.working) {
+            Some(source) => pixel.copy_from_slice(&metadata.data[3 * source..3 * source + 3]),
+            None => pixel.copy_from_slice(&[0.0, 1.0, 1.0]),
+        }
+    }
+    Ok(out)
 }

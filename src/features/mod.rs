@@ -1,9 +1,44 @@
 //! Features: what segmentation knows of each pixel (Lipp et al., "Single-Exemplar Lighting Style Transfer", §4.1).
+//!
+//! ```text
+//! photo ─▶ clean ─▶ L*, a*, b* ───────────────────────────────┐
+//! depth ─▶ scale, fill holes ─┐                               ├─▶ 10 channels
+//! room  ─▶ layout (a box) ────┼─▶ inverse depth ─▶ Eq. 1 ─────┤
+//! none  ─▶ neutral prior ─────┘        └──▶ plane fits: normals┘
+//! ```
+//!
+//! | channel | meaning | range |
+//! |---|---|---|
+//! | 0-2 | CIELAB of the photo (D65), 1 = display white | L* in `[0, 100]` for display-referred photos |
+//! | 3 | screen-space depth `d_s` of Eq. 1: 0 on the near plane, 1 on the far plane | `[-far/near, far / (far - near)]` |
+//! | 4-6 | position by Eq. 1, in units of the frustum; in room axes if the room is known | finite |
+//! | 7-9 | unit normal towards the camera, in the same axes | `[-1, 1]` |
+//!
+//! Axes are x right, y down, z forward: of the camera, or of the room turned as the camera sees it ([`RoomView`]). Where
+//! a perspective is known its rays replace the paper's 90° frustum: Eq. 1 then takes bounds from the real focal length,
+//! so that planes stay planes. Only ratios of depth matter; the nearest depth (its 2 % quantile) is put on the near plane.
+//!
+//! Not modelled: lens distortion, and anything but one box for the built-in layout (furniture, beams, two-part rooms).
 
-use crate::error::Result;
+mod clean;
+mod depth;
+mod frustum;
+mod layout;
+mod normals;
+mod score;
+#[cfg(test)]
+mod tests;
+
+pub use frustum::Frustum;
+pub use layout::Layout;
+
+use crate::error::{Error, Result, check_range};
+use crate::exec;
 use crate::geometry::{Perspective, Segment};
-use crate::image::Image;
+use crate::image::{Image, colour};
 use crate::job::Job;
+use depth::Surface;
+use glam::Vec3;
 
 /// Number of feature channels: L*, a*, b*, depth, x, y, z, and the normal's x, y, z.
 pub const CHANNELS: usize = 10;
@@ -17,7 +52,7 @@ pub enum DepthKind {
     AlongRay,
 }
 
-/// A depth map of the photo's size with one channel; zero, negative or non-finite values are holes.
+/// A depth map of the photo's size with one channel, in any unit; zero, negative or non-finite values are holes.
 #[derive(Clone, Copy)]
 pub struct DepthMap<'a> {
     pub image: &'a Image,
@@ -34,7 +69,7 @@ pub struct RoomView<'a> {
 
 #[derive(Clone, Copy)]
 pub struct Input<'a> {
-    /// Linear RGB, 1 = display white.
+    /// Linear RGB, 1 = display white. Pixels that are NaN, infinite or negative are replaced and counted.
     pub photo: &'a Image,
     pub depth: Option<DepthMap<'a>>,
     pub room: Option<RoomView<'a>>,
@@ -42,27 +77,94 @@ pub struct Input<'a> {
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Params {
-    /// Near plane of Eq. 1, in its own units, > 0.
+    /// Near plane of Eq. 1, in its own units, in `[1e-3, 1e3]`.
     pub near: f32,
-    /// Far plane of Eq. 1, > near.
+    /// Far plane of Eq. 1, in `[1.001, 1e6]` times `near`.
     pub far: f32,
+    /// Half-width of the window of the normals' plane fits, in pixels, in `[1, 64]`; 0 = one per 200 columns, at least 2.
+    pub normal_radius: usize,
 }
 
 impl Default for Params {
     fn default() -> Self {
-        Self { near: 1.0, far: 10.0 }
+        Self { near: 1.0, far: 10.0, normal_radius: 0 }
     }
+}
+
+/// Where the depth came from, best first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DepthSource {
+    Caller,
+    /// The box room of [`Features::layout`].
+    Layout,
+    /// A guess that knows nothing of the photo.
+    Neutral,
 }
 
 #[derive(Clone, Debug)]
 pub struct Features {
     /// [`CHANNELS`] channels of the photo's size; finite everywhere.
     pub image: Image,
-    /// Trust in the depth of each pixel, in `[0, 1]`: 1 where the caller gave it, less for the built-in layout.
+    /// Trust in the depth of each pixel, in `[0, 1]`: 1 where the caller gave it, 0 in its holes, less than 1 for the
+    /// built-in layout, 0.05 without any knowledge.
     pub depth_confidence: Image,
+    pub depth_source: DepthSource,
+    /// The box room the depth was laid out from, if it was.
+    pub layout: Option<Layout>,
+    /// Photo pixels with a NaN, infinite or negative value: they were replaced from their neighbours.
+    pub non_finite: usize,
 }
 
-/// Computes the features of a photo.
-pub fn run(_input: &Input, _params: &Params, _job: Job) -> Result<Features> {
-    todo!()
+/// Computes the features of a photo. Fails where a depth map has no positive finite value at all.
+pub fn run(input: &Input, params: &Params, job: Job) -> Result<Features> {
+    check_range("near", params.near, 1e-3, 1e3)?;
+    check_range("far", params.far, params.near * 1.001, params.near * 1e6)?;
+    check_range("normal_radius", params.normal_radius, 0, 64)?;
+    let (width, height) = (input.photo.width, input.photo.height);
+    let perspective = input.room.map(|r| r.perspective);
+    let frustum = match perspective {
+        Some(p) => Frustum::of_camera(p, width, height, params.near, params.far)?,
+        None => Frustum::paper(params.near, params.far),
+    };
+
+    // Colour.
+    let (photo, non_finite) = clean::clean(input.photo, job.part(0.0, 0.1))?;
+    let lab = colour::image_to_lab(&photo, job.part(0.1, 0.3))?;
+
+    // Depth and normals, from the best source there is.
+    let geometry_job = job.part(0.3, 0.8);
+    let radius = if params.normal_radius > 0 { params.normal_radius } else { (width / 200).max(2) };
+    let (surface, depth_source, layout) = match (&input.depth, &input.room) {
+        (Some(map), _) => {
+            input.photo.check_same_size("photo", map.image, "depth")?;
+            (depth::from_map(map, &frustum, radius, geometry_job)?, DepthSource::Caller, None)
+        }
+        (None, Some(room)) => {
+            let layout = layout::find(room, width, height, geometry_job.part(0.0, 0.6))?;
+            let surface = layout.surface(room, width, height, &frustum, geometry_job.part(0.6, 1.0))?;
+            (surface, DepthSource::Layout, Some(layout))
+        }
+        (None, None) => (depth::neutral(width, height, &frustum, radius, geometry_job)?, DepthSource::Neutral, None),
+    };
+
+    // Positions by Eq. 1, turned into room axes.
+    let to_room = perspective.map_or(glam::Mat3::IDENTITY, |p| layout::facing_axes(p).transpose().as_mat3());
+    let mut image = Image::new(width, height, CHANNELS)?;
+    let Surface { inverse_depth, normals, confidence } = surface;
+    exec::for_rows(&mut image.data, width * CHANNELS, job.part(0.8, 1.0), |y, row| {
+        for (x, out) in row.chunks_exact_mut(CHANNELS).enumerate() {
+            let screen_depth = frustum.screen_depth(inverse_depth.pixel(x, y)[0]);
+            let ndc = frustum.ndc(x, y, width, height);
+            let position = to_room * frustum.unproject(Vec3::new(ndc.x, ndc.y, screen_depth));
+            let normal = to_room * Vec3::from_slice(normals.pixel(x, y));
+            out[..3].copy_from_slice(lab.pixel(x, y));
+            out[3] = screen_depth;
+            position.write_to_slice(&mut out[4..7]);
+            normal.write_to_slice(&mut out[7..10]);
+        }
+    })?;
+    if image.count_non_finite() > 0 {
+        return Err(Error::argument("the photo holds values beyond 1e30; scale it so that 1 is display white"));
+    }
+    Ok(Features { image, depth_confidence: confidence, depth_source, layout, non_finite })
 }

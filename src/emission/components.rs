@@ -1,0 +1,116 @@
+//! Connected components of a light mask: one lamp each.
+
+use crate::error::Result;
+use crate::image::try_vec;
+use glam::DVec2;
+
+/// A connected set of lit pixels.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Component {
+    /// Number of pixels.
+    pub area: usize,
+    /// Mean of its pixel centres.
+    pub centre: DVec2,
+    /// First and last column and row, inclusive.
+    pub min: [usize; 2],
+    pub max: [usize; 2],
+}
+
+impl Component {
+    pub fn size(&self) -> [usize; 2] {
+        [self.max[0] - self.min[0] + 1, self.max[1] - self.min[1] + 1]
+    }
+}
+
+pub struct Components {
+    /// For every pixel 0, or one more than the index of its component.
+    pub labels: Vec<u32>,
+    /// In the order of their first pixel, row by row.
+    pub list: Vec<Component>,
+}
+
+/// Labels the 8-connected components in two passes with union-find (Rosenfeld and Pfaltz 1966).
+pub fn find(width: usize, height: usize, lit: impl Fn(usize) -> bool) -> Result<Components> {
+    let mut labels = try_vec(width * height, 0u32)?;
+    let mut parent: Vec<u32> = vec![0];
+
+    // First pass: the smallest label among the four neighbours already seen; remember which labels meet.
+    for y in 0..height {
+        for x in 0..width {
+            let i = y * width + x;
+            if !lit(i) {
+                continue;
+            }
+            let mut label = 0;
+            let left = (x > 0).then(|| i - 1);
+            let above = [(x > 0, 1), (true, 0), (x + 1 < width, -1)]
+                .into_iter()
+                .filter(|&(inside, _)| inside && y > 0)
+                .map(|(_, back)| (i - width).wrapping_add_signed(-back));
+            for neighbour in left.into_iter().chain(above) {
+                let other = labels[neighbour];
+                if other != 0 {
+                    label = if label == 0 { root(&mut parent, other) } else { unite(&mut parent, label, other) };
+                }
+            }
+            if label == 0 {
+                label = parent.len() as u32;
+                parent.push(label);
+            }
+            labels[i] = label;
+        }
+    }
+
+    // Second pass: final numbers in order of appearance, and the statistics of each.
+    let mut number = vec![0u32; parent.len()];
+    let mut list: Vec<Component> = Vec::new();
+    for (i, label) in labels.iter_mut().enumerate().filter(|(_, l)| **l != 0) {
+        let (x, y) = (i % width, i / width);
+        let top = root(&mut parent, *label) as usize;
+        if number[top] == 0 {
+            list.push(Component { area: 0, centre: DVec2::ZERO, min: [x, y], max: [x, y] });
+            number[top] = list.len() as u32;
+        }
+        *label = number[top];
+        let component = &mut list[*label as usize - 1];
+        component.area += 1;
+        component.centre += DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
+        component.min = [component.min[0].min(x), component.min[1].min(y)];
+        component.max = [component.max[0].max(x), component.max[1].max(y)];
+    }
+    list.iter_mut().for_each(|c| c.centre /= c.area as f64);
+    Ok(Components { labels, list })
+}
+
+fn root(parent: &mut [u32], mut label: u32) -> u32 {
+    while parent[label as usize] != label {
+        let next = parent[parent[label as usize] as usize];
+        parent[label as usize] = next;
+        label = next;
+    }
+    label
+}
+
+fn unite(parent: &mut [u32], a: u32, b: u32) -> u32 {
+    let (a, b) = (root(parent, a), root(parent, b));
+    let (low, high) = (a.min(b), a.max(b));
+    parent[high as usize] = low;
+    low
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shapes_that_join_late_are_one_and_diagonals_touch() {
+        let rows = ["#.#..#", "#.#...", "###.#.", "...#.."];
+        let lit: Vec<bool> = rows.iter().flat_map(|r| r.bytes().map(|b| b == b'#')).collect();
+        let found = find(6, 4, |i| lit[i]).unwrap();
+        assert_eq!(found.list.len(), 2);
+        assert_eq!(found.list[0].area, 9);
+        assert_eq!((found.list[0].min, found.list[0].max), ([0, 0], [4, 3]));
+        assert_eq!(found.list[1].centre, DVec2::new(5.5, 0.5));
+        assert!(found.labels.iter().zip(&lit).all(|(&l, &on)| (l != 0) == on));
+    }
+}

@@ -1,0 +1,184 @@
+//! The exemplar: what of the unwarped image may be used, its lamps, and its reduced size for the synthesis.
+
+use super::components::{self, Component, Components};
+use crate::error::{Error, Result};
+use crate::image::{Image, pyramid, try_vec};
+use crate::job::Job;
+use glam::DVec2;
+
+/// Confidence from which a pixel is light.
+pub const LIT: f32 = 0.5;
+
+/// A lamp cut off by the border is one of the whole lamps if it is at most this much longer than the longest of them.
+const CUT_LAMP_SLACK: f64 = 1.1;
+
+pub struct Exemplar<'a> {
+    pub image: &'a Image,
+    pub width: usize,
+    pub height: usize,
+    /// Finite and on the plane.
+    pub shown: Vec<bool>,
+    pub components: Components,
+    /// Which components are lamps that end inside the shown region: these move as one piece.
+    pub whole: Vec<bool>,
+    /// Share of the shown pixels that is lit.
+    pub lit_share: f64,
+    pub working: Working,
+}
+
+/// The exemplar at the size the synthesis works at.
+pub struct Working {
+    pub width: usize,
+    pub height: usize,
+    /// Unwarped pixels per working pixel, along x and y.
+    pub pitch: DVec2,
+    /// Linear RGB in lights, 0 elsewhere (Fig. 12c), relative to the brightest light.
+    pub colour: Image,
+    /// Confidence that a pixel is light.
+    pub confidence: Vec<f32>,
+    /// Whether half of a pixel is light.
+    pub lit: Vec<bool>,
+    /// May be used: shown, and not part of a lamp that the border cuts off while whole ones are there to take its place.
+    pub usable: Vec<bool>,
+}
+
+impl<'a> Exemplar<'a> {
+    pub fn new(image: &'a Image, light: &Image, valid: &Image, working_side: f64, job: Job) -> Result<Self> {
+        let (width, height) = (image.width, image.height);
+
+        // What is shown, and what of it is light.
+        let mut shown = try_vec(width * height, false)?;
+        let pixels = image.data.chunks_exact(image.channels).zip(&light.data).zip(&valid.data);
+        for (out, ((colour, light), &valid)) in shown.iter_mut().zip(pixels) {
+            *out = valid >= 0.5 && light.is_finite() && colour.iter().all(|c| c.is_finite());
+        }
+        let total = shown.iter().filter(|&&s| s).count();
+        if total == 0 {
+            return Err(Error::degenerate(
+                "no pixel of the unwarped image is valid and finite: unwarp a part of the plane that the photo shows",
+            ));
+        }
+        let components = components::find(width, height, |i| shown[i] && light.data[i] >= LIT)?;
+        if components.list.is_empty() {
+            return Err(Error::degenerate(
+                "no light is marked: no valid pixel of `light` reaches 0.5; paint more of the lamps as light",
+            ));
+        }
+        let lit = components.list.iter().map(|c| c.area).sum::<usize>();
+
+        let whole = find_whole(&components, &shown, width, height);
+        let usable = find_usable(&components, &whole, &shown);
+        let working = Working::new(image, light, &components, &usable, working_side, job)?;
+        Ok(Self { image, width, height, shown, components, whole, lit_share: lit as f64 / total as f64, working })
+    }
+
+    pub fn lamps(&self) -> impl Iterator<Item = &Component> {
+        self.components.list.iter().zip(&self.whole).filter(|(_, whole)| **whole).map(|(c, _)| c)
+    }
+}
+
+/// A component is whole if none of its pixels lies at the border of the image or of the shown region.
+fn find_whole(components: &Components, shown: &[bool], width: usize, height: usize) -> Vec<bool> {
+    let mut whole = vec![true; components.list.len()];
+    for (i, &label) in components.labels.iter().enumerate().filter(|(_, l)| **l != 0) {
+        let (x, y) = (i % width, i / width);
+        let inside = x > 0 && y > 0 && x + 1 < width && y + 1 < height;
+        if !(inside && shown[i - 1] && shown[i + 1] && shown[i - width] && shown[i + width]) {
+            whole[label as usize - 1] = false;
+        }
+    }
+    whole
+}
+
+/// The shown pixels without the lamps that are cut off.
+fn find_usable(components: &Components, whole: &[bool], shown: &[bool]) -> Vec<bool> {
+    let side = |c: &Component| c.size()[0].max(c.size()[1]) as f64;
+    let lamps = components.list.iter().zip(whole);
+    let longest = lamps.clone().filter(|(_, w)| **w).map(|(c, _)| side(c)).fold(0.0, f64::max);
+    let cut: Vec<bool> = lamps.map(|(c, &w)| !w && side(c) <= longest * CUT_LAMP_SLACK).collect();
+    let keep = |(&s, &l): (&bool, &u32)| s && (l == 0 || !cut[l as usize - 1]);
+    shown.iter().zip(&components.labels).map(keep).collect()
+}
+
+impl Working {
+    fn new(
+        image: &Image,
+        light: &Image,
+        components: &Components,
+        usable: &[bool],
+        side: f64,
+        job: Job,
+    ) -> Result<Self> {
+        let longest = image.width.max(image.height) as f64;
+        let reduce = |n: usize| ((n as f64 * (side / longest).min(1.0)).round() as usize).max(1);
+        let (width, height) = (reduce(image.width), reduce(image.height));
+        let pitch = DVec2::new(image.width as f64 / width as f64, image.height as f64 / height as f64);
+
+        // Average colour, confidence, light and validity together; what is not usable counts for nothing.
+        let mut full = Image::new(image.width, image.height, 6)?;
+        let mut brightest = 0f32;
+        for (i, pixel) in full.data.chunks_exact_mut(6).enumerate().filter(|(i, _)| usable[*i]) {
+            let colour = image.rgb(i % image.width, i / image.width);
+            if components.labels[i] != 0 {
+                pixel[..3].copy_from_slice(&colour.to_array());
+                brightest = brightest.max(colour.max_element());
+                pixel[4] = 1.0;
+            }
+            pixel[3] = light.data[i].clamp(0.0, 1.0);
+            pixel[5] = 1.0;
+        }
+        let reduced = pyramid::resize(&full, width, height, job)?;
+        let scale = if brightest > 0.0 { 1.0 / brightest } else { 0.0 };
+        let mut colour = Image::new(width, height, 3)?;
+        for (out, pixel) in colour.data.chunks_exact_mut(3).zip(reduced.data.chunks_exact(6)) {
+            out.iter_mut().zip(pixel).for_each(|(o, p)| *o = p * scale);
+        }
+        let channel = |c: usize| reduced.data.iter().skip(c).step_by(6);
+        let confidence = channel(3).copied().collect();
+        let lit = channel(4).map(|&v| v >= 0.5).collect();
+
+        // A working pixel is usable if all of it is; if that leaves nothing, if any of it is.
+        let mut whole: Vec<bool> = channel(5).map(|&v| v > 1.0 - 1e-4).collect();
+        if !whole.contains(&true) {
+            whole = channel(5).map(|&v| v > 0.0).collect();
+        }
+        Ok(Self { width, height, pitch, colour, confidence, lit, usable: whole })
+    }
+
+    /// The smallest box `[x0, y0, x1, y1)` that holds every usable pixel.
+    pub fn usable_box(&self) -> [usize; 4] {
+        let mut bounds = [self.width, self.height, 0, 0];
+        for (i, _) in self.usable.iter().enumerate().filter(|(_, u)| **u) {
+            let (x, y) = (i % self.width, i / self.width);
+            bounds = [bounds[0].min(x), bounds[1].min(y), bounds[2].max(x + 1), bounds[3].max(y + 1)];
+        }
+        bounds
+    }
+}
+
+/// Sums over rectangles of a mask in constant time (Crow 1984).
+pub struct AreaSums {
+    width: usize,
+    sums: Vec<u32>,
+}
+
+impl AreaSums {
+    pub fn new(mask: impl Fn(usize) -> bool, width: usize, height: usize) -> Result<Self> {
+        let stride = width + 1;
+        let mut sums = try_vec(stride * (height + 1), 0u32)?;
+        for y in 0..height {
+            let mut row = 0;
+            for x in 0..width {
+                row += u32::from(mask(y * width + x));
+                sums[(y + 1) * stride + x + 1] = sums[y * stride + x + 1] + row;
+            }
+        }
+        Ok(Self { width: stride, sums })
+    }
+
+    /// The number of set pixels in `[x, x + w) × [y, y + h)`.
+    pub fn count(&self, x: usize, y: usize, w: usize, h: usize) -> usize {
+        let at = |x: usize, y: usize| self.sums[y * self.width + x];
+        (at(x + w, y + h) + at(x, y) - at(x + w, y) - at(x, y + h)) as usize
+    }
+}

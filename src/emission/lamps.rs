@@ -1,0 +1,102 @@
+//! From patches to lamps: which lamps of the exemplar the texture shows, each as one piece.
+//!
+//! The texture is black off the lights (Fig. 12c), so all that a patch contributes is its lamps. A seam that must pass a
+//! lamp, because the lamp is wider than the overlap, would leave part of it; instead a lamp is shown whole where most of it
+//! lies in patches of its own shift, and not at all where less does or where another lamp took the place.
+
+use super::exemplar::Exemplar;
+use super::patches::Layout;
+use crate::error::Result;
+use crate::image::try_vec;
+use crate::job::Job;
+use glam::DVec2;
+use std::collections::BTreeMap;
+
+/// Share of a lamp that patches of its shift must show.
+const LEAST_SHARE: f64 = 0.3;
+/// Share of a lamp's pixels that others may hold on a lattice, where rounding is all that can make them meet.
+const LATTICE_SLACK: f64 = 0.2;
+
+/// A lamp of the exemplar in the texture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Instance {
+    /// Index of its component in the exemplar.
+    pub component: usize,
+    /// Where it is shown less where it is taken from, in unwarped pixels.
+    pub shift: DVec2,
+}
+
+/// The lamps shown by a layout, best supported first.
+pub fn resolve(exemplar: &Exemplar, layout: &Layout, is_lattice: bool, job: Job) -> Result<Vec<Instance>> {
+    let footprints = footprints(exemplar);
+    let working = &exemplar.working;
+    let mut lamp_at = try_vec(working.width * working.height, u32::MAX)?;
+    for (k, pixels) in footprints.iter().enumerate() {
+        pixels.iter().for_each(|&[x, y]| lamp_at[y as usize * working.width + x as usize] = k as u32);
+    }
+
+    // How many pixels of each lamp are shown at each shift.
+    let mut shown: BTreeMap<(u32, u32), usize> = BTreeMap::new();
+    for y in 0..layout.height {
+        job.check()?;
+        for x in 0..layout.width {
+            if let Some(source) = layout.source(x, y, working).filter(|&s| lamp_at[s] != u32::MAX) {
+                *shown.entry((lamp_at[source], layout.labels[y * layout.width + x])).or_default() += 1;
+            }
+        }
+    }
+
+    // Against how many there are within the texture.
+    let place = |k: u32, label: u32| {
+        let [dx, dy] = layout.shifts[label as usize].working;
+        footprints[k as usize].iter().filter_map(move |&[x, y]| {
+            let (x, y) = (usize::try_from(x + dx).ok()?, usize::try_from(y + dy).ok()?);
+            (x < layout.width && y < layout.height).then_some((x, y))
+        })
+    };
+    let mut claims: Vec<(f64, u32, u32)> =
+        shown.iter().map(|(&(k, label), &n)| (n as f64 / place(k, label).count() as f64, k, label)).collect();
+    claims.retain(|c| c.0 >= LEAST_SHARE);
+    claims.sort_by(|a, b| b.0.total_cmp(&a.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+
+    // Best first; who comes late finds the place taken. Free lamps keep a pixel between them.
+    let mut taken = try_vec(layout.width * layout.height, false)?;
+    let mut instances = Vec::new();
+    let margin = usize::from(!is_lattice);
+    for (_, k, label) in claims {
+        let near = |x: usize, y: usize| {
+            let columns = x.saturating_sub(margin)..(x + margin + 1).min(layout.width);
+            (y.saturating_sub(margin)..(y + margin + 1).min(layout.height))
+                .any(|v| columns.clone().any(|u| taken[v * layout.width + u]))
+        };
+        let clashes = place(k, label).filter(|&(x, y)| near(x, y)).count();
+        let allowed = if is_lattice { LATTICE_SLACK * place(k, label).count() as f64 } else { 0.0 };
+        if clashes as f64 <= allowed {
+            place(k, label).for_each(|(x, y)| taken[y * layout.width + x] = true);
+            instances.push(Instance { component: k as usize, shift: layout.shifts[label as usize].exact });
+        }
+    }
+    Ok(instances)
+}
+
+/// The working pixels of each whole lamp: those whose centre it covers, or at least that of its own centre.
+fn footprints(exemplar: &Exemplar) -> Vec<Vec<[i32; 2]>> {
+    let working = &exemplar.working;
+    let mut footprints = vec![Vec::new(); exemplar.components.list.len()];
+    for y in 0..working.height {
+        for x in 0..working.width {
+            let centre = (DVec2::new(x as f64, y as f64) + 0.5) * working.pitch;
+            let label = exemplar.components.labels[centre.y as usize * exemplar.width + centre.x as usize] as usize;
+            if label != 0 && exemplar.whole[label - 1] {
+                footprints[label - 1].push([x as i32, y as i32]);
+            }
+        }
+    }
+    for ((pixels, lamp), &whole) in footprints.iter_mut().zip(&exemplar.components.list).zip(&exemplar.whole) {
+        if whole && pixels.is_empty() {
+            let p = lamp.centre / working.pitch;
+            pixels.push([(p.x as i32).min(working.width as i32 - 1), (p.y as i32).min(working.height as i32 - 1)]);
+        }
+    }
+    footprints
+}

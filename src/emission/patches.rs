@@ -1,0 +1,356 @@
+//! Iterative patch placement: image quilting (Efros and Freeman 2001) over colour and metadata (Lipp et al., §6).
+//!
+//! Blocks are filled in scanline order. A patch is a shift of the exemplar; of the shifts that cover a block best, one is
+//! drawn among those that agree best with what is already there. What a patch cannot show, because the photo did not, is
+//! filled by further patches of the same block. On a lattice only shifts by lattice vectors are tried: whatever is chosen,
+//! the lamps stay in phase, and errors do not add up from patch to patch because every shift is measured from the origin.
+
+use super::exemplar::{AreaSums, Working};
+use super::period::Continuation;
+use super::seam;
+use crate::error::Result;
+use crate::exec;
+use crate::image::{Image, try_vec};
+use crate::job::Job;
+use crate::rng::{self, Rng};
+use glam::{DMat2, DVec2};
+
+/// The label of a pixel that no patch shows.
+pub const NONE: u32 = u32::MAX;
+
+/// Candidates per patch where any shift is allowed, and the most where the lattice allows too many.
+const FREE_CANDIDATES: usize = 192;
+const LATTICE_CANDIDATES: usize = 384;
+/// Patches within this factor of the best (0.1 in the original), or this close to it, are equally good.
+const TOLERANCE: (f32, f32) = (1.1, 1e-6);
+/// Patches that cover at least this share of what the best would cover compete by their error.
+const ENOUGH_COVERAGE: f64 = 0.95;
+/// Added to the cost of a seam on a lamp: more than any path around it.
+const LAMP_COST: f32 = 1e4;
+
+/// A shift of the exemplar: where it is shown, less where it is taken from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shift {
+    /// In working pixels.
+    pub working: [i32; 2],
+    /// The same before rounding, in unwarped pixels.
+    pub exact: DVec2,
+}
+
+/// Which shift of the exemplar each working pixel of the result shows.
+pub struct Layout {
+    pub width: usize,
+    pub height: usize,
+    /// Indices into `shifts`, or [`NONE`].
+    pub labels: Vec<u32>,
+    pub shifts: Vec<Shift>,
+}
+
+impl Layout {
+    /// The exemplar's working pixel shown at a pixel of the result, if any.
+    pub fn source(&self, x: usize, y: usize, working: &Working) -> Option<usize> {
+        let shift = self.shifts.get(self.labels[y * self.width + x] as usize)?.working;
+        index(working, x as i32 - shift[0], y as i32 - shift[1])
+    }
+}
+
+/// Colour and metadata of the exemplar, and their weights.
+pub struct Guide<'a> {
+    pub working: &'a Working,
+    pub metadata: &'a Image,
+    pub metadata_weight: f32,
+}
+
+impl Guide<'_> {
+    fn features(&self) -> Vec<[f32; 6]> {
+        let pixels = self.working.colour.data.chunks_exact(3).zip(self.metadata.data.chunks_exact(3));
+        pixels.map(|(c, m)| [c[0], c[1], c[2], m[0], m[1], m[2]]).collect()
+    }
+
+    /// Squared difference of two pixels. Distances wrap: one cap to the left of a lamp is as far as one cap to its right.
+    fn difference(&self, a: &[f32; 6], b: &[f32; 6]) -> f32 {
+        let square = |c: usize| (a[c] - b[c]) * (a[c] - b[c]);
+        let wrapped = |c: usize| {
+            let d = (a[c] - b[c]).abs();
+            let d = d.min(2.0 - d);
+            d * d
+        };
+        (square(0) + square(1) + square(2)) / 3.0 + self.metadata_weight * (square(3) + wrapped(4) + wrapped(5))
+    }
+}
+
+struct Rect {
+    x: usize,
+    y: usize,
+    w: usize,
+    h: usize,
+}
+
+struct Quilt<'a> {
+    guide: &'a Guide<'a>,
+    features: Vec<[f32; 6]>,
+    layout: Layout,
+    continuation: Continuation,
+    /// The box of the usable pixels, and the corners at which a whole block of them can be taken.
+    bounds: [usize; 4],
+    admissible: Vec<u32>,
+    seed: u64,
+}
+
+/// Fills `width` × `height` working pixels with patches of side `block`.
+pub fn place(
+    guide: &Guide,
+    continuation: Continuation,
+    (width, height): (usize, usize),
+    block: usize,
+    seed: u64,
+    job: Job,
+) -> Result<Layout> {
+    let working = guide.working;
+    let bounds = working.usable_box();
+    let (mut w, mut h) = (block.min(bounds[2] - bounds[0]).min(width), block.min(bounds[3] - bounds[1]).min(height));
+
+    // Where patches are free, a whole block must be found somewhere: shrink it until there is one.
+    let mut admissible = Vec::new();
+    if continuation.lattice().is_none() {
+        let sums = AreaSums::new(|i| working.usable[i], working.width, working.height)?;
+        loop {
+            for y in bounds[1]..=bounds[3] - h {
+                let fits = |x: &usize| sums.count(*x, y, w, h) == w * h;
+                admissible.extend((bounds[0]..=bounds[2] - w).filter(fits).map(|x| (y * working.width + x) as u32));
+            }
+            if !admissible.is_empty() {
+                break;
+            }
+            (w, h) = ((w * 3 / 4).max(1), (h * 3 / 4).max(1));
+        }
+    }
+
+    let layout = Layout { width, height, labels: try_vec(width * height, NONE)?, shifts: Vec::new() };
+    let mut quilt = Quilt { guide, features: guide.features(), layout, continuation, bounds, admissible, seed };
+    let overlap = [w / 3, h / 3];
+    for y in (0..height).step_by(h - overlap[1]) {
+        for x in (0..width).step_by(w - overlap[0]) {
+            job.check()?;
+            let rect = Rect { x, y, w: w.min(width - x), h: h.min(height - y) };
+            quilt.fill(&rect, overlap, job.part(0.0, 0.0))?;
+        }
+        job.report((y + 1) as f64 / height as f64);
+    }
+    Ok(quilt.layout)
+}
+
+impl Quilt<'_> {
+    /// Places patches until nothing of the block is empty that any of them could show.
+    fn fill(&mut self, rect: &Rect, overlap: [usize; 2], job: Job) -> Result<()> {
+        let mut first = true;
+        loop {
+            let known = self.known(rect);
+            let empty: Vec<u32> = (0..known.len() as u32).filter(|&i| known[i as usize].is_none()).collect();
+            if empty.is_empty() {
+                return Ok(());
+            }
+            let candidates = self.candidates(rect);
+            let mut scored = self.score(rect, &known, &empty, candidates, job)?;
+            let Some(mut chosen) = self.choose(rect, &scored) else { return Ok(()) };
+            if !self.admissible.is_empty() {
+                chosen = self.improve(rect, &known, &empty, chosen, &mut scored, job)?;
+            }
+            self.paste(rect, &known, chosen, first.then_some(overlap));
+            first = false;
+        }
+    }
+
+    /// The exemplar pixel each pixel of a block already shows.
+    fn known(&self, rect: &Rect) -> Vec<Option<u32>> {
+        let pixel = |i: usize| self.layout.source(rect.x + i % rect.w, rect.y + i / rect.w, self.guide.working);
+        (0..rect.w * rect.h).map(|i| pixel(i).map(|s| s as u32)).collect()
+    }
+
+    /// The shifts worth trying: those of the neighbours, which continue what is there, and those the pattern allows.
+    fn candidates(&self, rect: &Rect) -> Vec<Shift> {
+        let mut shifts: Vec<Shift> = Vec::new();
+        let mut neighbour = |x: usize, y: usize| {
+            if let Some(&shift) = self.layout.shifts.get(self.layout.labels[y * self.layout.width + x] as usize)
+                && !shifts.contains(&shift)
+            {
+                shifts.push(shift);
+            }
+        };
+        let right = rect.x + rect.w - 1;
+        for (x, y) in [(rect.x, rect.y), (right, rect.y), (rect.x, rect.y + rect.h - 1)] {
+            neighbour(x, y);
+            neighbour(x.saturating_sub(1), y.saturating_sub(1));
+        }
+        let pitch = self.guide.working.pitch;
+        match self.continuation.lattice() {
+            Some(basis) => shifts.extend(self.lattice_shifts(rect, basis)),
+            None => {
+                let mut rng = Rng::new(self.seed, &[rect.x as u64, rect.y as u64]);
+                let width = self.guide.working.width;
+                shifts.extend((0..FREE_CANDIDATES).map(|_| {
+                    let corner = self.admissible[rng.below(self.admissible.len())] as usize;
+                    let working = [rect.x as i32 - (corner % width) as i32, rect.y as i32 - (corner / width) as i32];
+                    free_shift(working, pitch)
+                }));
+            }
+        }
+        shifts
+    }
+
+    /// Lattice vectors that bring some usable pixel into a block.
+    fn lattice_shifts(&self, rect: &Rect, basis: [DVec2; 2]) -> Vec<Shift> {
+        let pitch = self.guide.working.pitch;
+        let point = |x: usize, y: usize| DVec2::new(x as f64, y as f64);
+        let low = (point(rect.x, rect.y) - point(self.bounds[2], self.bounds[3])) * pitch;
+        let high = (point(rect.x + rect.w, rect.y + rect.h) - point(self.bounds[0], self.bounds[1])) * pitch;
+
+        // The cells of the lattice that the box of such shifts touches.
+        let inverse = DMat2::from_cols(basis[0], basis[1]).inverse();
+        let corners = [low, DVec2::new(high.x, low.y), DVec2::new(low.x, high.y), high].map(|c| inverse * c);
+        let first = corners.iter().fold(DVec2::INFINITY, |m, c| m.min(*c)).ceil();
+        let last = corners.iter().fold(DVec2::NEG_INFINITY, |m, c| m.max(*c)).floor();
+        let columns = (last.x - first.x).max(-1.0) as u64 + 1;
+        let count = columns * ((last.y - first.y).max(-1.0) as u64 + 1);
+        let keep = |i: u64| {
+            count <= LATTICE_CANDIDATES as u64
+                || rng::hash(self.seed, &[rect.x as u64, rect.y as u64, i]) % count < LATTICE_CANDIDATES as u64
+        };
+        (0..count)
+            .filter(|&i| keep(i))
+            .map(|i| {
+                let exact = basis[0] * (first.x + (i % columns) as f64) + basis[1] * (first.y + (i / columns) as f64);
+                let working = (exact / pitch).round();
+                Shift { working: [working.x as i32, working.y as i32], exact }
+            })
+            .filter(|s| s.exact.cmpge(low).all() && s.exact.cmple(high).all())
+            .collect()
+    }
+
+    /// For each shift: how many empty pixels it would fill, and its mean squared difference from the known ones.
+    fn score(
+        &self,
+        rect: &Rect,
+        known: &[Option<u32>],
+        empty: &[u32],
+        shifts: Vec<Shift>,
+        job: Job,
+    ) -> Result<Vec<(Shift, usize, f32)>> {
+        let working = self.guide.working;
+        let scores = exec::map(shifts.len(), job, |n| {
+            let shift = shifts[n].working;
+            let source = |i: usize| {
+                let (x, y) = ((rect.x + i % rect.w) as i32, (rect.y + i / rect.w) as i32);
+                index(working, x - shift[0], y - shift[1]).filter(|&s| working.usable[s])
+            };
+            let filled = empty.iter().filter(|&&i| source(i as usize).is_some()).count();
+            let (mut sum, mut count) = (0f64, 0u32);
+            for (i, old) in known.iter().enumerate() {
+                if let Some(old) = old
+                    && let Some(new) = source(i)
+                {
+                    sum += f64::from(self.guide.difference(&self.features[*old as usize], &self.features[new]));
+                    count += 1;
+                }
+            }
+            (filled, if count > 0 { (sum / f64::from(count)) as f32 } else { 0.0 })
+        })?;
+        Ok(shifts.into_iter().zip(scores).map(|(s, (filled, error))| (s, filled, error)).collect())
+    }
+
+    /// Draws one of the shifts that are as good as the best.
+    fn choose(&self, rect: &Rect, scored: &[(Shift, usize, f32)]) -> Option<(Shift, usize, f32)> {
+        let most = scored.iter().map(|s| s.1).max().filter(|&most| most > 0)?;
+        let covers = |s: &&(Shift, usize, f32)| s.1 as f64 >= ENOUGH_COVERAGE * most as f64;
+        let least = scored.iter().filter(covers).map(|s| s.2).fold(f32::INFINITY, f32::min);
+        let equal: Vec<_> = scored.iter().filter(covers).filter(|s| s.2 <= least * TOLERANCE.0 + TOLERANCE.1).collect();
+        let pick = Rng::new(self.seed, &[rect.x as u64, rect.y as u64, 1]).below(equal.len());
+        equal.get(pick).map(|s| **s)
+    }
+
+    /// Moves a free patch to the best place in its neighbourhood, by ever smaller steps.
+    fn improve(
+        &self,
+        rect: &Rect,
+        known: &[Option<u32>],
+        empty: &[u32],
+        start: (Shift, usize, f32),
+        scored: &mut Vec<(Shift, usize, f32)>,
+        job: Job,
+    ) -> Result<(Shift, usize, f32)> {
+        let mut best = start;
+        for step in [4, 2, 1] {
+            let ring = [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)];
+            let near = ring.map(|(dx, dy)| [best.0.working[0] + dx * step, best.0.working[1] + dy * step]);
+            let shifts = near.iter().map(|&w| free_shift(w, self.guide.working.pitch)).collect();
+            *scored = self.score(rect, known, empty, shifts, job)?;
+            for s in scored.iter().filter(|s| s.1 >= start.1) {
+                if s.2 < best.2 {
+                    best = *s;
+                }
+            }
+        }
+        Ok(best)
+    }
+
+    /// Shows a shift in the empty pixels of a block and, with an overlap, up to the seams in the known ones.
+    fn paste(
+        &mut self,
+        rect: &Rect,
+        known: &[Option<u32>],
+        (shift, ..): (Shift, usize, f32),
+        overlap: Option<[usize; 2]>,
+    ) {
+        let working = self.guide.working;
+        let source = |x: usize, y: usize| {
+            index(working, (rect.x + x) as i32 - shift.working[0], (rect.y + y) as i32 - shift.working[1])
+                .filter(|&s| working.usable[s])
+        };
+        let cost = |x: usize, y: usize| match (known[y * rect.w + x].map(|k| k as usize), source(x, y)) {
+            (Some(old), Some(new)) => {
+                let lamp = if working.lit[old] || working.lit[new] { LAMP_COST } else { 0.0 };
+                self.guide.difference(&self.features[old], &self.features[new]) + lamp
+            }
+            _ => 0.0,
+        };
+
+        // Where the new patch begins: the column in each row, and the row in each column.
+        let mut from_column = vec![0; rect.h];
+        let mut from_row = vec![0; rect.w];
+        if let Some([ow, oh]) = overlap {
+            if rect.x > 0 {
+                let w = ow.min(rect.w);
+                let strip: Vec<f32> = (0..w * rect.h).map(|i| cost(i % w, i / w)).collect();
+                from_column = seam::vertical_cut(&strip, w, rect.h);
+            }
+            if rect.y > 0 {
+                let h = oh.min(rect.h);
+                let strip: Vec<f32> = (0..rect.w * h).map(|i| cost(i % rect.w, i / rect.w)).collect();
+                from_row = seam::horizontal_cut(&strip, rect.w, h);
+            }
+        }
+        let label = match self.layout.shifts.iter().rposition(|s| *s == shift) {
+            Some(index) => index as u32,
+            None => {
+                self.layout.shifts.push(shift);
+                self.layout.shifts.len() as u32 - 1
+            }
+        };
+        for (i, old) in known.iter().enumerate() {
+            let (x, y) = (i % rect.w, i / rect.w);
+            let beyond = overlap.is_some() && x >= from_column[y] && y >= from_row[x];
+            if (old.is_none() || beyond) && source(x, y).is_some() {
+                self.layout.labels[(rect.y + y) * self.layout.width + rect.x + x] = label;
+            }
+        }
+    }
+}
+
+fn free_shift(working: [i32; 2], pitch: DVec2) -> Shift {
+    Shift { working, exact: DVec2::new(f64::from(working[0]), f64::from(working[1])) * pitch }
+}
+
+fn index(working: &Working, x: i32, y: i32) -> Option<usize> {
+    let (x, y) = (usize::try_from(x).ok()?, usize::try_from(y).ok()?);
+    (x < working.width && y < working.height).then(|| y * working.width + x)
+}

@@ -1,0 +1,185 @@
+//! Regularity: the lattice the lamps lie on, from the autocorrelation of their mask.
+//!
+//! Where a shift of the mask onto itself is nearly perfect, lamps repeat by it. The two shortest such shifts are the
+//! lattice (rectangular, hexagonal or skewed; missing lamps lower the correlation by their share only), and every patch is
+//! held to its phase. One repeat alone, or a handful of lamps, is continued by taking the exemplar as the other period:
+//! nothing in it says how a design goes on beside itself. Many lamps without any repeat are left free.
+
+use super::correlation::Autocorrelation;
+use super::exemplar::Exemplar;
+use crate::error::Result;
+use crate::image::{Image, pyramid};
+use crate::job::Job;
+use glam::{DMat2, DVec2};
+
+/// Correlation from which a shift may be a period.
+const LEAST_CORRELATION: f32 = 0.6;
+/// How far below the best a period's correlation may lie: lower ones match lamps of unequal kind.
+const RELATIVE_CORRELATION: f32 = 0.85;
+/// Correlation at all shifts along an axis from which the pattern does not change along it.
+const UNCHANGING: f32 = 0.95;
+/// Share of the valid pixels that must overlap for a correlation to count.
+const LEAST_OVERLAP: f32 = 0.2;
+/// Longest side of the image that is correlated.
+const SIDE: usize = 160;
+/// Fewer lamps than this show no law of their own: the exemplar repeats as a whole.
+const FEW_LAMPS: usize = 6;
+
+/// How the texture goes on beyond the exemplar.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Continuation {
+    /// The texture is a part of the exemplar.
+    Copy,
+    /// Two periods were found in the lights, in unwarped pixels.
+    Lattice([DVec2; 2]),
+    /// One period was found (the first); the extent of the exemplar serves as the second.
+    Row([DVec2; 2]),
+    /// Too few lights to have a law: the extent of the exemplar serves as both periods.
+    Tile([DVec2; 2]),
+    /// Many lights without a period: patches go anywhere.
+    Free,
+}
+
+impl Continuation {
+    /// The lattice on which patches must stay, if any.
+    pub fn lattice(&self) -> Option<[DVec2; 2]> {
+        match *self {
+            Self::Lattice(basis) | Self::Row(basis) | Self::Tile(basis) => Some(basis),
+            Self::Copy | Self::Free => None,
+        }
+    }
+}
+
+/// Finds how the lights of the exemplar repeat, and how well: the lower correlation of its periods, 0 if there are none.
+pub fn find(exemplar: &Exemplar, job: Job) -> Result<(Continuation, f64)> {
+    let working = &exemplar.working;
+    let bounds = working.usable_box();
+    let extent = DVec2::new((bounds[2] - bounds[0]) as f64, (bounds[3] - bounds[1]) as f64) * working.pitch;
+
+    // The lights at the size that is correlated.
+    let longest = working.width.max(working.height);
+    let reduce = |n: usize| (n * SIDE.min(longest)).div_ceil(longest).max(1);
+    let (width, height) = (reduce(working.width), reduce(working.height));
+    let mut mask = Image::new(working.width, working.height, 2)?;
+    for (i, pixel) in mask.data.chunks_exact_mut(2).enumerate().filter(|(i, _)| working.usable[*i]) {
+        pixel.copy_from_slice(&[f32::from(working.lit[i]), 1.0]);
+    }
+    let mask = pyramid::resize(&mask, width, height, job.part(0.0, 0.2))?;
+    let valid: Vec<bool> = mask.data.chunks_exact(2).map(|p| p[1] > 0.5).collect();
+    let values: Vec<f32> = mask.data.chunks_exact(2).map(|p| if p[1] > 0.5 { p[0] / p[1] } else { 0.0 }).collect();
+    let correlation = Autocorrelation::new(&values, &valid, width, height, job.part(0.2, 1.0))?;
+    let least = LEAST_OVERLAP * valid.iter().filter(|&&v| v).count() as f32;
+    let to_unwarped = DVec2::new(exemplar.width as f64 / width as f64, exemplar.height as f64 / height as f64);
+
+    // Shifts at which the lights fall onto themselves, shortest first.
+    let mut periods: Vec<(DVec2, f64)> = Vec::new();
+    for axis in [DVec2::X, DVec2::Y] {
+        if is_unchanging(&correlation, axis, least) {
+            periods.push((axis, 1.0));
+        }
+    }
+    let mut repeats = peaks(&correlation, width, height, least);
+    repeats.iter_mut().for_each(|(shift, _)| *shift *= to_unwarped);
+    let best = repeats.iter().map(|r| r.1).fold(0.0, f32::max);
+    repeats.retain(|r| r.1 >= LEAST_CORRELATION.max(RELATIVE_CORRELATION * best));
+    repeats.sort_by(|a, b| a.0.length_squared().total_cmp(&b.0.length_squared()));
+    for (shift, value) in repeats {
+        let parallel = |p: &(DVec2, f64)| p.0.normalize().perp_dot(shift.normalize()).abs() < 0.3;
+        if periods.len() < 2 && !periods.iter().any(parallel) {
+            periods.push((shift, f64::from(value)));
+        }
+    }
+    let goodness = periods.iter().map(|p| p.1).fold(f64::INFINITY, f64::min);
+
+    let few = exemplar.lamps().count() < FEW_LAMPS;
+    Ok(match periods[..] {
+        [(a, _), (b, _)] => (Continuation::Lattice(refine(exemplar, [a, b], 2)), goodness),
+        [(a, _)] => {
+            let across = if a.x.abs() > a.y.abs() { DVec2::Y * extent } else { DVec2::X * extent };
+            (Continuation::Row(refine(exemplar, [a, across], 1)), goodness)
+        }
+        _ if few => (Continuation::Tile([DVec2::X * extent, DVec2::Y * extent]), 0.0),
+        _ => (Continuation::Free, 0.0),
+    })
+}
+
+/// Whether the lights stay the same under any shift along an axis, up to half of the image.
+fn is_unchanging(correlation: &Autocorrelation, axis: DVec2, least: f32) -> bool {
+    let (dx, dy) = (axis.x as isize, axis.y as isize);
+    let values: Vec<f32> = (1..).map_while(|i| correlation.at(dx * i, dy * i, 2.5 * least)).collect();
+    !values.is_empty() && values.iter().all(|&v| v >= UNCHANGING)
+}
+
+/// Local maxima of the correlation in the half-plane of shifts, to a fraction of a pixel.
+fn peaks(correlation: &Autocorrelation, width: usize, height: usize, least: f32) -> Vec<(DVec2, f32)> {
+    let (w, h) = (width as isize, height as isize);
+    let mut found = Vec::new();
+    for y in 0..h {
+        for x in (1 - w)..w {
+            if y == 0 && x <= 0 {
+                continue;
+            }
+            let Some(value) = correlation.at(x, y, least).filter(|&v| v >= LEAST_CORRELATION) else { continue };
+            let at = |dx: isize, dy: isize| correlation.at(x + dx, y + dy, 1.0).unwrap_or(-1.0);
+            let ring = [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)];
+            // Of equal neighbours the first in reading order is the peak.
+            let is_peak = ring.iter().enumerate().all(|(i, &(dx, dy))| {
+                let other = at(dx, dy);
+                if i < 4 { value > other } else { value >= other }
+            });
+            if is_peak {
+                // The vertex of the parabola through three values.
+                let vertex = |low: f32, high: f32| {
+                    let curvature = f64::from(low + high - 2.0 * value);
+                    if curvature < -1e-9 { (f64::from(low - high) / (2.0 * curvature)).clamp(-0.5, 0.5) } else { 0.0 }
+                };
+                let offset = DVec2::new(vertex(at(-1, 0), at(1, 0)), vertex(at(0, -1), at(0, 1)));
+                found.push((DVec2::new(x as f64, y as f64) + offset, value));
+            }
+        }
+    }
+    found
+}
+
+/// Fits the first `count` basis vectors to the centres of like lamps: every pair whose difference is near `i a + j b`
+/// votes for both vectors by least squares, near pairs first, so that the long ones are counted by an exact ruler.
+fn refine(exemplar: &Exemplar, basis: [DVec2; 2], count: usize) -> [DVec2; 2] {
+    const MOST: usize = 400;
+    let all: Vec<_> = exemplar.lamps().collect();
+    let lamps: Vec<_> = all.iter().step_by(all.len().div_ceil(MOST).max(1)).collect();
+    let mut basis = basis;
+    for reach in [1.5, 3.5, f64::INFINITY] {
+        let inverse = DMat2::from_cols(basis[0], basis[1]).inverse();
+        if !inverse.is_finite() {
+            break;
+        }
+        // Normal equations of difference = [a b] (i, j).
+        let (mut gram, mut sums) = (DMat2::ZERO, DMat2::ZERO);
+        let mut votes = 0;
+        for (n, p) in lamps.iter().enumerate() {
+            for q in &lamps[n + 1..] {
+                let alike = (0..2).all(|k| p.size()[k].abs_diff(q.size()[k]) <= 2 + p.size()[k] / 8);
+                let difference = q.centre - p.centre;
+                let cell = inverse * difference;
+                let step = DVec2::new(cell.x.round(), if count == 2 { cell.y.round() } else { 0.0 });
+                let off = (difference - basis[0] * step.x - basis[1] * step.y).length();
+                let near = step.x.abs().max(step.y.abs()) <= reach;
+                if alike && near && step != DVec2::ZERO && off < 0.12 * basis[0].length() {
+                    gram += DMat2::from_cols(step * step.x, step * step.y);
+                    sums += DMat2::from_cols(difference * step.x, difference * step.y);
+                    votes += 1;
+                }
+            }
+        }
+        if votes == 0 {
+            continue;
+        }
+        if count == 1 {
+            basis[0] = sums.x_axis / gram.x_axis.x;
+        } else if gram.determinant() > 1e-6 * gram.x_axis.x * gram.y_axis.y {
+            let fitted = sums * gram.inverse();
+            basis = [fitted.x_axis, fitted.y_axis];
+        }
+    }
+    basis
+}

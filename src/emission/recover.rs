@@ -1,0 +1,183 @@
+//! Full detail: every lamp and every patch is copied again from the finest source there is (Lipp et al., §6, Fig. 12h).
+//!
+//! A texel looks up its shift, undoes it, and arrives in the unwarped image; from there the homography leads into the photo,
+//! where the area the texel covers is averaged. What is light is decided in the unwarped mask: sharply where it is magnified,
+//! by share of area where it is reduced.
+
+use super::exemplar::Exemplar;
+use super::lamps::Instance;
+use super::patches::Layout;
+use crate::error::Result;
+use crate::geometry::Homography;
+use crate::image::Image;
+use crate::job::Job;
+use glam::{DVec2, Vec3};
+use rayon::prelude::*;
+
+/// Most samples along each side of a texel.
+const MOST_SAMPLES: f64 = 16.0;
+/// Rows of texels that share one list of lamps.
+const BAND: usize = 16;
+
+pub struct Source<'a> {
+    pub exemplar: &'a Exemplar<'a>,
+    pub layout: &'a Layout,
+    /// Lamps copied as a whole.
+    pub instances: &'a [Instance],
+    /// Which components of the exemplar follow the patches pixel by pixel instead.
+    pub by_pixel: &'a [bool],
+    pub photo: Option<(&'a Image, Homography)>,
+    /// Unwarped pixels per texel.
+    pub scale: f64,
+}
+
+/// The texture and its mask.
+pub fn run(source: &Source, width: usize, height: usize, job: Job) -> Result<(Image, Image)> {
+    let mut texture = Image::new(width, height, 3)?;
+    let mut mask = Image::new(width, height, 1)?;
+
+    // Which lamps may touch each band of rows, and their range of texels.
+    let mut bands: Vec<Vec<(usize, [usize; 4])>> = vec![Vec::new(); height.div_ceil(BAND)];
+    for (i, instance) in source.instances.iter().enumerate() {
+        if let Some(range) = source.texels(instance, width, height) {
+            bands[range[1] / BAND..=(range[3] - 1) / BAND].iter_mut().for_each(|b| b.push((i, range)));
+        }
+    }
+
+    let follows_patches = source.by_pixel.contains(&true);
+    let rows = texture.data.par_chunks_exact_mut(3 * width).zip(mask.data.par_chunks_exact_mut(width)).enumerate();
+    rows.try_for_each(|(y, (colours, coverage))| {
+        job.check()?;
+        let mut add = |x: usize, (colour, share): (Vec3, f32)| {
+            if share > 0.0 {
+                coverage[x] += share;
+                colours[3 * x..3 * x + 3].iter_mut().zip(colour.to_array()).for_each(|(o, c)| *o += c);
+            }
+        };
+        for &(i, [x0, y0, x1, y1]) in &bands[y / BAND] {
+            if (y0..y1).contains(&y) {
+                let Instance { component, shift } = source.instances[i];
+                (x0..x1).for_each(|x| add(x, source.texel(x, y, shift, |label| label == component as u32 + 1)));
+            }
+        }
+        if follows_patches {
+            for x in 0..width {
+                if let Some(shift) = source.shift_at(x, y) {
+                    add(x, source.texel(x, y, shift, |label| label != 0 && source.by_pixel[label as usize - 1]));
+                }
+            }
+        }
+        coverage.iter_mut().for_each(|c| *c = f32::from(*c >= 0.5));
+        Ok(())
+    })?;
+    job.report(1.0);
+    Ok((texture, mask))
+}
+
+impl Source<'_> {
+    /// Shifts become whole pixels where pixels are copied one to one, so that copies are exact.
+    fn rounded(&self, shift: DVec2) -> DVec2 {
+        if self.scale == 1.0 { shift.round() } else { shift }
+    }
+
+    /// The texels `[x0, y0, x1, y1)` a lamp may touch.
+    fn texels(&self, instance: &Instance, width: usize, height: usize) -> Option<[usize; 4]> {
+        let lamp = &self.exemplar.components.list[instance.component];
+        let shift = self.rounded(instance.shift);
+        let point = |p: [usize; 2]| DVec2::new(p[0] as f64, p[1] as f64);
+        let low = ((point(lamp.min) + shift) / self.scale).floor() - 1.0;
+        let high = ((point(lamp.max) + 1.0 + shift) / self.scale).ceil() + 1.0;
+        let low = low.max(DVec2::ZERO);
+        let high = high.min(point([width, height]));
+        (low.x < high.x && low.y < high.y).then(|| [low.x as usize, low.y as usize, high.x as usize, high.y as usize])
+    }
+
+    /// The shift of the patch that shows a texel's centre.
+    fn shift_at(&self, x: usize, y: usize) -> Option<DVec2> {
+        let p = DVec2::new(x as f64 + 0.5, y as f64 + 0.5) * self.scale / self.exemplar.working.pitch;
+        let (u, v) = ((p.x as usize).min(self.layout.width - 1), (p.y as usize).min(self.layout.height - 1));
+        let label = self.layout.labels[v * self.layout.width + u];
+        self.layout.shifts.get(label as usize).map(|s| s.exact)
+    }
+
+    /// The light of the components that `is_shown` names by label, averaged over a texel; and the share it covers.
+    fn texel(&self, x: usize, y: usize, shift: DVec2, is_shown: impl Fn(u32) -> bool) -> (Vec3, f32) {
+        let n = self.scale.ceil().clamp(1.0, MOST_SAMPLES);
+        let spacing = self.scale / n;
+        let corner = DVec2::new(x as f64, y as f64) * self.scale - self.rounded(shift);
+        let (mut colour, mut inside) = (Vec3::ZERO, 0u32);
+        for i in 0..(n * n) as usize {
+            let step = DVec2::new((i % n as usize) as f64 + 0.5, (i / n as usize) as f64 + 0.5);
+            let p = corner + step * spacing;
+            let taps = self.taps(p, spacing > 0.999);
+            let light: f32 = taps.iter().filter(|t| is_shown(self.label(t.0))).map(|t| t.1).sum();
+            if light >= 0.5 {
+                inside += 1;
+                colour += self.from_photo(p, spacing).unwrap_or_else(|| {
+                    // Only light mixes with light.
+                    let lit = taps.iter().filter(|t| t.1 > 0.0 && is_shown(self.label(t.0)));
+                    lit.map(|&(i, w)| self.exemplar.image.rgb(i % self.exemplar.width, i / self.exemplar.width) * w)
+                        .sum::<Vec3>()
+                        / light
+                });
+            }
+        }
+        let samples = (n * n) as f32;
+        (colour / samples, inside as f32 / samples)
+    }
+
+    /// Label of an unwarped pixel; `usize::MAX` is none.
+    fn label(&self, pixel: usize) -> u32 {
+        self.exemplar.components.labels.get(pixel).copied().unwrap_or(0)
+    }
+
+    /// Pixels and weights of a bilinear look-up, or of the pixel a point lies in.
+    fn taps(&self, p: DVec2, nearest: bool) -> [(usize, f32); 4] {
+        let (width, height) = (self.exemplar.width, self.exemplar.height);
+        let at = |x: f64, y: f64| {
+            let inside = x >= 0.0 && y >= 0.0 && x < width as f64 && y < height as f64;
+            if inside { y as usize * width + x as usize } else { usize::MAX }
+        };
+        if nearest {
+            return [(at(p.x, p.y), 1.0), (usize::MAX, 0.0), (usize::MAX, 0.0), (usize::MAX, 0.0)];
+        }
+        let low = (p - 0.5).floor();
+        let t = (p - 0.5 - low).as_vec2();
+        [
+            (at(low.x, low.y), (1.0 - t.x) * (1.0 - t.y)),
+            (at(low.x + 1.0, low.y), t.x * (1.0 - t.y)),
+            (at(low.x, low.y + 1.0), (1.0 - t.x) * t.y),
+            (at(low.x + 1.0, low.y + 1.0), t.x * t.y),
+        ]
+    }
+
+    /// The photo's colour at a point of the unwarped image, averaged over a square of the given side there.
+    fn from_photo(&self, p: DVec2, side: f64) -> Option<Vec3> {
+        let (photo, to_photo) = self.photo?;
+        let (right, down) = (to_photo.apply(p + DVec2::X * side / 2.0), to_photo.apply(p + DVec2::Y * side / 2.0));
+        let centre = to_photo.apply(p);
+        let stretch = 2.0 * (right - centre).length().max((down - centre).length());
+        let n = stretch.ceil().clamp(1.0, MOST_SAMPLES) as usize;
+        let mut sum = Vec3::ZERO;
+        for i in 0..n * n {
+            let step = (DVec2::new((i % n) as f64 + 0.5, (i / n) as f64 + 0.5) / n as f64 - 0.5) * side;
+            sum += bilinear(photo, to_photo.apply(p + step))?;
+        }
+        Some(sum / (n * n) as f32).filter(|c| c.is_finite())
+    }
+}
+
+/// Colour at a point of the photo; `None` off the photo.
+fn bilinear(photo: &Image, p: DVec2) -> Option<Vec3> {
+    let last = DVec2::new(photo.width as f64, photo.height as f64) - 1.0;
+    if !(p.cmpge(DVec2::ZERO).all() && p.cmple(last + 1.0).all()) {
+        return None;
+    }
+    let q = (p - 0.5).clamp(DVec2::ZERO, last);
+    let (low, t) = (q.floor(), q.fract().as_vec2());
+    let high = (low + 1.0).min(last);
+    let at = |x: f64, y: f64| photo.rgb(x as usize, y as usize);
+    let top = at(low.x, low.y).lerp(at(high.x, low.y), t.x);
+    let bottom = at(low.x, high.y).lerp(at(high.x, high.y), t.x);
+    Some(top.lerp(bottom, t.y))
+}

@@ -1,0 +1,399 @@
+//! The stage as a whole: patterns with known statistics, exact copies, and inputs at the edge of sense.
+
+use super::*;
+use crate::error::ErrorKind;
+use crate::exec::Pool;
+use crate::job::Monitor;
+use crate::rng::Rng;
+use glam::DMat2;
+
+struct Exemplar3 {
+    unwarped: Image,
+    light: Image,
+    valid: Image,
+}
+
+impl Exemplar3 {
+    /// Lamps where `lamp` says so; colours vary from pixel to pixel so that every source pixel can be told.
+    fn new(width: usize, height: usize, lamp: impl Fn(f64, f64) -> bool) -> Self {
+        let on = |x: usize, y: usize| lamp(x as f64 + 0.5, y as f64 + 0.5);
+        let noise = |x: usize, y: usize, c: u64| 0.1 * Rng::new(9, &[x as u64, y as u64, c]).next_f32();
+        let unwarped = Image::from_fn(width, height, |x, y| {
+            let base = if on(x, y) { [0.9, 0.8, 0.7] } else { [0.1, 0.1, 0.12] };
+            std::array::from_fn::<f32, 3, _>(|c| base[c] + noise(x, y, c as u64))
+        });
+        let light = Image::from_fn(width, height, |x, y| {
+            [(f32::from(on(x, y)) + noise(x, y, 3) - noise(x, y, 4)).clamp(0.0, 1.0)]
+        });
+        let valid = Image::from_fn(width, height, |_, _| [1.0]);
+        Self { unwarped: unwarped.unwrap(), light: light.unwrap(), valid: valid.unwrap() }
+    }
+
+    /// Cuts two corners off, as an unwarped photo has them.
+    fn with_corners_cut(mut self) -> Self {
+        let (w, h) = (self.valid.width as f64, self.valid.height as f64);
+        for i in 0..self.valid.data.len() {
+            let (x, y) = ((i % self.valid.width) as f64 / w, (i / self.valid.width) as f64 / h);
+            if x + 0.7 * y < 0.25 || (1.0 - x) + 0.9 * y < 0.3 {
+                self.valid.data[i] = 0.0;
+            }
+        }
+        self
+    }
+
+    fn input(&self) -> Input<'_> {
+        Input { unwarped: &self.unwarped, light: &self.light, valid: &self.valid, photo: None }
+    }
+
+    fn run(&self, params: &Params) -> Result<Emission> {
+        run(&self.input(), params, Monitor::default().job())
+    }
+}
+
+/// Statistics of a texture against its exemplar.
+#[derive(Debug)]
+struct Score {
+    /// Ratios of lamps per area and of mean lamp area.
+    density: f64,
+    area: f64,
+    /// Lamps off the border smaller than 70 % of the smallest of the exemplar, or larger than 130 % of its largest.
+    cut: usize,
+    merged: usize,
+    /// RMS distance from the lattice through the lamps, in parts of the period.
+    phase: f64,
+}
+
+fn inner(lamps: &[Luminaire], width: usize, height: usize) -> Vec<&Luminaire> {
+    let size = DVec2::new(width as f64, height as f64);
+    let off_border =
+        |l: &&Luminaire| l.outline.iter().all(|p| p.min_element() > 0.0 && (size - *p).min_element() > 0.0);
+    lamps.iter().filter(off_border).collect()
+}
+
+/// Evaluates against the lamps per area and the lamp areas of the design itself.
+fn score(result: &Emission, per_area: f64, areas: (f64, f64, f64), basis: Option<[DVec2; 2]>) -> Score {
+    let (width, height) = (result.mask.width, result.mask.height);
+    let lamps = inner(&result.luminaires, width, height);
+    let mean = lamps.iter().map(|l| l.area).sum::<f64>() / lamps.len() as f64;
+    // Lamps are counted by their light, so that those on the border count by their part.
+    let lit = result.mask.data.iter().sum::<f32>() as f64;
+    let phase = basis.map_or(0.0, |[a, b]| {
+        // Phase angles of the centres; their circular mean is the origin of the lattice.
+        let inverse = DMat2::from_cols(a, b).inverse();
+        let cells: Vec<DVec2> = lamps.iter().map(|l| inverse * l.centre).collect();
+        let angle = |f: &dyn Fn(&DVec2) -> f64| {
+            let turn = |c: &DVec2| DVec2::from_angle(std::f64::consts::TAU * f(c));
+            cells.iter().map(turn).sum::<DVec2>().to_angle() / std::f64::consts::TAU
+        };
+        let origin = DVec2::new(angle(&|c| c.x), angle(&|c| c.y));
+        let off = |c: &DVec2| {
+            let d = *c - origin;
+            (d - d.round()).length_squared()
+        };
+        (cells.iter().map(off).sum::<f64>() / cells.len() as f64).sqrt()
+    });
+    Score {
+        density: lit / mean / (width * height) as f64 / per_area,
+        area: mean / areas.1,
+        cut: lamps.iter().filter(|l| l.area < 0.7 * areas.0).count(),
+        merged: lamps.iter().filter(|l| l.area > 1.3 * areas.2).count(),
+        phase,
+    }
+}
+
+fn grid(px: f64, py: f64, w: f64, h: f64) -> impl Fn(f64, f64) -> bool {
+    move |x, y| (x - 9.0).rem_euclid(px) < w && (y - 7.0).rem_euclid(py) < h
+}
+
+fn check(name: &str, s: &Score) {
+    let fine = (s.density - 1.0).abs() < 0.05 && (s.area - 1.0).abs() < 0.05 && s.cut == 0 && s.merged == 0;
+    assert!(fine && s.phase < 0.02, "{name}: {s:?}");
+}
+
+#[test]
+fn grids_go_on_in_phase() {
+    let params = Params { width: 700, height: 640, ..Params::default() };
+    for (name, px, py, w, h) in
+        [("square", 40.0, 40.0, 14.0, 14.0), ("rectangular", 48.0, 40.0, 20.0, 10.0), ("odd", 37.3, 51.7, 11.0, 23.0)]
+    {
+        for cut in [false, true] {
+            let mut exemplar = Exemplar3::new(300, 280, grid(px, py, w, h));
+            if cut {
+                exemplar = exemplar.with_corners_cut();
+            }
+            let result = exemplar.run(&params).unwrap();
+            assert!(matches!(result.continuation, Continuation::Lattice(_)), "{name}: {:?}", result.continuation);
+            let basis = [DVec2::new(px, 0.0), DVec2::new(0.0, py)];
+            let area = if px == px.round() { w * h } else { (w * h).round() };
+            check(name, &score(&result, 1.0 / (px * py), (0.9 * area, area, area * 1.1), Some(basis)));
+        }
+    }
+}
+
+#[test]
+fn hexagonal_skewed_and_mixed_lattices_go_on_in_phase() {
+    let params = Params { width: 700, height: 640, ..Params::default() };
+    let patterns: [(&str, DVec2, DVec2, f64); 3] = [
+        ("hexagonal", DVec2::new(44.0, 0.0), DVec2::new(22.0, 38.0), 8.0),
+        ("skewed", DVec2::new(40.0, 6.0), DVec2::new(-8.0, 46.0), 9.0),
+        ("tilted", DVec2::new(36.0, 20.0), DVec2::new(-20.0, 36.0), 9.0),
+    ];
+    for (name, a, b, radius) in patterns {
+        let inverse = DMat2::from_cols(a, b).inverse();
+        let exemplar = Exemplar3::new(320, 300, |x, y| {
+            let p = DVec2::new(x - 17.5, y - 11.5);
+            let base = (inverse * p).floor();
+            (0..4).any(|i| {
+                let cell = base + DVec2::new(f64::from(i % 2), f64::from(i / 2));
+                (p - a * cell.x - b * cell.y).length() < radius
+            })
+        });
+        let result = exemplar.run(&params).unwrap();
+        assert!(matches!(result.continuation, Continuation::Lattice(_)), "{name}: {:?}", result.continuation);
+        let area = std::f64::consts::PI * radius * radius;
+        check(name, &score(&result, 1.0 / a.perp_dot(b), (0.9 * area, area, 1.1 * area), Some([a, b])));
+    }
+
+    // Square and round lamps in alternate columns: both kinds stay, in their own columns.
+    let exemplar = Exemplar3::new(360, 300, |x, y| {
+        let (u, v) = ((x - 10.0).rem_euclid(100.0) - 25.0, (y - 6.0).rem_euclid(50.0) - 25.0);
+        (u.abs() < 12.0 && v.abs() < 12.0) || (u - 50.0).hypot(v) < 8.0
+    });
+    let result = exemplar.run(&Params { width: 800, height: 600, ..params }).unwrap();
+    let basis = [DVec2::new(50.0, 0.0), DVec2::new(0.0, 50.0)];
+    let (square, round) = (576.0, 201.0);
+    let mean = (square + round) / 2.0;
+    let s = score(&result, 1.0 / 2500.0, (0.9 * round, mean, square), Some(basis));
+    check("two kinds", &s);
+    for lamp in inner(&result.luminaires, 800, 600) {
+        let column = ((lamp.centre.x - 35.0) / 50.0).round() as i64;
+        assert_eq!(lamp.area > 400.0, column % 2 == 0, "{:?}", lamp.centre);
+    }
+}
+
+#[test]
+fn missing_lamps_stay_missing_in_proportion() {
+    let (px, py) = (40.0, 36.0);
+    let exemplar = Exemplar3::new(400, 396, |x, y| {
+        let cell = [((x - 9.0) / px).floor() as i64 as u64, ((y - 7.0) / py).floor() as i64 as u64];
+        grid(px, py, 16.0, 12.0)(x, y) && Rng::new(77, &cell).next_f64() < 0.9
+    });
+    let lit = exemplar.light.data.iter().filter(|&&v| v >= 0.5).count() as f64;
+    let result = exemplar.run(&Params { width: 1000, height: 900, ..Params::default() }).unwrap();
+    assert!(matches!(result.continuation, Continuation::Lattice(_)), "{:?} {}", result.continuation, result.regularity);
+    let per_area = lit / 192.0 / (400.0 * 396.0);
+    check(
+        "missing",
+        &score(&result, per_area, (192.0, 192.0, 192.0), Some([DVec2::new(px, 0.0), DVec2::new(0.0, py)])),
+    );
+}
+
+#[test]
+fn every_block_size_serves() {
+    let exemplar = Exemplar3::new(512, 480, grid(48.0, 40.0, 20.0, 10.0)).with_corners_cut();
+    for block in (25..=200).step_by(25) {
+        let params = Params { width: 640, height: 600, block, ..Params::default() };
+        let result = exemplar.run(&params).unwrap();
+        let basis = [DVec2::new(48.0, 0.0), DVec2::new(0.0, 40.0)];
+        check(&format!("block {block}"), &score(&result, 1.0 / 1920.0, (200.0, 200.0, 200.0), Some(basis)));
+    }
+}
+
+/// Round lamps at random, at least `gap` apart.
+fn blobs(width: usize, height: usize, gap: f64) -> (Exemplar3, usize) {
+    let mut rng = Rng::new(21, &[]);
+    let mut centres: Vec<(DVec2, f64)> = Vec::new();
+    for _ in 0..4000 {
+        let p = DVec2::new(rng.next_f64() * width as f64, rng.next_f64() * height as f64);
+        if centres.iter().all(|c| c.0.distance(p) > gap) {
+            centres.push((p, 4.0 + 3.0 * rng.next_f64()));
+        }
+    }
+    let count = centres.len();
+    (Exemplar3::new(width, height, |x, y| centres.iter().any(|c| c.0.distance(DVec2::new(x, y)) < c.1)), count)
+}
+
+#[test]
+fn scattered_lamps_stay_whole_and_as_many() {
+    let (exemplar, _) = blobs(256, 256, 26.0);
+    let whole = exemplar.run(&Params { width: 256, height: 256, ..Params::default() }).unwrap();
+    assert_eq!(whole.continuation, Continuation::Copy);
+    let lamps = inner(&whole.luminaires, 256, 256);
+    let areas: Vec<f64> = lamps.iter().map(|l| l.area).collect();
+    let mean = areas.iter().sum::<f64>() / areas.len() as f64;
+    let (least, most) = (areas.iter().copied().fold(f64::MAX, f64::min), areas.iter().copied().fold(0.0, f64::max));
+    let per_area = whole.mask.data.iter().sum::<f32>() as f64 / mean / 65_536.0;
+    let result = exemplar.run(&Params { width: 700, height: 700, ..Params::default() }).unwrap();
+    assert_eq!(result.continuation, Continuation::Free);
+    let s = score(&result, per_area, (least, mean, most), None);
+    // About 400 lamps: the standard deviation of their mean area is 1.3 %, that of their number is below 5 %.
+    assert!(s.cut == 0 && s.merged == 0 && (s.density - 1.0).abs() < 0.1 && (s.area - 1.0).abs() < 0.05, "{s:?}");
+}
+
+#[test]
+fn a_texture_inside_the_exemplar_is_copied_bit_by_bit() {
+    let exemplar = Exemplar3::new(120, 90, grid(30.0, 30.0, 10.0, 12.0));
+    let result = exemplar.run(&Params { width: 120, height: 90, ..Params::default() }).unwrap();
+    assert_eq!(result.continuation, Continuation::Copy);
+    assert_eq!(result.error, 0.0);
+    for (i, texel) in result.texture.data.chunks_exact(3).enumerate() {
+        let lit = exemplar.light.data[i] >= 0.5;
+        assert_eq!(result.mask.data[i], f32::from(lit));
+        assert_eq!(texel, if lit { &exemplar.unwarped.data[3 * i..3 * i + 3] } else { &[0.0; 3] });
+    }
+}
+
+#[test]
+fn copied_lamps_are_those_of_the_exemplar_and_a_photo_adds_detail() {
+    let exemplar = Exemplar3::new(200, 200, grid(40.0, 40.0, 14.0, 14.0));
+    let params = Params { width: 500, height: 500, working_side: 100, ..Params::default() };
+    let result = exemplar.run(&params).unwrap();
+    let key = |c: &[f32]| [c[0].to_bits(), c[1].to_bits(), c[2].to_bits()];
+    let known: std::collections::HashSet<_> = exemplar.unwarped.data.chunks_exact(3).map(key).collect();
+    for (texel, &mask) in result.texture.data.chunks_exact(3).zip(&result.mask.data) {
+        assert!(if mask > 0.0 { known.contains(&key(texel)) } else { texel == [0.0; 3] });
+    }
+
+    // A photo twice as fine: two texels per unwarped pixel show its own pixels.
+    let photo = Image::from_fn(400, 400, |x, y| [(x % 7) as f32, (y % 5) as f32, (x * y % 3) as f32]).unwrap();
+    let to_photo = Homography(glam::DMat3::from_scale(DVec2::splat(2.0)));
+    let input = Input { photo: Some((&photo, to_photo)), ..exemplar.input() };
+    let params = Params { width: 400, height: 400, scale: 0.5, ..Params::default() };
+    let result = run(&input, &params, Monitor::default().job()).unwrap();
+    let mut lit = 0;
+    for (i, texel) in result.texture.data.chunks_exact(3).enumerate().filter(|(i, _)| result.mask.data[*i] > 0.0) {
+        assert_eq!(texel, photo.pixel(i % 400, i / 400));
+        lit += 1;
+    }
+    assert!((f64::from(lit) / 4.0 / (25.0 * 196.0) - 1.0).abs() < 0.05, "{lit}");
+}
+
+#[test]
+fn reduced_textures_keep_their_light() {
+    let exemplar = Exemplar3::new(200, 200, grid(40.0, 40.0, 14.0, 14.0));
+    let mean = |e: &Emission| e.texture.data.iter().map(|&v| f64::from(v)).sum::<f64>() / e.texture.data.len() as f64;
+    let full = exemplar.run(&Params { width: 600, height: 600, ..Params::default() }).unwrap();
+    for scale in [1.7, 4.0, 12.5] {
+        let side = (600.0 / scale) as usize;
+        let small = exemplar.run(&Params { width: side, height: side, scale, ..Params::default() }).unwrap();
+        assert!((mean(&small) / mean(&full) - 1.0).abs() < 0.03, "{scale}: {} {}", mean(&small), mean(&full));
+    }
+}
+
+#[test]
+fn the_bits_do_not_depend_on_the_threads() {
+    let lattice = Exemplar3::new(200, 180, grid(33.0, 29.0, 12.0, 9.0)).with_corners_cut();
+    for exemplar in [lattice, blobs(200, 180, 22.0).0] {
+        let params = Params { width: 300, height: 300, scale: 1.3, ..Params::default() };
+        let with = |threads| Pool::new(threads).unwrap().run(|| exemplar.run(&params)).unwrap();
+        let (one, three) = (with(1), with(3));
+        assert_eq!(one.texture, three.texture);
+        assert_eq!(one.metadata, three.metadata);
+        assert_eq!(one.luminaires, three.luminaires);
+    }
+}
+
+#[test]
+fn one_lamp_is_repeated_at_the_size_of_the_exemplar() {
+    let exemplar = Exemplar3::new(80, 60, |x, y| (x - 40.0).abs() < 10.0 && (y - 25.0).abs() < 8.0);
+    let result = exemplar.run(&Params { width: 240, height: 180, ..Params::default() }).unwrap();
+    assert!(matches!(result.continuation, Continuation::Tile(_)));
+    assert_eq!(result.luminaires.len(), 9);
+    assert!(result.luminaires.iter().all(|l| l.area == 320.0));
+    assert!(result.error < 1e-6);
+}
+
+#[test]
+fn lights_that_touch_every_border_go_on() {
+    // All light.
+    let all = Exemplar3::new(64, 48, |_, _| true);
+    let result = all.run(&Params { width: 200, height: 150, ..Params::default() }).unwrap();
+    assert!(result.mask.data.iter().all(|&m| m == 1.0));
+    assert_eq!(result.luminaires.len(), 1);
+
+    // One lamp that touches every border: a diamond.
+    let diamond = Exemplar3::new(64, 64, |x, y| (x - 32.0).abs() + (y - 32.0).abs() < 32.5);
+    let result = diamond.run(&Params { width: 200, height: 200, ..Params::default() }).unwrap();
+    assert!(result.error < 0.25, "{}", result.error);
+
+    // Lines that run through the whole image keep their spacing.
+    let lines = Exemplar3::new(200, 200, |_, y| (y - 5.0).rem_euclid(24.0) < 6.0);
+    let result = lines.run(&Params { width: 500, height: 480, ..Params::default() }).unwrap();
+    assert!(result.error < 0.05, "{}", result.error);
+    assert_eq!(result.luminaires.len(), 20);
+    assert!(result.luminaires.iter().all(|l| l.size.x == 500.0 && l.size.y == 6.0));
+}
+
+#[test]
+fn odd_sizes_give_finite_results() {
+    let exemplar = Exemplar3::new(100, 80, grid(25.0, 20.0, 9.0, 7.0));
+    for (width, height) in [(1, 1), (1, 300), (300, 1), (3, 5), (101, 80)] {
+        for scale in [0.01, 0.7, 1.0, 30.0] {
+            let params = Params { width, height, scale, ..Params::default() };
+            let result = exemplar.run(&params).unwrap();
+            assert_eq!((result.texture.width, result.mask.height), (width, height));
+            assert_eq!(result.texture.count_non_finite() + result.metadata.count_non_finite(), 0);
+        }
+    }
+    // Exemplars of one row, one column, one pixel; and of one valid pixel.
+    for (width, height) in [(60, 1), (1, 60), (1, 1)] {
+        let thin = Exemplar3::new(width, height, |x, y| ((x + y) as usize).is_multiple_of(5) || width + height == 2);
+        let result = thin.run(&Params { width: 90, height: 70, ..Params::default() }).unwrap();
+        assert_eq!(result.texture.count_non_finite(), 0);
+    }
+    let mut point = Exemplar3::new(40, 40, |_, _| true);
+    point.valid.data.fill(0.0);
+    point.valid.data[40 * 7 + 9] = 1.0;
+    let result = point.run(&Params { width: 50, height: 50, working_side: 16, ..Params::default() }).unwrap();
+    assert!(result.mask.data.iter().all(|&m| m == 1.0));
+
+    // A patch larger than the exemplar, and a period longer than it.
+    let params = Params { width: 400, height: 300, block: 5000, ..Params::default() };
+    assert!(exemplar.run(&params).unwrap().error < 0.05);
+    let half = Exemplar3::new(100, 80, grid(140.0, 110.0, 30.0, 20.0));
+    assert_eq!(half.run(&params).unwrap().texture.count_non_finite(), 0);
+}
+
+#[test]
+fn pixels_that_are_not_numbers_are_left_out() {
+    let mut exemplar = Exemplar3::new(160, 160, grid(32.0, 32.0, 12.0, 12.0));
+    for i in 0..40 {
+        let at = (70 + i / 8) * 160 + 60 + i % 8;
+        exemplar.unwarped.data[3 * at] = f32::NAN;
+        exemplar.light.data[at + 3200] = f32::INFINITY;
+        exemplar.valid.data[at + 9] = f32::NAN;
+    }
+    let result = exemplar.run(&Params { width: 400, height: 400, ..Params::default() }).unwrap();
+    assert_eq!(result.texture.count_non_finite(), 0);
+    check(
+        "not numbers",
+        &score(&result, 1.0 / 1024.0, (144.0, 144.0, 144.0), Some([DVec2::X * 32.0, DVec2::Y * 32.0])),
+    );
+}
+
+#[test]
+fn what_has_no_answer_is_an_error_that_says_so() {
+    let dark = Exemplar3::new(20, 20, |_, _| false);
+    let error = dark.run(&Params::default()).unwrap_err();
+    assert_eq!(error.kind, ErrorKind::Degenerate);
+    assert!(error.message.contains("no light is marked"));
+
+    let mut exemplar = Exemplar3::new(20, 20, |x, _| x < 5.0);
+    for bad in [
+        Params { width: 0, ..Params::default() },
+        Params { height: 70_000, ..Params::default() },
+        Params { scale: 0.0, ..Params::default() },
+        Params { scale: f64::NAN, ..Params::default() },
+        Params { working_side: 4, ..Params::default() },
+        Params { metadata_weight: -1.0, ..Params::default() },
+    ] {
+        assert_eq!(exemplar.run(&bad).unwrap_err().kind, ErrorKind::InvalidArgument, "{bad:?}");
+    }
+    let monitor = Monitor::default();
+    monitor.cancel();
+    assert_eq!(run(&exemplar.input(), &Params::default(), monitor.job()).unwrap_err().kind, ErrorKind::Cancelled);
+    exemplar.valid.data.fill(0.0);
+    assert_eq!(exemplar.run(&Params::default()).unwrap_err().kind, ErrorKind::Degenerate);
+    exemplar.light = Image::new(20, 21, 1).unwrap();
+    assert!(exemplar.run(&Params::default()).unwrap_err().message.contains("20 x 21"));
+}

@@ -1,0 +1,146 @@
+//! Depth from the caller, and the neutral prior: a surface as inverse depth, normals and trust.
+
+use super::normals;
+use super::{DepthKind, DepthMap, Frustum};
+use crate::error::{Error, Result};
+use crate::exec;
+use crate::image::Image;
+use crate::job::Job;
+
+/// What is known of the surface each pixel shows. Inverse depth, because it is affine on planes: `1/z = (n · ray) / c`.
+pub struct Surface {
+    /// `1/z` in the frustum's units, > 0.
+    pub inverse_depth: Image,
+    /// Unit, in camera space, towards the camera.
+    pub normals: Image,
+    /// In `[0, 1]`.
+    pub confidence: Image,
+}
+
+/// Trust in a depth that no one measured.
+const NEUTRAL_CONFIDENCE: f32 = 0.05;
+/// Depths are kept within this factor of the median: beyond it there is nothing to tell apart.
+const LARGEST_RATIO: f32 = 1e4;
+
+/// The caller's depth, scaled so that its 2 % quantile lies on the near plane, holes filled from their surroundings.
+pub fn from_map(map: &DepthMap, frustum: &Frustum, radius: usize, job: Job) -> Result<Surface> {
+    let depth = map.image;
+    let (width, height) = (depth.width, depth.height);
+    if depth.channels != 1 {
+        return Err(Error::argument(format!("depth has {} channels; it must have 1", depth.channels)));
+    }
+
+    // Distances along the ray become distances along z.
+    let mut inverse = Image::new(width, height, 1)?;
+    exec::for_rows(&mut inverse.data, width, job.part(0.0, 0.1), |y, row| {
+        for (x, (out, &d)) in row.iter_mut().zip(depth.row(y)).enumerate() {
+            let per_z = match map.kind {
+                DepthKind::AlongZ => 1.0,
+                DepthKind::AlongRay => frustum.ray(frustum.ndc(x, y, width, height)).length(),
+            };
+            *out = if d > 0.0 && d.is_finite() { per_z / d } else { 0.0 };
+        }
+    })?;
+
+    // The scale: only ratios of depth mean anything.
+    let mut known: Vec<f32> = inverse.data.iter().copied().filter(|&w| w > 0.0 && w.is_finite()).collect();
+    if known.is_empty() {
+        return Err(Error::degenerate(format!(
+            "depth has no positive finite value in its {width} x {height} pixels; leave it out to use the built-in layout"
+        )));
+    }
+    let mut quantile = |q: f64| {
+        let k = ((known.len() - 1) as f64 * q).round() as usize;
+        *known.select_nth_unstable_by(k, f32::total_cmp).1
+    };
+    let (median, nearest) = (quantile(0.5), quantile(0.98));
+    let (low, high) = (median / LARGEST_RATIO, median.min(f32::MAX / LARGEST_RATIO) * LARGEST_RATIO);
+    let nearest = nearest.clamp(low, high);
+    let mut confidence = Image::new(width, height, 1)?;
+    for (w, c) in inverse.data.iter_mut().zip(&mut confidence.data) {
+        if *w > 0.0 {
+            *w = (w.clamp(low, high) / nearest) / frustum.near;
+            *c = 1.0;
+        }
+    }
+
+    // Normals from measured pixels only, then the holes.
+    let normals = normals::fit(&inverse, &confidence, frustum, radius, job.part(0.1, 0.8))?;
+    let mut surface = Surface { inverse_depth: inverse, normals, confidence };
+    fill_holes(&mut surface, job.part(0.8, 1.0))?;
+    Ok(surface)
+}
+
+/// A guess that knows nothing of the photo but that it is an interior: farthest at mid-height, nearer towards the
+/// ceiling above and the floor below, `1/z` rising with the square of the height to twice its value.
+pub fn neutral(width: usize, height: usize, frustum: &Frustum, radius: usize, job: Job) -> Result<Surface> {
+    let middle = 1.0 / (frustum.near * frustum.far).sqrt();
+    let mut inverse_depth = Image::new(width, height, 1)?;
+    exec::for_rows(&mut inverse_depth.data, width, job.part(0.0, 0.2), |y, row| {
+        let v = frustum.ndc(0, y, width, height).y;
+        row.fill(middle * (1.0 + v * v));
+    })?;
+    let mut confidence = Image::new(width, height, 1)?;
+    confidence.data.fill(NEUTRAL_CONFIDENCE);
+    let normals = normals::fit(&inverse_depth, &confidence, frustum, radius, job.part(0.2, 1.0))?;
+    Ok(Surface { inverse_depth, normals, confidence })
+}
+
+/// Fills holes (confidence 0) by pulling known values down a pyramid and pushing them back up (Gortler et al. 1996).
+fn fill_holes(surface: &mut Surface, job: Job) -> Result<()> {
+    if surface.confidence.data.iter().all(|&c| c > 0.0) {
+        return Ok(());
+    }
+    let (width, height) = (surface.confidence.width, surface.confidence.height);
+    // Inverse depth and normal, premultiplied by whether they are known; the fifth channel counts.
+    let mut base = Image::new(width, height, 5)?;
+    for (i, out) in base.data.chunks_exact_mut(5).enumerate() {
+        if surface.confidence.data[i] > 0.0 {
+            out[0] = surface.inverse_depth.data[i];
+            out[1..4].copy_from_slice(&surface.normals.data[3 * i..3 * i + 3]);
+            out[4] = 1.0;
+        }
+    }
+    // Pull: each level sums four pixels of the finer one and keeps its weight at most 1.
+    let mut levels = vec![base];
+    while let Some(fine) = levels.last().filter(|l| l.width > 1 || l.height > 1) {
+        job.check()?;
+        let (w, h) = (fine.width.div_ceil(2), fine.height.div_ceil(2));
+        let mut coarse = Image::new(w, h, 5)?;
+        for y in 0..fine.height {
+            for x in 0..fine.width {
+                let p = fine.pixel(x, y);
+                coarse.pixel_mut(x / 2, y / 2).iter_mut().zip(p).for_each(|(o, v)| *o += v);
+            }
+        }
+        for p in coarse.data.chunks_exact_mut(5).filter(|p| p[4] > 1.0) {
+            let weight = p[4];
+            p.iter_mut().for_each(|v| *v /= weight);
+        }
+        levels.push(coarse);
+    }
+    // Push: what a level lacks comes from the next coarser one, bilinearly.
+    for fine in (0..levels.len() - 1).rev() {
+        job.check()?;
+        let (finer, coarser) = levels.split_at_mut(fine + 1);
+        let (level, coarse) = (&mut finer[fine], &coarser[0]);
+        for y in 0..level.height {
+            for x in 0..level.width {
+                let missing = 1.0 - level.pixel(x, y)[4];
+                if missing > 0.0 {
+                    let (u, v) = ((x as f64 + 0.5) / 2.0, (y as f64 + 0.5) / 2.0);
+                    let add: [f32; 5] = std::array::from_fn(|c| coarse.sample(u, v, c) * missing);
+                    level.pixel_mut(x, y).iter_mut().zip(add).for_each(|(o, a)| *o += a);
+                }
+            }
+        }
+    }
+    for (i, filled) in levels[0].data.chunks_exact(5).enumerate() {
+        if surface.confidence.data[i] == 0.0 && filled[4] > 0.0 {
+            surface.inverse_depth.data[i] = filled[0] / filled[4];
+            let normal = glam::Vec3::from_slice(&filled[1..4]).try_normalize().unwrap_or(glam::Vec3::NEG_Z);
+            normal.write_to_slice(&mut surface.normals.data[3 * i..3 * i + 3]);
+        }
+    }
+    Ok(())
+}

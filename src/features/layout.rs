@@ -1,0 +1,236 @@
+//! The built-in depth: the room as one box along its axes, seen from inside (after Hedau, Hoiem and Forsyth 2009).
+//!
+//! In room axes the box is `left <= x <= right`, `top <= y <= bottom`, `z <= 1`: the back wall at distance one fixes the
+//! scale, which a single picture cannot tell (a camera 1.6 m above the floor would make it `1.6 / bottom` metres). So
+//! the four numbers are the back wall's sides in its central projection, candidates for them are the very
+//! segments that could be its sides, and the search is over all boxes these make. See `score` for what makes a box good.
+
+use super::depth::Surface;
+use super::score::{Evidence, MAX_SEGMENTS};
+use super::{Frustum, RoomView};
+use crate::error::{Error, Result};
+use crate::exec;
+use crate::geometry::Perspective;
+use crate::geometry::perspective::{HORIZONTAL_A, HORIZONTAL_B, VERTICAL};
+use crate::image::Image;
+use crate::job::Job;
+use glam::{DMat3, DVec2, DVec3, Vec3};
+
+/// The faces of the box, in the order of [`Layout::sides`], the back wall last.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Face {
+    Left,
+    Right,
+    Ceiling,
+    Floor,
+    Back,
+}
+
+impl Face {
+    /// The room axis along the face's normal.
+    pub fn axis(self) -> usize {
+        match self {
+            Self::Left | Self::Right => HORIZONTAL_A,
+            Self::Ceiling | Self::Floor => VERTICAL,
+            Self::Back => HORIZONTAL_B,
+        }
+    }
+
+    /// The unit normal into the room, in room axes.
+    fn normal(self) -> DVec3 {
+        match self {
+            Self::Left => DVec3::X,
+            Self::Right => DVec3::NEG_X,
+            Self::Ceiling => DVec3::Y,
+            Self::Floor => DVec3::NEG_Y,
+            Self::Back => DVec3::NEG_Z,
+        }
+    }
+}
+
+/// A box room around the camera, in units of the distance to its back wall.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Layout {
+    /// Distances, all > 0, to the left wall, the right wall, the ceiling and the floor.
+    pub sides: [f64; 4],
+    /// How well the segments agree with the box, at most 1 for a room with nothing in it.
+    pub score: f64,
+    /// Trust in the box as a whole, in `[0, 1]`: how far its score is ahead of any really different box's, and how
+    /// many segments speak.
+    pub trust: f64,
+}
+
+/// Sides of an ordinary room, for where nothing is seen of it.
+const USUAL: [f64; 4] = [0.5, 0.5, 0.3, 0.4];
+/// Sides tried wherever there are no segments: `0.08 × 1.9^k`.
+const GRID: usize = 6;
+/// Sides tried from segments in the search over all boxes, and in the refinement of the best.
+const PEAKS: usize = 6;
+const FINE_PEAKS: usize = 24;
+/// Boxes are really different where a side differs by this factor.
+const DIFFERENT: f64 = 1.3;
+
+/// The room's axes with z the way the camera looks and x to its right; the vertical stays.
+pub fn facing_axes(perspective: &Perspective) -> DMat3 {
+    let axes = perspective.axes;
+    if axes.z_axis.z >= 0.0 { axes } else { DMat3::from_cols(-axes.x_axis, axes.y_axis, -axes.z_axis) }
+}
+
+/// Finds the box that the segments of a view agree with best.
+pub fn find(room: &RoomView, width: usize, height: usize, job: Job) -> Result<Layout> {
+    let axes = facing_axes(room.perspective);
+    let orthogonality = (axes.transpose() * axes - DMat3::IDENTITY).to_cols_array();
+    if !orthogonality.iter().all(|v| v.abs() < 1e-3) {
+        return Err(Error::argument("room.perspective.axes must be orthogonal unit columns; see Perspective"));
+    }
+    let evidence = Evidence::gather(room, &axes, DVec2::new(width as f64, height as f64));
+
+    // All boxes of the coarse candidates, one task for each pair of left and right.
+    let peaks: [Vec<f64>; 4] = std::array::from_fn(|side| evidence.candidates(side, FINE_PEAKS));
+    let coarse: [Vec<f64>; 4] = std::array::from_fn(|side| {
+        let mut all: Vec<f64> = peaks[side].iter().copied().take(PEAKS).collect();
+        all.extend((0..GRID).map(|k| 0.08 * 1.9f64.powi(k as i32)));
+        all
+    });
+    let tasks = coarse[0].len() * coarse[1].len();
+    let scored: Vec<Vec<([f64; 4], f64)>> = exec::map(tasks, job.part(0.0, 0.8), |task| {
+        let (left, right) = (coarse[0][task / coarse[1].len()], coarse[1][task % coarse[1].len()]);
+        let pairs = coarse[2].iter().flat_map(|&top| coarse[3].iter().map(move |&bottom| [left, right, top, bottom]));
+        pairs.map(|sides| (sides, objective(&evidence, &sides))).collect()
+    })?;
+    let mut best = (USUAL, objective(&evidence, &USUAL));
+    for &candidate in scored.iter().flatten() {
+        if candidate.1 > best.1 {
+            best = candidate;
+        }
+    }
+
+    // Side by side: every candidate, then ever smaller steps.
+    for step in [1.15, 1.06, 1.02, 1.006] {
+        job.check()?;
+        for side in 0..4 {
+            let nudges = [best.0[side] * step, best.0[side] / step];
+            for &value in peaks[side].iter().chain(&nudges) {
+                let mut sides = best.0;
+                sides[side] = value;
+                let score = objective(&evidence, &sides);
+                if score > best.1 {
+                    best = (sides, score);
+                }
+            }
+        }
+    }
+
+    // Trust: the lead over the best of the really different boxes.
+    let is_different = |sides: &[f64; 4]| sides.iter().zip(&best.0).any(|(a, b)| (a / b).ln().abs() > DIFFERENT.ln());
+    let rival =
+        scored.iter().flatten().filter(|(s, _)| is_different(s)).map(|&(_, v)| v).fold(f64::NEG_INFINITY, f64::max);
+    let lead = (best.1 - rival).max(0.0);
+    let heard = 1.0 - (-(evidence.len() as f64) / 15.0).exp();
+    job.report(1.0);
+    Ok(Layout { sides: best.0, score: evidence.score(&best.0), trust: heard * (0.3 + 0.7 * lead / (lead + 0.03)) })
+}
+
+/// The score, with a slight preference for usual rooms that decides where the segments do not.
+fn objective(evidence: &Evidence, sides: &[f64; 4]) -> f64 {
+    let unusual: f64 = sides.iter().zip(&USUAL).map(|(s, u)| (s / u).ln().powi(2)).sum();
+    evidence.score(sides) - 0.01 * unusual
+}
+
+/// For each of the two faces a ray comes nearest to: the face and the inverse of the ray's parameter there.
+pub fn faces(sides: &[f64; 4], ray: DVec3) -> [(Face, f64); 2] {
+    let x = if ray.x < 0.0 { (Face::Left, -ray.x / sides[0]) } else { (Face::Right, ray.x / sides[1]) };
+    let y = if ray.y < 0.0 { (Face::Ceiling, -ray.y / sides[2]) } else { (Face::Floor, ray.y / sides[3]) };
+    let z = (Face::Back, ray.z.max(0.0));
+    // From inside a convex room the face that is hit is the one with the largest inverse.
+    let (high, low) = if x.1 >= y.1 { (x, y) } else { (y, x) };
+    if z.1 >= high.1 {
+        [z, high]
+    } else if z.1 >= low.1 {
+        [high, z]
+    } else {
+        [high, low]
+    }
+}
+
+impl Layout {
+    /// The face seen along a direction in (facing) room axes, and the inverse of the distance there in units of its length.
+    pub fn hit(&self, ray: DVec3) -> (Face, f64) {
+        faces(&self.sides, ray)[0]
+    }
+
+    /// Inverse depth, normals and trust of every pixel.
+    pub fn surface(
+        &self,
+        room: &RoomView,
+        width: usize,
+        height: usize,
+        frustum: &Frustum,
+        job: Job,
+    ) -> Result<Surface> {
+        let axes = facing_axes(room.perspective);
+        let to_room = axes.transpose();
+        let ray = |x: f64, y: f64| to_room * room.perspective.ray(DVec2::new(x, y));
+
+        // The nearest depth goes to the near plane, as with a caller's depth.
+        let steps = |n: usize| (0..48).map(move |i| (i as f64 + 0.5) / 48.0 * n as f64);
+        let mut samples: Vec<f64> =
+            steps(height).flat_map(|y| steps(width).map(move |x| (x, y))).map(|(x, y)| self.hit(ray(x, y)).1).collect();
+        samples.sort_by(f64::total_cmp);
+        let nearest = samples[samples.len() * 98 / 100].max(f64::MIN_POSITIVE);
+        let scale = 1.0 / (nearest * f64::from(frustum.near));
+
+        let mut inverse_depth = Image::new(width, height, 1)?;
+        exec::for_rows(&mut inverse_depth.data, width, job.part(0.0, 0.4), |y, row| {
+            for (x, out) in row.iter_mut().enumerate() {
+                *out = (self.hit(ray(x as f64 + 0.5, y as f64 + 0.5)).1 * scale) as f32;
+            }
+        })?;
+        let mut normals = Image::new(width, height, 3)?;
+        exec::for_rows(&mut normals.data, width * 3, job.part(0.4, 0.7), |y, row| {
+            for (x, out) in row.chunks_exact_mut(3).enumerate() {
+                let (face, _) = self.hit(ray(x as f64 + 0.5, y as f64 + 0.5));
+                Vec3::write_to_slice((axes * face.normal()).as_vec3(), out);
+            }
+        })?;
+        let confidence = self.confidence(room, width, height, job.part(0.7, 1.0))?;
+        Ok(Surface { inverse_depth, normals, confidence })
+    }
+
+    /// Trust falls with the distance to the nearest segment that lies on the same face and may do so.
+    fn confidence(&self, room: &RoomView, width: usize, height: usize, job: Job) -> Result<Image> {
+        let to_room = facing_axes(room.perspective).transpose();
+        let ray = |p: DVec2| to_room * room.perspective.ray(p);
+        let support: Vec<(Face, DVec2)> = room
+            .segments
+            .iter()
+            .filter_map(|(segment, axis)| {
+                let face = self.hit(ray(segment.midpoint())).0;
+                axis.filter(|&a| a != face.axis()).map(|_| (face, segment.midpoint()))
+            })
+            .take(MAX_SEGMENTS)
+            .collect();
+        let reach = 0.15 * DVec2::new(width as f64, height as f64).length();
+
+        // On a coarse grid, then bilinearly.
+        let (columns, rows) = (width.div_ceil(16).min(64), height.div_ceil(16).min(64));
+        let cell = DVec2::new(width as f64 / columns as f64, height as f64 / rows as f64);
+        let mut coarse = Image::new(columns, rows, 1)?;
+        exec::for_rows(&mut coarse.data, columns, job, |y, row| {
+            for (x, out) in row.iter_mut().enumerate() {
+                let centre = DVec2::new(x as f64 + 0.5, y as f64 + 0.5) * cell;
+                let face = self.hit(ray(centre)).0;
+                let on_face = support.iter().filter(|(f, _)| *f == face);
+                let distance = on_face.map(|(_, p)| p.distance(centre)).fold(f64::INFINITY, f64::min);
+                *out = (self.trust * (0.3 + 0.7 * (-distance / reach).exp())) as f32;
+            }
+        })?;
+        let mut confidence = Image::new(width, height, 1)?;
+        exec::for_rows(&mut confidence.data, width, job, |y, row| {
+            for (x, out) in row.iter_mut().enumerate() {
+                *out = coarse.sample((x as f64 + 0.5) / cell.x, (y as f64 + 0.5) / cell.y, 0);
+            }
+        })?;
+        Ok(confidence)
+    }
+}

@@ -1,0 +1,163 @@
+//! Normals from the pixel grid: a plane through each pixel's neighbours.
+//!
+//! On a plane `n · p = c` the point of a pixel is `p = z ray`, so that `1/z = (n / c) · ray`: inverse depth is affine
+//! in pixel coordinates, and the plane fit is a linear regression of `1/z` over a window, exact for exact planes. At
+//! depth edges and creases the window must stay on one side: each pixel takes the best of the fits of its own window
+//! and of the eight windows that have it on their border (Kuwahara et al. 1976, with planes for constants).
+
+use super::Frustum;
+use crate::error::Result;
+use crate::exec;
+use crate::geometry::linear;
+use crate::image::Image;
+use crate::job::Job;
+use glam::Vec3;
+
+/// Rows worked on together: their horizontal sums are shared.
+const BAND: usize = 32;
+/// A shifted window must fit this much better than the centred one to be taken.
+const PREFER_CENTRED: f32 = 0.5;
+
+/// Sums over a row of a window, `i` being the column offset and `w` the inverse depth.
+#[derive(Clone, Copy, Default)]
+struct RowSums {
+    n: f64,
+    i: f64,
+    ii: f64,
+    w: f64,
+    iw: f64,
+    ww: f64,
+}
+
+/// A regression plane about its pixel: `w ≈ value + dx i + dy j`, and the mean square of what it leaves.
+#[derive(Clone, Copy)]
+struct Fit {
+    value: f32,
+    dx: f32,
+    dy: f32,
+    residual: f32,
+}
+
+const NO_FIT: Fit = Fit { value: 0.0, dx: 0.0, dy: 0.0, residual: f32::INFINITY };
+
+/// Unit normals in camera space, towards the camera. Pixels with confidence 0 do not count and face the camera.
+pub fn fit(inverse_depth: &Image, confidence: &Image, frustum: &Frustum, radius: usize, job: Job) -> Result<Image> {
+    let (width, height) = (inverse_depth.width, inverse_depth.height);
+    let bands = exec::map(height.div_ceil(BAND), job.part(0.0, 0.7), |band| {
+        fit_band(inverse_depth, confidence, radius, band * BAND, ((band + 1) * BAND).min(height))
+    })?;
+    let fit_at = |x: usize, y: usize| bands[y / BAND][(y % BAND) * width + x];
+
+    let mut normals = Image::new(width, height, 3)?;
+    let r = radius as isize;
+    // Steps of normalised device coordinates, and of rays, per pixel.
+    let ray_step = (frustum.right - frustum.left) / (frustum.near * width as f32);
+    let ray_step_y = (frustum.bottom - frustum.top) / (frustum.near * height as f32);
+    exec::for_rows(&mut normals.data, width * 3, job.part(0.7, 1.0), |y, row| {
+        for (x, out) in row.chunks_exact_mut(3).enumerate() {
+            let mut normal = Vec3::NEG_Z;
+            if confidence.pixel(x, y)[0] > 0.0 {
+                // The best window with this pixel in it, judged also by how well it meets the pixel itself.
+                let w = inverse_depth.pixel(x, y)[0];
+                let (mut best, mut best_cost) = (fit_at(x, y), f32::INFINITY);
+                for (sx, sy) in [(0, 0), (-1, -1), (1, -1), (-1, 1), (1, 1), (0, -1), (-1, 0), (1, 0), (0, 1)] {
+                    let (cx, cy) = (x as isize + sx * r, y as isize + sy * r);
+                    if cx < 0 || cy < 0 || cx >= width as isize || cy >= height as isize {
+                        continue;
+                    }
+                    let fit = fit_at(cx as usize, cy as usize);
+                    let off = fit.value - fit.dx * (sx * r) as f32 - fit.dy * (sy * r) as f32 - w;
+                    let centred = if (sx, sy) == (0, 0) { PREFER_CENTRED } else { 1.0 };
+                    let cost = centred * (fit.residual + off * off / (2.0 * radius as f32 + 1.0));
+                    if cost < best_cost {
+                        (best, best_cost) = (fit, cost);
+                    }
+                }
+                if best_cost.is_finite() {
+                    normal = plane_normal(
+                        best.dx,
+                        best.dy,
+                        w,
+                        ray_step,
+                        ray_step_y,
+                        frustum.ray(frustum.ndc(x, y, width, height)),
+                    );
+                }
+            }
+            normal.write_to_slice(out);
+        }
+    })?;
+    Ok(normals)
+}
+
+/// The normal of the plane `1/z = a · ray` from its inverse depth and its steps at a pixel, turned to the camera.
+fn plane_normal(dx: f32, dy: f32, w: f32, step_x: f32, step_y: f32, ray: Vec3) -> Vec3 {
+    let (ax, ay) = (dx / step_x, dy / step_y);
+    let a = Vec3::new(ax, ay, w - ax * ray.x - ay * ray.y);
+    // a · ray = w > 0: `a` points away from the camera.
+    (-a).try_normalize().unwrap_or(Vec3::NEG_Z)
+}
+
+/// The fits of all pixels of rows `from..to`.
+fn fit_band(inverse_depth: &Image, confidence: &Image, radius: usize, from: usize, to: usize) -> Vec<Fit> {
+    let (width, height) = (inverse_depth.width, inverse_depth.height);
+    let (first, last) = (from.saturating_sub(radius), (to + radius).min(height));
+
+    // Along rows.
+    let mut sums = Vec::with_capacity((last - first) * width);
+    for y in first..last {
+        let (row, known) = (inverse_depth.row(y), confidence.row(y));
+        for x in 0..width {
+            let mut s = RowSums::default();
+            let (a, b) = (x.saturating_sub(radius), (x + radius + 1).min(width));
+            for (k, (&w, &c)) in (a..b).zip(row[a..b].iter().zip(&known[a..b])) {
+                if c > 0.0 {
+                    let (i, w) = (k as f64 - x as f64, f64::from(w));
+                    s.n += 1.0;
+                    s.i += i;
+                    s.ii += i * i;
+                    s.w += w;
+                    s.iw += i * w;
+                    s.ww += w * w;
+                }
+            }
+            sums.push(s);
+        }
+    }
+
+    // Along columns, then the regression.
+    let mut fits = Vec::with_capacity((to - from) * width);
+    for y in from..to {
+        for x in 0..width {
+            let (mut t, mut tj, mut tjj, mut tij, mut tjw) = (RowSums::default(), 0.0, 0.0, 0.0, 0.0);
+            for k in y.saturating_sub(radius)..(y + radius + 1).min(height) {
+                let (s, j) = (&sums[(k - first) * width + x], k as f64 - y as f64);
+                t.n += s.n;
+                t.i += s.i;
+                t.ii += s.ii;
+                t.w += s.w;
+                t.iw += s.iw;
+                t.ww += s.ww;
+                tj += j * s.n;
+                tjj += j * j * s.n;
+                tij += j * s.i;
+                tjw += j * s.w;
+            }
+            fits.push(regress(&t, tj, tjj, tij, tjw));
+        }
+    }
+    fits
+}
+
+/// Least squares of `w` on `(1, i, j)`, about the means; no fit where the points lie on one line.
+fn regress(t: &RowSums, tj: f64, tjj: f64, tij: f64, tjw: f64) -> Fit {
+    if t.n < 3.0 {
+        return NO_FIT;
+    }
+    let (mi, mj, mw) = (t.i / t.n, tj / t.n, t.w / t.n);
+    let (cii, cij, cjj) = (t.ii - t.n * mi * mi, tij - t.n * mi * mj, tjj - t.n * mj * mj);
+    let (ciw, cjw) = (t.iw - t.n * mi * mw, tjw - t.n * mj * mw);
+    let Some([dx, dy]) = linear::solve([[cii, cij], [cij, cjj]], [ciw, cjw]) else { return NO_FIT };
+    let left = (t.ww - t.n * mw * mw - dx * ciw - dy * cjw).max(0.0) / t.n;
+    Fit { value: (mw - dx * mi - dy * mj) as f32, dx: dx as f32, dy: dy as f32, residual: left as f32 }
+}

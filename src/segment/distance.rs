@@ -1,0 +1,110 @@
+//! Growing and shrinking masks by a radius, by the exact Euclidean distance transform (Felzenszwalb and Huttenlocher
+//! 2012). A light's mask grown by the radius of its bloom leaves the part of a ceiling whose colour can be trusted.
+
+use crate::error::{Result, check_range};
+use crate::exec;
+use crate::image::Image;
+use crate::job::Job;
+
+/// 1 where any pixel above one half is within `radius` pixels (centre to centre, in `[0, 65536]`), else 0.
+pub fn dilate(mask: &Image, radius: f32, job: Job) -> Result<Image> {
+    threshold_distance(mask, radius, true, job)
+}
+
+/// 1 where all pixels within `radius` pixels are above one half, else 0. Outside the image counts as above.
+pub fn erode(mask: &Image, radius: f32, job: Job) -> Result<Image> {
+    threshold_distance(mask, radius, false, job)
+}
+
+fn threshold_distance(mask: &Image, radius: f32, of_ones: bool, job: Job) -> Result<Image> {
+    check_range("radius", radius, 0.0, 65_536.0)?;
+    check_range("the number of channels of the mask", mask.channels, 1, 1)?;
+    let (width, height) = (mask.width, mask.height);
+
+    // Squared distances along columns, stored column by column.
+    let mut columns = Image::new(height, width, 1)?;
+    exec::for_rows(&mut columns.data, height, job.part(0.0, 0.5), |x, column| {
+        let is_set = |y: usize| (mask.data[y * width + x] > 0.5) == of_ones;
+        let mut last = f32::INFINITY;
+        for (y, out) in column.iter_mut().enumerate() {
+            last = if is_set(y) { 0.0 } else { last + 1.0 };
+            *out = last;
+        }
+        last = f32::INFINITY;
+        for (y, out) in column.iter_mut().enumerate().rev() {
+            last = if is_set(y) { 0.0 } else { last + 1.0 };
+            *out = out.min(last).powi(2);
+        }
+    })?;
+
+    // Along rows: the lower envelope of parabolas.
+    let mut out = Image::new(width, height, 1)?;
+    exec::for_rows(&mut out.data, width, job.part(0.5, 1.0), |y, row| {
+        let f: Vec<f64> = (0..width).map(|x| f64::from(columns.data[x * height + y])).collect();
+        let mut hull: Vec<(usize, f64)> = Vec::new();
+        for x in (0..width).filter(|&x| f[x].is_finite()) {
+            let mut from = f64::NEG_INFINITY;
+            while let Some(&(v, start)) = hull.last() {
+                let (xf, vf) = (x as f64, v as f64);
+                from = (f[x] + xf * xf - f[v] - vf * vf) / (2.0 * (xf - vf));
+                if from > start {
+                    break;
+                }
+                hull.pop();
+                from = f64::NEG_INFINITY;
+            }
+            hull.push((x, from));
+        }
+        let mut k = 0;
+        for (x, out) in row.iter_mut().enumerate() {
+            while k + 1 < hull.len() && hull[k + 1].1 <= x as f64 {
+                k += 1;
+            }
+            let near = hull.get(k).is_some_and(|&(v, _)| {
+                let d = x as f64 - v as f64;
+                d * d + f[v] <= f64::from(radius) * f64::from(radius)
+            });
+            *out = f32::from(near == of_ones);
+        }
+    })?;
+    Ok(out)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::job::Monitor;
+    use crate::rng::Rng;
+
+    #[test]
+    fn both_agree_with_their_definition() {
+        let monitor = Monitor::default();
+        let mask =
+            Image::from_fn(31, 23, |x, y| [f32::from(Rng::new(3, &[x as u64, y as u64]).next_f32() < 0.04)]).unwrap();
+        let holes = Image { data: mask.data.iter().map(|v| 1.0 - v).collect(), ..mask.clone() };
+        for radius in [0.0, 1.0, 1.5, 3.7, 100.0] {
+            let (grown, shrunk) =
+                (dilate(&mask, radius, monitor.job()).unwrap(), erode(&holes, radius, monitor.job()).unwrap());
+            for y in 0..23 {
+                for x in 0..31 {
+                    let near = (0..31 * 23).any(|i| {
+                        let (dx, dy) = ((i % 31) as f32 - x as f32, (i / 31) as f32 - y as f32);
+                        mask.data[i] > 0.5 && dx * dx + dy * dy <= radius * radius
+                    });
+                    assert_eq!(grown.pixel(x, y)[0], f32::from(near), "{x} {y} {radius}");
+                    assert_eq!(shrunk.pixel(x, y)[0], f32::from(!near), "{x} {y} {radius}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn empty_and_full_masks_stay_so() {
+        let monitor = Monitor::default();
+        let empty = Image::new(9, 5, 1).unwrap();
+        assert_eq!(dilate(&empty, 50.0, monitor.job()).unwrap(), empty);
+        let full = Image { data: vec![1.0; 45], ..empty };
+        assert_eq!(erode(&full, 50.0, monitor.job()).unwrap(), full);
+        assert!(dilate(&full, f32::NAN, monitor.job()).is_err());
+    }
+}

@@ -1,0 +1,155 @@
+//! From strokes to training samples: at most so many per class, evenly over the strokes, drawn by hashing.
+
+use super::{Input, Params};
+use crate::error::{Error, Result};
+use crate::image::try_vec;
+use crate::rng;
+
+/// One class of one stroke, or a part of a stroke: what cross-validation holds out together.
+pub struct Group {
+    pub positive: bool,
+    /// Indices into the samples.
+    pub members: Vec<usize>,
+}
+
+pub struct Samples {
+    /// One after the other, `dimension` values each.
+    pub values: Vec<f64>,
+    pub dimension: usize,
+    pub positive: Vec<bool>,
+    pub groups: Vec<Group>,
+    /// Of the negative and the positive class.
+    pub counts: [usize; 2],
+    pub contradictory: usize,
+    pub off_image: usize,
+}
+
+/// A class with a single stroke is split along it into this many groups.
+const PARTS: usize = 4;
+
+/// Draws the samples. Later strokes win where strokes disagree.
+pub fn draw(input: &Input, channels: &[usize], params: &Params) -> Result<Samples> {
+    let features = input.features;
+    let pixels = features.width * features.height;
+
+    // The last stroke to cover each pixel.
+    let mut owner = try_vec(pixels, u32::MAX)?;
+    let mut was_contradicted = try_vec(pixels, false)?;
+    let (mut contradictory, mut off_image) = (0, 0);
+    for (s, stroke) in input.strokes.iter().enumerate() {
+        for &p in &stroke.pixels {
+            let Some(slot) = owner.get_mut(p as usize) else {
+                off_image += 1;
+                continue;
+            };
+            let differs = *slot != u32::MAX && input.strokes[*slot as usize].positive != stroke.positive;
+            if differs && !was_contradicted[p as usize] {
+                was_contradicted[p as usize] = true;
+                contradictory += 1;
+            }
+            *slot = s as u32;
+        }
+    }
+    let mut owned: Vec<Vec<u32>> = vec![Vec::new(); input.strokes.len()];
+    for (p, &s) in owner.iter().enumerate().filter(|(_, s)| **s != u32::MAX) {
+        owned[s as usize].push(p as u32);
+    }
+
+    let mut samples = Samples {
+        values: Vec::new(),
+        dimension: channels.len(),
+        positive: Vec::new(),
+        groups: Vec::new(),
+        counts: [0; 2],
+        contradictory,
+        off_image,
+    };
+    for positive in [false, true] {
+        let mut strokes: Vec<Vec<u32>> = (input.strokes.iter().zip(&owned))
+            .filter(|(s, pixels)| s.positive == positive && !pixels.is_empty())
+            .map(|(_, pixels)| pixels.clone())
+            .collect();
+        if strokes.is_empty() {
+            let (class, opposite) = if positive { ("positive", "negative") } else { ("negative", "positive") };
+            return Err(Error::degenerate(format!(
+                "no {class} stroke covers any pixel of the {} x {} image ({} strokes, {off_image} of their pixels off the image, \
+                 {contradictory} painted over by the other class): paint at least one {class} stroke besides the {opposite} ones",
+                features.width,
+                features.height,
+                input.strokes.len()
+            )));
+        }
+        let sizes: Vec<usize> = strokes.iter().map(Vec::len).collect();
+        for (stroke, share) in strokes.iter_mut().zip(shares(&sizes, params.samples_per_class)) {
+            // The pixels with the smallest hashes are a random sample without replacement, whatever the stroke's order.
+            let key = |p: &u32| (rng::hash(params.seed, &[u64::from(*p)]), *p);
+            if share < stroke.len() {
+                stroke.select_nth_unstable_by_key(share, key);
+                stroke.truncate(share);
+            }
+            stroke.sort_unstable();
+        }
+        if strokes.len() == 1 {
+            strokes = split(&strokes[0], features.width);
+        }
+        for stroke in strokes.iter().filter(|s| !s.is_empty()) {
+            let first = samples.positive.len();
+            for &p in stroke {
+                let pixel = &features.data[p as usize * features.channels..][..features.channels];
+                samples.values.extend(channels.iter().map(|&c| f64::from(pixel[c])));
+                samples.positive.push(positive);
+            }
+            samples.groups.push(Group { positive, members: (first..samples.positive.len()).collect() });
+            samples.counts[usize::from(positive)] += stroke.len();
+        }
+    }
+    Ok(samples)
+}
+
+/// How many of `total` samples each stroke gives: equal shares, what small strokes lack going to the larger ones.
+fn shares(sizes: &[usize], total: usize) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..sizes.len()).collect();
+    order.sort_by_key(|&i| (sizes[i], i));
+    let mut shares = vec![0; sizes.len()];
+    let mut left = total;
+    for (k, &i) in order.iter().enumerate() {
+        shares[i] = sizes[i].min(left.div_ceil(sizes.len() - k));
+        left -= shares[i];
+    }
+    shares
+}
+
+/// Splits one stroke into pieces along its longer extent, to be held out one by one.
+fn split(pixels: &[u32], width: usize) -> Vec<Vec<u32>> {
+    let position = |p: u32| (p as usize % width, p as usize / width);
+    let extent = |f: fn((usize, usize)) -> usize| {
+        let values = || pixels.iter().map(|&p| f(position(p)));
+        values().max().unwrap_or(0) - values().min().unwrap_or(0)
+    };
+    let is_wide = extent(|p| p.0) >= extent(|p| p.1);
+    let mut sorted = pixels.to_vec();
+    sorted.sort_by_key(|&p| if is_wide { (position(p).0, p) } else { (position(p).1, p) });
+    sorted.chunks(sorted.len().div_ceil(PARTS)).map(<[u32]>::to_vec).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shares_are_even_and_use_what_small_strokes_leave() {
+        assert_eq!(shares(&[100, 100], 50), [25, 25]);
+        assert_eq!(shares(&[1000, 10, 1000], 310), [150, 10, 150]);
+        assert_eq!(shares(&[3, 2], 100), [3, 2]);
+        assert_eq!(shares(&[5, 5, 5], 1).iter().sum::<usize>(), 1);
+    }
+
+    #[test]
+    fn a_lone_stroke_is_split_along_its_length() {
+        let pixels: Vec<u32> = (0..20).flat_map(|y| [y * 50 + 7, y * 50 + 8]).collect();
+        let parts = split(&pixels, 50);
+        assert_eq!(parts.len(), 4);
+        assert!(parts.iter().enumerate().all(|(i, p)| p.iter().all(|&q| (q / 50 / 5) as usize == i)));
+        assert_eq!(split(&[3], 50), [[3]]);
+    }
+}

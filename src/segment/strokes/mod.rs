@@ -1,0 +1,114 @@
+//! What the user paints: pixels with what they are examples of.
+
+mod image;
+mod text;
+
+pub use image::from_image;
+pub use text::parse;
+
+use crate::error::{Error, Result, check_range};
+use glam::DVec2;
+
+/// One stroke of the brush: the pixels it covers (`y * width + x`) and what they are examples of.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stroke {
+    pub pixels: Vec<u32>,
+    pub positive: bool,
+}
+
+impl Stroke {
+    /// The pixels of a `width × height` image whose centres lie within `radius` of a polyline (pixels, > 0, at most 4096).
+    /// One point makes a dot. A stroke entirely off the image has no pixels.
+    pub fn polyline(points: &[DVec2], radius: f64, positive: bool, width: usize, height: usize) -> Result<Self> {
+        check_range("stroke radius", radius, 1e-3, 4096.0)?;
+        if points.is_empty() || !points.iter().all(|p| p.is_finite()) {
+            return Err(Error::argument("a stroke needs at least one point, and finite coordinates"));
+        }
+        let mut pixels = Vec::new();
+        let ends = points.iter().zip(points.iter().skip(1).chain(points.last()));
+        for (&a, &b) in ends {
+            // All pixels of the piece's bounding box, clipped to the image.
+            let clip = |v: f64, size: usize| v.clamp(0.0, size as f64) as usize;
+            let (low, high) = (a.min(b) - radius, a.max(b) + radius);
+            for y in clip(low.y.floor(), height)..clip(high.y.ceil(), height) {
+                for x in clip(low.x.floor(), width)..clip(high.x.ceil(), width) {
+                    let p = DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
+                    let along = b - a;
+                    let t = if along == DVec2::ZERO { 0.0 } else { (p - a).dot(along) / along.length_squared() };
+                    if p.distance(a + along * t.clamp(0.0, 1.0)) <= radius {
+                        pixels.push((y * width + x) as u32);
+                    }
+                }
+            }
+        }
+        pixels.sort_unstable();
+        pixels.dedup();
+        Ok(Self { pixels, positive })
+    }
+}
+
+/// The strokes of both phases.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct StrokeSet {
+    /// Positive: on the plane that holds the lights. Negative: elsewhere.
+    pub plane: Vec<Stroke>,
+    /// Positive: lights. Negative: the plane beside them.
+    pub lights: Vec<Stroke>,
+}
+
+impl StrokeSet {
+    /// The examples of the first phase: lights lie in the plane, so their strokes are examples of it as well; without
+    /// them bright lamps would be cut out of a dark ceiling. What is no light says nothing of the plane.
+    pub fn plane_examples(&self) -> Vec<Stroke> {
+        let lights = self.lights.iter().filter(|s| s.positive);
+        self.plane.iter().chain(lights).cloned().collect()
+    }
+}
+
+/// What a stroke can be an example of, as the file formats name it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    Plane,
+    NotPlane,
+    Light,
+    NotLight,
+}
+
+impl StrokeSet {
+    fn push(&mut self, kind: Kind, stroke: Stroke) {
+        match kind {
+            Kind::Plane | Kind::NotPlane => self.plane.push(stroke),
+            Kind::Light | Kind::NotLight => self.lights.push(stroke),
+        }
+    }
+}
+
+impl Kind {
+    fn is_positive(self) -> bool {
+        matches!(self, Self::Plane | Self::Light)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_polyline_covers_what_is_within_its_radius() {
+        let dot = Stroke::polyline(&[DVec2::new(2.5, 1.5)], 1.0, true, 5, 4).unwrap();
+        assert_eq!(dot.pixels, [2, 6, 7, 8, 12]);
+        let line = Stroke::polyline(&[DVec2::new(0.5, 0.5), DVec2::new(4.5, 0.5)], 0.4, false, 5, 4).unwrap();
+        assert_eq!(line.pixels, [0, 1, 2, 3, 4]);
+        assert!(!line.positive);
+    }
+
+    #[test]
+    fn off_image_strokes_are_empty_and_bad_ones_refused() {
+        let far = [DVec2::new(-1e9, 50.0), DVec2::new(-1e9, 1e12)];
+        assert!(Stroke::polyline(&far, 3.0, true, 100, 100).unwrap().pixels.is_empty());
+        assert!(Stroke::polyline(&[], 1.0, true, 9, 9).is_err());
+        assert!(Stroke::polyline(&[DVec2::NAN], 1.0, true, 9, 9).is_err());
+        assert!(Stroke::polyline(&[DVec2::ONE], 0.0, true, 9, 9).is_err());
+        assert!(Stroke::polyline(&[DVec2::ONE], f64::NAN, true, 9, 9).is_err());
+    }
+}

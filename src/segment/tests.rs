@@ -1,0 +1,258 @@
+//! Synthetic rooms with exact masks, the invariants, and the degenerate inputs.
+
+use super::*;
+use crate::error::ErrorKind;
+use crate::exec::Pool;
+use crate::job::Monitor;
+use crate::rng::Rng;
+use glam::{DVec2, Vec3};
+
+const WIDTH: usize = 320;
+const HEIGHT: usize = 240;
+
+/// A box room seen along its axis: ten features with noise in colour, and the face (0 ceiling, 1 floor, 2 left,
+/// 3 right, 4 back) of each pixel. Lamps, brighter and saturated, lie in the ceiling (face 5).
+fn room() -> (Image, Vec<u8>) {
+    let mut features = Image::new(WIDTH, HEIGHT, CHANNELS).unwrap();
+    let mut faces = Vec::new();
+    let colours =
+        [[78.0, 0.0, 4.0], [45.0, 8.0, 18.0], [80.0, 1.0, 6.0], [70.0, -2.0, 2.0], [79.0, 0.0, 5.0], [100.0, 0.0, 0.0]];
+    let normals = [Vec3::Y, Vec3::NEG_Y, Vec3::X, Vec3::NEG_X, Vec3::NEG_Z, Vec3::Y];
+    for (i, out) in features.data.chunks_exact_mut(CHANNELS).enumerate() {
+        let (x, y) = (i % WIDTH, i / WIDTH);
+        let ray = Vec3::new(x as f32 / 160.0 - 1.0, y as f32 / 160.0 - 0.75, 1.0);
+        let distances = [-1.0 / ray.y, 1.2 / ray.y, -1.5 / ray.x, 1.4 / ray.x, 5.0];
+        let hits = distances.iter().enumerate().filter(|(_, t)| **t > 0.0);
+        let (mut face, &t) = hits.min_by(|a, b| a.1.total_cmp(b.1)).unwrap();
+        let p = ray * t;
+        if face == 0 && (p.x.abs() - 0.6).abs() < 0.15 && (p.z * 1.5).fract() < 0.5 {
+            face = 5;
+        }
+        let mut rng = Rng::new(9, &[i as u64]);
+        for c in 0..3 {
+            out[c] = (colours[face][c] + 3.0 * rng.normal() as f32).min(if c == 0 { 100.0 } else { 200.0 });
+        }
+        out[3] = (1.0 - 1.0 / t) / 0.9;
+        p.write_to_slice(&mut out[4..7]);
+        normals[face].write_to_slice(&mut out[7..10]);
+        faces.push(face as u8);
+    }
+    (features, faces)
+}
+
+fn line(positive: bool, points: &[[f64; 2]]) -> Stroke {
+    let points: Vec<DVec2> = points.iter().map(|&p| p.into()).collect();
+    Stroke::polyline(&points, 3.0, positive, WIDTH, HEIGHT).unwrap()
+}
+
+/// One stroke on each surface.
+fn plane_strokes() -> Vec<Stroke> {
+    vec![
+        line(true, &[[60.0, 15.0], [260.0, 20.0]]),
+        line(true, &[[130.0, 40.0], [190.0, 45.0]]),
+        line(false, &[[60.0, 220.0], [260.0, 225.0]]),
+        line(false, &[[20.0, 60.0], [25.0, 180.0]]),
+        line(false, &[[300.0, 60.0], [295.0, 180.0]]),
+        line(false, &[[130.0, 120.0], [190.0, 130.0]]),
+    ]
+}
+
+fn segment(features: &Image, strokes: &[Stroke], within: Option<&Image>, params: &Params) -> Result<Segmentation> {
+    run(&Input { features, strokes, within }, params, Monitor::default().job())
+}
+
+fn iou(mask: &Image, is_true: impl Fn(usize) -> bool) -> f64 {
+    let (mut both, mut either) = (0, 0);
+    for (i, &m) in mask.data.iter().enumerate() {
+        both += usize::from(m > 0.5 && is_true(i));
+        either += usize::from(m > 0.5 || is_true(i));
+    }
+    f64::from(both as u32) / f64::from(either.max(1) as u32)
+}
+
+#[test]
+fn the_ceiling_then_its_lamps() {
+    let (features, faces) = room();
+    let plane = segment(&features, &plane_strokes(), None, &Params::default()).unwrap();
+    let agreement = iou(&plane.mask, |i| faces[i] == 0 || faces[i] == 5);
+    assert!(agreement >= 0.97, "{agreement} {:?}", plane.model);
+    assert!(plane.error < 0.05, "{}", plane.error);
+
+    // The lamps of the first row are painted; those of all rows are found, and nothing off the ceiling.
+    let lamp_pixels: Vec<u32> =
+        (0..faces.len() as u32).filter(|&i| faces[i as usize] == 5 && i % 320 < 110 && i < 320 * 40).collect();
+    assert!(lamp_pixels.len() > 50);
+    let strokes = [Stroke { pixels: lamp_pixels, positive: true }, line(false, &[[150.0, 10.0], [165.0, 60.0]])];
+    let lights = segment(&features, &strokes, Some(&plane.mask), &Params::for_lights()).unwrap();
+    let agreement = iou(&lights.mask, |i| faces[i] == 5);
+    assert!(agreement >= 0.95, "{agreement}");
+    let outside = lights.confidence.data.iter().zip(&plane.mask.data).filter(|(_, p)| **p == 0.0);
+    assert!(outside.into_iter().all(|(c, _)| *c == 0.0));
+}
+
+#[test]
+fn probabilities_are_calibrated_on_overlapping_classes() {
+    // One informative feature, two normals at distance 1.5: the posterior is known.
+    let features = Image::from_fn(WIDTH, HEIGHT, |x, y| {
+        let class = y >= HEIGHT / 2;
+        [Rng::new(4, &[x as u64, y as u64]).normal() as f32 + if class { 1.5 } else { 0.0 }]
+    })
+    .unwrap();
+    let strokes: Vec<Stroke> = (0..8)
+        .map(|k| {
+            line(
+                k % 2 == 1,
+                &[
+                    [20.0 + 35.0 * f64::from(k), 125.0 - 115.0 * f64::from(1 - k % 2)],
+                    [25.0 + 35.0 * f64::from(k), 225.0 - 115.0 * f64::from(1 - k % 2)],
+                ],
+            )
+        })
+        .collect();
+    let got = segment(&features, &strokes, None, &Params::default()).unwrap();
+    let mut worst = 0.0f32;
+    for (c, f) in got.confidence.data.iter().zip(&features.data) {
+        let truth = 1.0 / (1.0 + (-(1.5 * f - 1.125)).exp());
+        worst = worst.max((c - truth).abs());
+    }
+    assert!(worst < 0.12, "{worst}");
+    // The Bayes error is Φ(-0.75) = 0.2266; 2,000 samples have a standard error of 0.01.
+    assert!((got.error - 0.2266).abs() < 0.05, "{}", got.error);
+}
+
+#[test]
+fn a_stroke_on_a_wrong_region_mends_it() {
+    let (features, faces) = room();
+    let strokes = plane_strokes();
+    let is_ceiling = |i: usize| faces[i] == 0 || faces[i] == 5;
+    let few = segment(&features, &strokes[..3], None, &Params::default()).unwrap();
+    let all = segment(&features, &strokes, None, &Params::default()).unwrap();
+    assert!(iou(&all.mask, is_ceiling) >= iou(&few.mask, is_ceiling));
+    // What was painted as not the plane is not in it, and has been seen.
+    for stroke in &strokes[3..] {
+        let inside = stroke.pixels.iter().filter(|&&p| all.mask.data[p as usize] > 0.5).count();
+        assert!(inside * 20 < stroke.pixels.len());
+        let unseen =
+            |s: &Segmentation| stroke.pixels.iter().map(|&p| f64::from(s.unseen.data[p as usize])).sum::<f64>();
+        assert!(unseen(&all) < 0.1 * stroke.pixels.len() as f64);
+        assert!(unseen(&all) <= unseen(&few));
+    }
+}
+
+#[test]
+fn one_class_or_none_is_an_error_that_says_what_to_paint() {
+    let (features, _) = room();
+    let strokes = plane_strokes();
+    for (strokes, word) in [(&strokes[..2], "negative"), (&strokes[2..], "positive"), (&strokes[..0], "negative")] {
+        let error = segment(&features, strokes, None, &Params::default()).unwrap_err();
+        assert_eq!(error.kind, ErrorKind::Degenerate);
+        assert!(error.message.contains(&format!("no {word} stroke")), "{error}");
+    }
+    // A positive stroke that is wholly off the image, and one wholly painted over.
+    let off = Stroke { pixels: vec![(WIDTH * HEIGHT) as u32, u32::MAX], positive: true };
+    let error = segment(&features, &[off.clone(), strokes[2].clone()], None, &Params::default()).unwrap_err();
+    assert!(error.message.contains("2 of their pixels off"), "{error}");
+    let over = Stroke { positive: false, ..strokes[0].clone() };
+    let error = segment(&features, &[strokes[0].clone(), over], None, &Params::default()).unwrap_err();
+    assert!(error.message.contains("painted over"), "{error}");
+}
+
+#[test]
+fn the_last_of_contradicting_strokes_wins() {
+    let (features, _) = room();
+    let mut strokes = plane_strokes();
+    strokes.insert(0, Stroke { positive: false, ..strokes[0].clone() });
+    let got = segment(&features, &strokes, None, &Params::default()).unwrap();
+    assert_eq!(got.contradictory, strokes[0].pixels.len());
+    let without = segment(&features, &strokes[1..], None, &Params::default()).unwrap();
+    assert_eq!(got.confidence, without.confidence);
+}
+
+#[test]
+fn useless_features_do_no_harm() {
+    let (features, faces) = room();
+    // Twice the same features, a constant, and one that is zero.
+    let mut wide = Image::new(WIDTH, HEIGHT, 16).unwrap();
+    for (o, f) in wide.data.chunks_exact_mut(16).zip(features.data.chunks_exact(CHANNELS)) {
+        o[..10].copy_from_slice(f);
+        o[10..14].copy_from_slice(&f[6..10]);
+        o[14] = 1e9;
+    }
+    let params = Params { channels: u32::MAX, ..Params::default() };
+    let got = segment(&wide, &plane_strokes(), None, &params).unwrap();
+    assert_eq!(got.confidence.count_non_finite(), 0);
+    assert!(iou(&got.mask, |i| faces[i] == 0 || faces[i] == 5) >= 0.97);
+
+    // Nothing but a constant: no pixel differs from another.
+    let flat = Image::from_fn(WIDTH, HEIGHT, |_, _| [3.0, 0.0]).unwrap();
+    let got = segment(&flat, &plane_strokes(), None, &params).unwrap();
+    assert!(got.confidence.data.iter().all(|c| (c - 0.5).abs() < 1e-3));
+    assert!(got.error >= 0.49, "{}", got.error);
+}
+
+#[test]
+fn the_smallest_inputs_work() {
+    let features = Image { width: 2, height: 1, channels: 1, data: vec![0.0, 1.0] };
+    let strokes = [Stroke { pixels: vec![0], positive: false }, Stroke { pixels: vec![1], positive: true }];
+    let got = segment(&features, &strokes, None, &Params::default()).unwrap();
+    assert_eq!(got.mask.data, [0.0, 1.0]);
+    assert_eq!(got.samples, [1, 1]);
+    let nothing = Image::new(2, 1, 1).unwrap();
+    let got = segment(&features, &strokes, Some(&nothing), &Params::default()).unwrap();
+    assert_eq!(got.mask.data, [0.0, 0.0]);
+    let one = Params { samples_per_class: 1, ..Params::default() };
+    let (features, _) = room();
+    assert_eq!(segment(&features, &plane_strokes(), None, &one).unwrap().samples, [1, 1]);
+}
+
+#[test]
+fn wrong_arguments_are_refused() {
+    let (mut features, _) = room();
+    let strokes = plane_strokes();
+    let none = Params { channels: 0, ..Params::default() };
+    assert!(segment(&features, &strokes, None, &none).unwrap_err().message.contains("channels"));
+    let zero = Params { samples_per_class: 0, ..Params::default() };
+    assert!(segment(&features, &strokes, None, &zero).unwrap_err().message.contains("samples_per_class is 0"));
+    let ridge = Params { ridge: f64::NAN, ..Params::default() };
+    assert!(segment(&features, &strokes, None, &ridge).unwrap_err().message.contains("ridge"));
+    let small = Image::new(3, 3, 1).unwrap();
+    assert!(segment(&features, &strokes, Some(&small), &Params::default()).unwrap_err().message.contains("3 x 3"));
+    features.data[17] = f32::NAN;
+    assert!(segment(&features, &strokes, None, &Params::default()).unwrap_err().message.contains("1 values"));
+}
+
+#[test]
+fn the_bits_do_not_depend_on_the_number_of_threads() {
+    let (features, _) = room();
+    let strokes = plane_strokes();
+    let with = |threads: usize| {
+        let pool = Pool::new(threads).unwrap();
+        let got = pool.run(|| segment(&features, &strokes, None, &Params::default())).unwrap();
+        (got.mask, got.confidence, got.unseen, got.error.to_bits())
+    };
+    assert!(with(1) == with(3));
+}
+
+#[test]
+fn samples_depend_on_the_seed_and_not_on_the_order_of_pixels() {
+    let (features, _) = room();
+    let strokes = plane_strokes();
+    let few = Params { samples_per_class: 50, ..Params::default() };
+    let mut turned = strokes.clone();
+    turned.iter_mut().for_each(|s| s.pixels.reverse());
+    let a = segment(&features, &strokes, None, &few).unwrap();
+    assert_eq!(a.samples, [50, 50]);
+    assert_eq!(a.confidence, segment(&features, &turned, None, &few).unwrap().confidence);
+    let other = Params { seed: 2, ..few };
+    assert_ne!(a.confidence, segment(&features, &strokes, None, &other).unwrap().confidence);
+}
+
+#[test]
+fn a_cancelled_job_ends_with_an_error() {
+    let (features, _) = room();
+    let monitor = Monitor::default();
+    monitor.cancel();
+    let strokes = plane_strokes();
+    let input = Input { features: &features, strokes: &strokes, within: None };
+    assert_eq!(run(&input, &Params::default(), monitor.job()).unwrap_err(), Error::cancelled());
+}
