@@ -141,8 +141,3 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Segmentation> {
         off_image: samples.off_image,
     })
 }
-
-/// The mask grown by a disc of `radius` pixels.
-pub fn dilate(_mask: &Image, _radius: usize) -> Result<Image> {
-    todo!()
-}
