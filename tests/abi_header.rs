@@ -171,7 +171,9 @@ fn generate() -> String {
         let bindings = cbindgen::Builder::new().with_config(config.clone()).with_src(&path).generate();
         let mut items = Vec::new();
         bindings.unwrap_or_else(|e| panic!("{}: {e}", path.display())).write(&mut items);
-        out += &one_line_comments(String::from_utf8(items).unwrap().trim());
+        // The style "both" gives structs a tag, for forward declarations, but need not use it.
+        let items = String::from_utf8(items).unwrap().replace("struct luxfer_", "luxfer_").replace("typedef luxfer_", "typedef struct luxfer_");
+        out += &one_line_comments(items.trim());
     }
     (out + &trailer).trim_start().to_string()
 }

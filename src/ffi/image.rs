@@ -178,11 +178,16 @@ impl Pixels {
     /// An image inside a result, shared with it.
     pub(super) fn part<O: Send + Sync + 'static>(
         context: &Arc<Context>,
-        output: &Arc<O>,
+        output: Arc<O>,
         pick: fn(&O) -> &Image,
     ) -> Arc<Self> {
-        let holder = Part { output: output.clone(), pick };
+        let holder = Part { output, pick };
         Arc::new(Self { context: context.clone(), source: Source::Result(Arc::new(holder)) })
+    }
+
+    /// An input that may be left out.
+    pub(super) fn optional(context: &Arc<Context>, image: *mut luxfer_image, name: &str) -> Result<Option<Arc<Self>>> {
+        if image.is_null() { Ok(None) } else { handle::borrow_in(context, image, name).map(Some) }
     }
 }
 

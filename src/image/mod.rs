@@ -4,7 +4,6 @@
 //! in cd/m². sRGB is decoded and encoded here and nowhere else. Pixel `(x, y)` covers `[x, x+1) × [y, y+1)`: the
 //! centre of the top-left pixel is (0.5, 0.5), rows run downwards.
 
-pub mod brush;
 mod buffer;
 pub mod colour;
 pub mod io;

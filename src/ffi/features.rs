@@ -1,0 +1,280 @@
+//! Features
+//!
+//! What segmentation knows of each pixel of a photo: ten channels, L*, a*, b* (CIELAB, D65), depth, position x, y, z and
+//! normal x, y, z. Depth comes from the caller, or is laid out as a room from the lines that luxfer_rectify has found, or is
+//! a neutral guess.
+
+use super::context::luxfer_context;
+use super::guard::{enter, guard};
+use super::handle::{self, Handle, Owned, tag};
+use super::image::{Pixels, luxfer_image};
+use super::job::luxfer_job;
+use super::params::{self, Report, Versioned};
+use super::pointer::Out;
+use super::rectify::luxfer_rectify;
+use super::stage::{Stage, need};
+use super::status::luxfer_status;
+use crate::error::{Error, Result};
+use crate::features::{self, DepthKind, DepthSource, Features};
+use crate::image::Image;
+use crate::rectify::View;
+use std::sync::Arc;
+
+/// The features of a photo. See luxfer_features_create.
+pub struct luxfer_features {
+    _opaque: [u8; 0],
+}
+
+/// What a depth map measures: a LUXFER_DEPTH_ value.
+pub type luxfer_depth_kind = i32;
+/// Distance along the viewing axis.
+pub const LUXFER_DEPTH_ALONG_Z: luxfer_depth_kind = 0;
+/// Distance along the ray of each pixel.
+pub const LUXFER_DEPTH_ALONG_RAY: luxfer_depth_kind = 1;
+
+/// An image of the features: a LUXFER_FEATURES_ value.
+pub type luxfer_features_image = i32;
+/// The ten channels; luxfer_image_read takes them apart.
+pub const LUXFER_FEATURES_CHANNELS: luxfer_features_image = 0;
+/// Trust in the depth of each pixel, in [0, 1]; 1 channel.
+pub const LUXFER_FEATURES_DEPTH_CONFIDENCE: luxfer_features_image = 1;
+
+/// Where the depth came from: a LUXFER_DEPTH_FROM_ value.
+pub type luxfer_depth_source = i32;
+/// The caller's depth map.
+pub const LUXFER_DEPTH_FROM_CALLER: luxfer_depth_source = 0;
+/// A room laid out from the lines of the photo.
+pub const LUXFER_DEPTH_FROM_LAYOUT: luxfer_depth_source = 1;
+/// A guess that knows nothing of the photo.
+pub const LUXFER_DEPTH_FROM_NOTHING: luxfer_depth_source = 2;
+
+/// Settings of the features. Fill them with luxfer_features_params_init.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_features_params {
+    /// sizeof(luxfer_features_params), set by luxfer_features_params_init.
+    pub struct_size: u32,
+    /// Near plane of the paper's Eq. 1, in its own units, in [1e-3, 1e3]; default 1.
+    pub near_plane: f32,
+    /// Far plane of Eq. 1, in [1.001, 1e6] times near_plane; default 10.
+    pub far_plane: f32,
+    /// Half-width of the window the normals are fitted in, in pixels, in [0, 64]; default 0: from the photo's size.
+    pub normal_radius: u32,
+}
+
+// SAFETY: plain numbers.
+unsafe impl Versioned for luxfer_features_params {
+    const NAME: &'static str = "luxfer_features_params";
+    const SIZES: &'static [usize] = &[16];
+    fn defaults() -> Self {
+        let features::Params { near, far, normal_radius } = features::Params::default();
+        Self { struct_size: 16, near_plane: near, far_plane: far, normal_radius: normal_radius as u32 }
+    }
+}
+
+impl luxfer_features_params {
+    pub(super) fn params(&self) -> features::Params {
+        features::Params { near: self.near_plane, far: self.far_plane, normal_radius: self.normal_radius as usize }
+    }
+}
+
+/// How good the features are. Set struct_size before the call.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_features_report {
+    /// sizeof(luxfer_features_report), set by the caller.
+    pub struct_size: u32,
+    /// LUXFER_DEPTH_FROM_ value.
+    pub depth_source: luxfer_depth_source,
+    /// Mean trust in the depth, in [0, 1].
+    pub depth_confidence: f64,
+    /// Pixels of the photo that were NaN, infinite or negative and have been replaced from their neighbours.
+    pub replaced_pixels: u64,
+}
+
+// SAFETY: plain numbers.
+unsafe impl Versioned for luxfer_features_report {
+    const NAME: &'static str = "luxfer_features_report";
+    const SIZES: &'static [usize] = &[24];
+    fn defaults() -> Self {
+        Self { struct_size: 24, depth_source: 0, depth_confidence: 0.0, replaced_pixels: 0 }
+    }
+}
+
+#[derive(Clone, Default)]
+pub(super) struct Inputs {
+    photo: Option<Arc<Pixels>>,
+    depth: Option<(Arc<Pixels>, DepthKind)>,
+    view: Option<Arc<View>>,
+}
+
+impl Handle for luxfer_features {
+    type Object = Stage<Inputs, Features>;
+    const TAG: u64 = tag(b"lux.feat");
+    const NAME: &'static str = "luxfer_features";
+}
+
+pub(super) fn depth_kind(value: luxfer_depth_kind) -> Result<DepthKind> {
+    match value {
+        LUXFER_DEPTH_ALONG_Z => Ok(DepthKind::AlongZ),
+        LUXFER_DEPTH_ALONG_RAY => Ok(DepthKind::AlongRay),
+        other => Err(Error::argument(format!("depth kind is {other}; it must be a LUXFER_DEPTH_ value"))),
+    }
+}
+
+/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_features_params_init(params: *mut luxfer_features_params, size: usize) -> luxfer_status {
+    guard(|| params::init(params, size))
+}
+
+/// Creates the stage. The caller releases *features. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_features_create(
+    context: *mut luxfer_context,
+    features: *mut *mut luxfer_features,
+) -> luxfer_status {
+    enter(context, |object| {
+        Out::new(features, "features")?.set(handle::give(Stage::new(object.context(), Inputs::default())));
+        Ok(())
+    })
+}
+
+/// Sets the photo: linear RGB, 1 = display white. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_features_set_photo(
+    features: *mut luxfer_features,
+    photo: *mut luxfer_image,
+) -> luxfer_status {
+    enter(features, |stage| {
+        let photo = handle::borrow_in(stage.context(), photo, "photo")?;
+        stage.change(|inputs| {
+            inputs.photo = Some(photo);
+            Ok(())
+        })
+    })
+}
+
+/// Sets a depth map of the photo's size, 1 channel, in any unit; what is not positive and finite is a hole. kind is a
+/// LUXFER_DEPTH_ value. depth may be NULL: none. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_features_set_depth(
+    features: *mut luxfer_features,
+    depth: *mut luxfer_image,
+    kind: luxfer_depth_kind,
+) -> luxfer_status {
+    enter(features, |stage| {
+        let kind = depth_kind(kind)?;
+        let depth = Pixels::optional(stage.context(), depth, "depth")?;
+        stage.change(|inputs| {
+            inputs.depth = depth.map(|depth| (depth, kind));
+            Ok(())
+        })
+    })
+}
+
+/// Takes the lines and the camera that a luxfer_rectify has found in the same photo, as they are now. rectify may be NULL:
+/// none. Any thread.
+/// LUXFER_NOT_READY if it has found none yet.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_features_set_view(
+    features: *mut luxfer_features,
+    rectify: *mut luxfer_rectify,
+) -> luxfer_status {
+    enter(features, |stage| {
+        let view = if rectify.is_null() {
+            None
+        } else {
+            Some(handle::borrow_in(stage.context(), rectify, "rectify")?.output()?.view.clone())
+        };
+        stage.change(|inputs| {
+            inputs.view = view;
+            Ok(())
+        })
+    })
+}
+
+/// Starts a job that computes the features. params may be NULL for the defaults. The caller releases *job. Any thread.
+/// LUXFER_INVALID_OPERATION if the photo is missing or a job runs already. The job may end with LUXFER_INVALID_ARGUMENT if
+/// sizes differ or a setting is out of range, LUXFER_DEGENERATE if the depth map is all holes.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_features_start(
+    features: *mut luxfer_features,
+    params: *const luxfer_features_params,
+    job: *mut *mut luxfer_job,
+) -> luxfer_status {
+    enter(features, |stage| {
+        let params = params::read(params)?.params();
+        need(&stage.inputs().photo, "luxfer_features_set_photo")?;
+        stage.start(job, move |inputs, _, job| {
+            let photo = need(&inputs.photo, "luxfer_features_set_photo")?.image();
+            let depth = inputs.depth.as_ref();
+            let input = features::Input {
+                photo,
+                depth: depth.map(|(image, kind)| features::DepthMap { image: image.image(), kind: *kind }),
+                room: inputs.view.as_ref().map(|view| features::RoomView {
+                    perspective: &view.perspective,
+                    segments: &view.segments,
+                }),
+            };
+            features::run(&input, &params, job)
+        })
+    })
+}
+
+/// Gets an image of the result; which is a LUXFER_FEATURES_ value. The caller releases *image. Any thread.
+/// LUXFER_NOT_READY before a job has succeeded.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_features_get_image(
+    features: *mut luxfer_features,
+    which: luxfer_features_image,
+    image: *mut *mut luxfer_image,
+) -> luxfer_status {
+    enter(features, |stage| {
+        let out = Out::new(image, "image")?;
+        let pick: fn(&Features) -> &Image = match which {
+            LUXFER_FEATURES_CHANNELS => |f| &f.image,
+            LUXFER_FEATURES_DEPTH_CONFIDENCE => |f| &f.depth_confidence,
+            _ => return Err(Error::argument(format!("which is {which}; it must be a LUXFER_FEATURES_ value"))),
+        };
+        out.set(handle::give(Pixels::part(stage.context(), stage.output()?, pick)));
+        Ok(())
+    })
+}
+
+/// Tells how good the features are. Any thread.
+/// LUXFER_NOT_READY before a job has succeeded.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_features_get_report(
+    features: *mut luxfer_features,
+    report: *mut luxfer_features_report,
+) -> luxfer_status {
+    enter(features, |stage| {
+        let out = Report::new(report)?;
+        let output = stage.output()?;
+        let confidence = &output.depth_confidence.data;
+        out.set(luxfer_features_report {
+            depth_source: match output.depth_source {
+                DepthSource::Caller => LUXFER_DEPTH_FROM_CALLER,
+                DepthSource::Layout => LUXFER_DEPTH_FROM_LAYOUT,
+                DepthSource::Neutral => LUXFER_DEPTH_FROM_NOTHING,
+            },
+            depth_confidence: confidence.iter().map(|&c| f64::from(c)).sum::<f64>() / confidence.len() as f64,
+            replaced_pixels: output.non_finite as u64,
+            ..luxfer_features_report::defaults()
+        });
+        Ok(())
+    })
+}
+
+/// Adds a reference. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_features_retain(features: *mut luxfer_features) -> luxfer_status {
+    handle::retain(features)
+}
+
+/// Gives a reference back; a job that runs goes on. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_features_release(features: *mut luxfer_features) -> luxfer_status {
+    handle::release(features)
+}

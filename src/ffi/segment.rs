@@ -1,0 +1,360 @@
+//! Segmentation
+//!
+//! From a few strokes on a photo to a mask with a confidence for each pixel. The transfer needs two: the plane that carries
+//! the lights, then the lights within it. Strokes may be added after a result, and the stage started again.
+
+use super::context::luxfer_context;
+use super::guard::{enter, guard};
+use super::handle::{self, Handle, Owned, tag};
+use super::image::{Pixels, luxfer_image};
+use super::job::luxfer_job;
+use super::params::{self, Report, Versioned};
+use super::pointer::{Out, bytes, text};
+use super::stage::{Stage, need};
+use super::status::luxfer_status;
+use crate::error::{Error, Result};
+use crate::image::Image;
+use crate::segment::{self, Segmentation, Stroke, StrokeSet, strokes};
+use glam::DVec2;
+use std::ffi::{c_char, c_void};
+use std::sync::Arc;
+
+/// A segmentation by strokes. See luxfer_segment_create.
+pub struct luxfer_segment {
+    _opaque: [u8; 0],
+}
+
+/// What strokes are about: a LUXFER_PHASE_ value.
+pub type luxfer_phase = i32;
+/// The plane that carries the lights; its positive strokes lie on the plane, those of lights count as well.
+pub const LUXFER_PHASE_PLANE: luxfer_phase = 0;
+/// The lights in the plane; its positive strokes lie on lights, the others on the plane beside them.
+pub const LUXFER_PHASE_LIGHTS: luxfer_phase = 1;
+
+/// An image of a segmentation: a LUXFER_SEGMENT_ value.
+pub type luxfer_segment_image = i32;
+/// 1 where the confidence is above one half, else 0; 1 channel.
+pub const LUXFER_SEGMENT_MASK: luxfer_segment_image = 0;
+/// Probability that a pixel is of the positive class, in [0, 1]; 1 channel.
+pub const LUXFER_SEGMENT_CONFIDENCE: luxfer_segment_image = 1;
+/// How far a pixel is from anything that strokes have shown, in [0, 1]: where it is high one more stroke helps; 1 channel.
+pub const LUXFER_SEGMENT_UNSEEN: luxfer_segment_image = 2;
+
+/// Settings of a segmentation. Fill them with luxfer_segment_params_init.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_segment_params {
+    /// sizeof(luxfer_segment_params), set by luxfer_segment_params_init.
+    pub struct_size: u32,
+    /// Samples drawn from the strokes of each class, in [1, 1000000]; default 1000.
+    pub samples_per_class: u32,
+    /// Which channels of the features to use, bit i for channel i; default all. For lights 7, colour only, is best: they
+    /// share the plane's geometry.
+    pub channels: u32,
+    /// Must be 0.
+    pub reserved: u32,
+    /// Strength of the prior that keeps weights small, in [1e-9, 1e3]; default 1e-3.
+    pub ridge: f64,
+    /// Seed of the samples; default 1.
+    pub seed: u64,
+}
+
+// SAFETY: plain numbers.
+unsafe impl Versioned for luxfer_segment_params {
+    const NAME: &'static str = "luxfer_segment_params";
+    const SIZES: &'static [usize] = &[32];
+    fn defaults() -> Self {
+        let segment::Params { samples_per_class, channels, ridge, seed } = segment::Params::default();
+        Self { struct_size: 32, samples_per_class: samples_per_class as u32, channels, reserved: 0, ridge, seed }
+    }
+}
+
+impl luxfer_segment_params {
+    pub(super) fn params(&self) -> segment::Params {
+        segment::Params {
+            samples_per_class: self.samples_per_class as usize,
+            channels: self.channels,
+            ridge: self.ridge,
+            seed: self.seed,
+        }
+    }
+}
+
+/// How good a segmentation is. Set struct_size before the call.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_segment_report {
+    /// sizeof(luxfer_segment_report), set by the caller.
+    pub struct_size: u32,
+    /// Must be 0.
+    pub reserved: u32,
+    /// Expected share of wrong pixels, in [0, 1], from strokes held out of the training.
+    pub error: f64,
+    /// Samples used of the negative class.
+    pub negative_samples: u64,
+    /// Samples used of the positive class.
+    pub positive_samples: u64,
+    /// Pixels that strokes of both classes cover; the later stroke counts.
+    pub contradictory_pixels: u64,
+}
+
+// SAFETY: plain numbers.
+unsafe impl Versioned for luxfer_segment_report {
+    const NAME: &'static str = "luxfer_segment_report";
+    const SIZES: &'static [usize] = &[40];
+    fn defaults() -> Self {
+        Self { struct_size: 40, reserved: 0, error: 0.0, negative_samples: 0, positive_samples: 0, contradictory_pixels: 0 }
+    }
+}
+
+#[derive(Clone, Default)]
+pub(super) struct Inputs {
+    features: Option<Arc<Pixels>>,
+    within: Option<Arc<Pixels>>,
+    strokes: Vec<Stroke>,
+}
+
+impl Handle for luxfer_segment {
+    type Object = Stage<Inputs, Segmentation>;
+    const TAG: u64 = tag(b"lux.segm");
+    const NAME: &'static str = "luxfer_segment";
+}
+
+/// A stroke from the caller's points, for an image of the given size.
+pub(super) fn stroke(
+    points: *const c_void,
+    point_count: usize,
+    radius: f32,
+    positive: i32,
+    (width, height): (usize, usize),
+) -> Result<Stroke> {
+    let size = point_count.checked_mul(8).ok_or_else(|| Error::argument(format!("point_count is {point_count}")))?;
+    let float = |b: &[u8]| f64::from(f32::from_ne_bytes([b[0], b[1], b[2], b[3]]));
+    let points: Vec<DVec2> = bytes(points.cast(), size, "points")?
+        .chunks_exact(8)
+        .map(|b| DVec2::new(float(&b[..4]), float(&b[4..])))
+        .collect();
+    match positive {
+        0 | 1 => Stroke::polyline(&points, radius.into(), positive == 1, width, height),
+        _ => Err(Error::argument(format!("positive is {positive}; it must be 0 or 1"))),
+    }
+}
+
+/// The strokes of one phase.
+fn of_phase(set: StrokeSet, phase: luxfer_phase) -> Result<Vec<Stroke>> {
+    match phase {
+        LUXFER_PHASE_PLANE => Ok(set.plane_examples()),
+        LUXFER_PHASE_LIGHTS => Ok(set.lights),
+        other => Err(Error::argument(format!("phase is {other}; it must be a LUXFER_PHASE_ value"))),
+    }
+}
+
+impl Inputs {
+    fn size(&self) -> Result<(usize, usize)> {
+        let image = need(&self.features, "luxfer_segment_set_features")?.image();
+        Ok((image.width, image.height))
+    }
+}
+
+/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_segment_params_init(params: *mut luxfer_segment_params, size: usize) -> luxfer_status {
+    guard(|| params::init(params, size))
+}
+
+/// Creates the stage. The caller releases *segment. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_segment_create(
+    context: *mut luxfer_context,
+    segment: *mut *mut luxfer_segment,
+) -> luxfer_status {
+    enter(context, |object| {
+        Out::new(segment, "segment")?.set(handle::give(Stage::new(object.context(), Inputs::default())));
+        Ok(())
+    })
+}
+
+/// Sets what is known of each pixel: LUXFER_FEATURES_CHANNELS, or any image of 1 to 16 channels. Strokes set for another
+/// size are dropped. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_segment_set_features(
+    segment: *mut luxfer_segment,
+    features: *mut luxfer_image,
+) -> luxfer_status {
+    enter(segment, |stage| {
+        let features = handle::borrow_in(stage.context(), features, "features")?;
+        stage.change(|inputs| {
+            let size = (features.image().width, features.image().height);
+            if inputs.size().is_ok_and(|before| before != size) {
+                inputs.strokes.clear();
+            }
+            inputs.features = Some(features);
+            Ok(())
+        })
+    })
+}
+
+/// Sets where to look, 1, and where not, 0, such as the mask of the plane when lights are sought; 1 channel, the size of
+/// the features. within may be NULL: everywhere. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_segment_set_within(
+    segment: *mut luxfer_segment,
+    within: *mut luxfer_image,
+) -> luxfer_status {
+    enter(segment, |stage| {
+        let within = Pixels::optional(stage.context(), within, "within")?;
+        stage.change(|inputs| {
+            inputs.within = within;
+            Ok(())
+        })
+    })
+}
+
+/// Adds a stroke along a polyline: points is an array of point_count pairs of float x, y in pixels (the top-left pixel's
+/// centre is 0.5, 0.5), radius is in pixels, in [0.001, 4096], and positive is 1 for what is sought and 0 for what is not.
+/// One point makes a dot. Any thread.
+/// LUXFER_INVALID_OPERATION before the features are set.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_segment_add_stroke(
+    segment: *mut luxfer_segment,
+    points: *const f32,
+    point_count: usize,
+    radius: f32,
+    positive: i32,
+) -> luxfer_status {
+    enter(segment, |stage| {
+        stage.change(|inputs| {
+            let stroke = stroke(points.cast(), point_count, radius, positive, inputs.size()?)?;
+            inputs.strokes.push(stroke);
+            Ok(())
+        })
+    })
+}
+
+/// Adds the strokes of a drawing of the features' size, those that concern phase (a LUXFER_PHASE_ value): green (0, 255, 0)
+/// plane, red (255, 0, 0) not plane, yellow (255, 255, 0) light, blue (0, 0, 255) not light; other colours and transparent
+/// pixels are unpainted. Load drawings with LUXFER_COLOUR_SRGB. Any thread.
+/// LUXFER_INVALID_OPERATION before the features are set; LUXFER_INVALID_ARGUMENT if the size differs.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_segment_add_strokes_image(
+    segment: *mut luxfer_segment,
+    drawing: *mut luxfer_image,
+    phase: luxfer_phase,
+) -> luxfer_status {
+    enter(segment, |stage| {
+        let drawing = handle::borrow_in(stage.context(), drawing, "drawing")?;
+        stage.change(|inputs| {
+            let features = need(&inputs.features, "luxfer_segment_set_features")?.image();
+            features.check_same_size("the features", drawing.image(), "the drawing")?;
+            inputs.strokes.extend(of_phase(strokes::from_image(drawing.image())?, phase)?);
+            Ok(())
+        })
+    })
+}
+
+/// Adds the strokes that a text in UTF-8 describes, those that concern phase (a LUXFER_PHASE_ value). Any thread.
+/// LUXFER_INVALID_OPERATION before the features are set; LUXFER_FORMAT, naming the line, if the text is malformed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_segment_add_strokes_text(
+    segment: *mut luxfer_segment,
+    description: *const c_char,
+    phase: luxfer_phase,
+) -> luxfer_status {
+    enter(segment, |stage| {
+        let description = text(description, "description")?;
+        stage.change(|inputs| {
+            let (width, height) = inputs.size()?;
+            inputs.strokes.extend(of_phase(strokes::parse(description, width, height)?, phase)?);
+            Ok(())
+        })
+    })
+}
+
+/// Removes all strokes. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_segment_clear_strokes(segment: *mut luxfer_segment) -> luxfer_status {
+    enter(segment, |stage| {
+        stage.change(|inputs| {
+            inputs.strokes.clear();
+            Ok(())
+        })
+    })
+}
+
+/// Starts a job that segments. params may be NULL for the defaults. The caller releases *job. Any thread.
+/// LUXFER_INVALID_OPERATION if the features are missing or a job runs already. The job may end with LUXFER_DEGENERATE if
+/// there are no strokes of one class, LUXFER_INVALID_ARGUMENT if sizes differ, a feature is not finite or a setting is out
+/// of range.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_segment_start(
+    segment: *mut luxfer_segment,
+    params: *const luxfer_segment_params,
+    job: *mut *mut luxfer_job,
+) -> luxfer_status {
+    enter(segment, |stage| {
+        let params = params::read(params)?.params();
+        need(&stage.inputs().features, "luxfer_segment_set_features")?;
+        stage.start(job, move |inputs, _, job| {
+            let input = segment::Input {
+                features: need(&inputs.features, "luxfer_segment_set_features")?.image(),
+                strokes: &inputs.strokes,
+                within: inputs.within.as_ref().map(|w| w.image()),
+            };
+            segment::run(&input, &params, job)
+        })
+    })
+}
+
+/// Gets an image of the result; which is a LUXFER_SEGMENT_ value. The caller releases *image. Any thread.
+/// LUXFER_NOT_READY before a job has succeeded.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_segment_get_image(
+    segment: *mut luxfer_segment,
+    which: luxfer_segment_image,
+    image: *mut *mut luxfer_image,
+) -> luxfer_status {
+    enter(segment, |stage| {
+        let out = Out::new(image, "image")?;
+        let pick: fn(&Segmentation) -> &Image = match which {
+            LUXFER_SEGMENT_MASK => |s| &s.mask,
+            LUXFER_SEGMENT_CONFIDENCE => |s| &s.confidence,
+            LUXFER_SEGMENT_UNSEEN => |s| &s.unseen,
+            _ => return Err(Error::argument(format!("which is {which}; it must be a LUXFER_SEGMENT_ value"))),
+        };
+        out.set(handle::give(Pixels::part(stage.context(), stage.output()?, pick)));
+        Ok(())
+    })
+}
+
+/// Tells how good the segmentation is. Any thread.
+/// LUXFER_NOT_READY before a job has succeeded.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_segment_get_report(
+    segment: *mut luxfer_segment,
+    report: *mut luxfer_segment_report,
+) -> luxfer_status {
+    enter(segment, |stage| {
+        let out = Report::new(report)?;
+        let output = stage.output()?;
+        out.set(luxfer_segment_report {
+            error: output.error,
+            negative_samples: output.samples[0] as u64,
+            positive_samples: output.samples[1] as u64,
+            contradictory_pixels: output.contradictory as u64,
+            ..luxfer_segment_report::defaults()
+        });
+        Ok(())
+    })
+}
+
+/// Adds a reference. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_segment_retain(segment: *mut luxfer_segment) -> luxfer_status {
+    handle::retain(segment)
+}
+
+/// Gives a reference back; a job that runs goes on. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_segment_release(segment: *mut luxfer_segment) -> luxfer_status {
+    handle::release(segment)
+}
