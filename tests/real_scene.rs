@@ -11,10 +11,8 @@ const TIME_LIMIT: Duration = Duration::from_secs(20);
 
 /// The path of a test file; `None`, with a line that says so, where the data is absent outside CI.
 fn data(name: &str) -> Option<PathBuf> {
-    let root = std::env::var_os("LUXFER_TEST_DATA").map_or_else(
-        || PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared/data"),
-        PathBuf::from,
-    );
+    let root = std::env::var_os("LUXFER_TEST_DATA")
+        .map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared/data"), PathBuf::from);
     let path = root.join(name);
     if path.exists() {
         return Some(path);

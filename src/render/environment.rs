@@ -86,7 +86,6 @@ impl EnvironmentSampler {
     }
 }
 
-
 /// Radiance from a unit direction: bilinear, wrapping around the horizon, clamped at the poles.
 pub fn radiance(environment: &Environment, direction: Vec3) -> Vec3 {
     let image = match environment {

@@ -45,7 +45,8 @@ pub enum LightEnd {
 impl Lights {
     pub fn build(scene: &Scene, emitters: Emitters, radius: f32) -> Result<Self> {
         let punctual = Distribution::new(scene.lights.iter().map(|light| flux(light, radius)))?;
-        let (environment, mean) = match scene.environment.as_ref().map(EnvironmentSampler::build).transpose()?.flatten() {
+        let (environment, mean) = match scene.environment.as_ref().map(EnvironmentSampler::build).transpose()?.flatten()
+        {
             Some((sampler, mean)) => (Some(sampler), mean),
             None => (None, 0.0),
         };

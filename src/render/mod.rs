@@ -113,13 +113,7 @@ pub struct Film {
 ///
 /// # Errors
 /// Parameters out of range, a camera that cannot see, no memory; cancelled, when the film last published stays good.
-pub fn run(
-    world: &World,
-    camera: &Camera,
-    params: &Params,
-    job: Job,
-    publish: &mut dyn FnMut(&Film),
-) -> Result<Film> {
+pub fn run(world: &World, camera: &Camera, params: &Params, job: Job, publish: &mut dyn FnMut(&Film)) -> Result<Film> {
     check(camera, params)?;
     let start = Instant::now();
     let budget = Duration::from_millis(u64::from(params.time_budget_ms));

@@ -163,9 +163,9 @@ fn add_environment<S: PathSink>(world: &World, leg: &Leg, sink: &mut S) {
     if emission == Vec3::ZERO {
         return;
     }
-    let weight = leg.rival.map_or(1.0, |(_, density)| {
-        power_heuristic(density, world.lights().environment_density(leg.ray.direction))
-    });
+    let weight = leg
+        .rival
+        .map_or(1.0, |(_, density)| power_heuristic(density, world.lights().environment_density(leg.ray.direction)));
     sink.add(LightSource::Environment, leg.throughput * weight, emission);
 }
 

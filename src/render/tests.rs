@@ -157,7 +157,8 @@ fn a_lit_texel_is_a_lamp_of_its_size_however_the_texture_wraps() {
         textures: vec![Texture::new("lamps", image)],
         ..Scene::default()
     };
-    let (expected, error) = measure(&world(Scene { meshes: vec![floor.clone(), small], ..scene.clone() }), &centre_of(0));
+    let (expected, error) =
+        measure(&world(Scene { meshes: vec![floor.clone(), small], ..scene.clone() }), &centre_of(0));
     let (mean, own_error) = measure(&world(scene.clone()), &centre_of(0));
     assert!((mean - expected).abs() < 4.0 * error.hypot(own_error), "{mean} and {expected}");
     // As precise as the lamp alone: the dark texels cost nothing.
@@ -223,9 +224,8 @@ fn skies_light_a_floor_by_their_integral() {
     let constant = Scene { environment: Some(Environment::Constant(Vec3::splat(7.0))), ..base.clone() };
     assert_close(&world(constant), &centre_of(0), 7.0 * std::f64::consts::PI);
     // A sky that grows with the cosine of the angle from the zenith: E = 2π/3, up to interpolation between rows.
-    let image = Image::from_fn(16, 256, |_, y| {
-        [((std::f32::consts::PI * (y as f32 + 0.5) / 256.0).cos()).max(0.0) * 3.0; 3]
-    });
+    let image =
+        Image::from_fn(16, 256, |_, y| [((std::f32::consts::PI * (y as f32 + 0.5) / 256.0).cos()).max(0.0) * 3.0; 3]);
     let sky = Scene { environment: Some(Environment::Image(image.unwrap())), ..base.clone() };
     let (mean, error) = measure(&world(sky), &centre_of(0));
     let expected = 3.0 * std::f64::consts::TAU / 3.0;
@@ -421,7 +421,8 @@ fn what_cannot_be_rendered_is_refused_by_name() {
     refused(&|s| s.environment = Some(Environment::Constant(Vec3::NAN)), "environment");
 
     let world = world(valid.clone());
-    let run_with = |camera: &Camera, params: &Params| run(&world, camera, params, Monitor::default().job(), &mut |_| ());
+    let run_with =
+        |camera: &Camera, params: &Params| run(&world, camera, params, Monitor::default().job(), &mut |_| ());
     for bad in [
         Params { width: 0, ..Params::default() },
         Params { samples: 0, ..Params::default() },

@@ -77,8 +77,7 @@ impl World {
         let lights = Lights::build(&scene, emitters, (high - low).length() / 2.0)?;
         let layered = |m: &Material| m.ior > 1.0 && m.metallic < 1.0;
         let albedo_table = scene.materials.iter().any(layered).then(AlbedoTable::new);
-        let any_see_through =
-            scene.materials.iter().any(|m| m.alpha_mode != AlphaMode::Opaque || m.transmission > 0.0);
+        let any_see_through = scene.materials.iter().any(|m| m.alpha_mode != AlphaMode::Opaque || m.transmission > 0.0);
         job.report(1.0);
         Ok(Self { scene, accel, first, mesh_of, emitter_of, lights, albedo_table, any_see_through })
     }

@@ -9,8 +9,8 @@ use crate::job::Job;
 use crate::rng;
 use glam::Vec3;
 use obvhs::aabb::Aabb;
-use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
 use obvhs::bvh2::Bvh2;
+use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 
 /// Triangles a leaf holds at most: one packet.
@@ -203,9 +203,10 @@ impl<'a> Collapse<'a> {
             let node = &self.tree.nodes[index];
             let first = node.first_index as usize;
             if node.is_leaf() {
-                ids.extend((first..first + node.prim_count as usize).map(|slot| {
-                    self.kept[self.tree.primitive_indices[slot] as usize]
-                }));
+                ids.extend(
+                    (first..first + node.prim_count as usize)
+                        .map(|slot| self.kept[self.tree.primitive_indices[slot] as usize]),
+                );
             } else {
                 open.extend([first, first + 1]);
             }

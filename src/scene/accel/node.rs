@@ -87,10 +87,10 @@ impl Node {
         for axis in 0..3 {
             let side = ray.near_side[axis] & 7;
             // SAFETY: both rows hold eight floats and start at a multiple of 32 bytes, as the node does.
-            let (low, high) = unsafe {
-                (_mm256_load_ps(self.bounds[side].as_ptr()), _mm256_load_ps(self.bounds[side ^ 1].as_ptr()))
-            };
-            let enter = _mm256_fmadd_ps(low, _mm256_set1_ps(ray.near_scale[axis]), _mm256_set1_ps(ray.near_shift[axis]));
+            let (low, high) =
+                unsafe { (_mm256_load_ps(self.bounds[side].as_ptr()), _mm256_load_ps(self.bounds[side ^ 1].as_ptr())) };
+            let enter =
+                _mm256_fmadd_ps(low, _mm256_set1_ps(ray.near_scale[axis]), _mm256_set1_ps(ray.near_shift[axis]));
             let leave = _mm256_fmadd_ps(high, _mm256_set1_ps(ray.far_scale[axis]), _mm256_set1_ps(ray.far_shift[axis]));
             near = _mm256_max_ps(near, enter);
             far = _mm256_min_ps(far, leave);

@@ -41,11 +41,7 @@ impl Packet {
             y[corner] = relative(corner, ray.axes[1]) - z[corner] * ray.shear.y;
         }
         // Scaled barycentric coordinates: on which side of each edge the ray passes.
-        let mut edge = [
-            x[2] * y[1] - y[2] * x[1],
-            x[0] * y[2] - y[0] * x[2],
-            x[1] * y[0] - y[1] * x[0],
-        ];
+        let mut edge = [x[2] * y[1] - y[2] * x[1], x[0] * y[2] - y[0] * x[2], x[1] * y[0] - y[1] * x[0]];
         // Only those that came out as zero are settled in f64: the neighbour across the edge has the same value with the
         // other sign, whichever way it was found.
         let zero = edge.map(|e| e.cmpeq(Vec4::ZERO));

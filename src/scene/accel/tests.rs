@@ -92,7 +92,9 @@ fn has_wide() -> bool {
 fn no_ray_escapes_a_closed_box_through_its_edges_and_vertices() {
     let mut rng = Rng::new(2, &[]);
     let mut escaped = 0;
-    for (scale, offset) in [(1.0, Vec3::ZERO), (1e-4, Vec3::ZERO), (1e6, Vec3::ZERO), (1.0, Vec3::new(900.0, -70.0, 3.0))] {
+    for (scale, offset) in
+        [(1.0, Vec3::ZERO), (1e-4, Vec3::ZERO), (1e6, Vec3::ZERO), (1.0, Vec3::new(900.0, -70.0, 3.0))]
+    {
         let n = 24;
         let triangles = tessellated_box(n, offset - Vec3::ONE * scale, offset + Vec3::new(1.0, 0.7, 1.3) * scale);
         let accel = build(&triangles);
