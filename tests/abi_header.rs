@@ -24,7 +24,9 @@ fn the_header_is_what_the_sources_say() {
     }
     let checked_in = header();
     if let Some((a, b)) = checked_in.lines().zip(generated.lines()).find(|(a, b)| a != b) {
-        panic!("include/luxfer.h says {a:?} where the sources say {b:?}; run with LUXFER_BLESS=1 and review the change");
+        panic!(
+            "include/luxfer.h says {a:?} where the sources say {b:?}; run with LUXFER_BLESS=1 and review the change"
+        );
     }
     assert_eq!(checked_in.len(), generated.len(), "include/luxfer.h ends early or late; run with LUXFER_BLESS=1");
 }
@@ -172,7 +174,10 @@ fn generate() -> String {
         let mut items = Vec::new();
         bindings.unwrap_or_else(|e| panic!("{}: {e}", path.display())).write(&mut items);
         // The style "both" gives structs a tag, for forward declarations, but need not use it.
-        let items = String::from_utf8(items).unwrap().replace("struct luxfer_", "luxfer_").replace("typedef luxfer_", "typedef struct luxfer_");
+        let items = String::from_utf8(items)
+            .unwrap()
+            .replace("struct luxfer_", "luxfer_")
+            .replace("typedef luxfer_", "typedef struct luxfer_");
         out += &one_line_comments(items.trim());
     }
     (out + &trailer).trim_start().to_string()
@@ -221,7 +226,8 @@ fn version_macros() -> String {
 /// Names of the functions a header declares.
 fn functions(header: &str) -> Vec<&str> {
     let declarations = header.lines().filter(|l| !l.starts_with([' ', '#', '/']) && !l.starts_with("typedef"));
-    let names = declarations.filter_map(|l| l.split_once('(')).filter_map(|(before, _)| before.rsplit([' ', '*']).next());
+    let names =
+        declarations.filter_map(|l| l.split_once('(')).filter_map(|(before, _)| before.rsplit([' ', '*']).next());
     names.filter(|n| n.starts_with("luxfer_")).collect()
 }
 

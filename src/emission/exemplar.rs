@@ -137,10 +137,10 @@ impl Working {
         let confidence = channel(3).copied().collect();
         let lit = channel(4).map(|&v| v >= 0.5).collect();
 
-        // A working pixel is usable if all of it is; if that leaves nothing, if any of it is.
-        let mut whole: Vec<bool> = channel(5).map(|&v| v > 1.0 - 1e-4).collect();
-        if !whole.contains(&true) {
-            whole = channel(5).map(|&v| v > 0.0).collect();
+        // A working pixel is usable if all of it is. If that leaves none, only full size can show what there is.
+        let whole: Vec<bool> = channel(5).map(|&v| v > 1.0 - 1e-4).collect();
+        if !whole.contains(&true) && side < longest {
+            return Self::new(image, light, components, usable, longest, job);
         }
         Ok(Self { width, height, pitch, colour, confidence, lit, usable: whole })
     }

@@ -15,13 +15,15 @@ use glam::{DMat2, DVec2};
 /// Correlation from which a shift may be a period.
 const LEAST_CORRELATION: f32 = 0.6;
 /// How far below the best a period's correlation may lie: lower ones match lamps of unequal kind.
-const RELATIVE_CORRELATION: f32 = 0.85;
+const RELATIVE_CORRELATION: f32 = 0.9;
 /// Correlation at all shifts along an axis from which the pattern does not change along it.
 const UNCHANGING: f32 = 0.95;
 /// Share of the valid pixels that must overlap for a correlation to count.
 const LEAST_OVERLAP: f32 = 0.2;
 /// Longest side of the image that is correlated.
 const SIDE: usize = 160;
+/// Slant of a row of lamps that is taken for none.
+const MOST_SLANT: f64 = 0.02;
 /// Fewer lamps than this show no law of their own: the exemplar repeats as a whole.
 const FEW_LAMPS: usize = 6;
 
@@ -79,6 +81,7 @@ pub fn find(exemplar: &Exemplar, job: Job) -> Result<(Continuation, f64)> {
         }
     }
     let mut repeats = peaks(&correlation, width, height, least);
+    sharpen(&mut repeats);
     repeats.iter_mut().for_each(|(shift, _)| *shift *= to_unwarped);
     let best = repeats.iter().map(|r| r.1).fold(0.0, f32::max);
     repeats.retain(|r| r.1 >= LEAST_CORRELATION.max(RELATIVE_CORRELATION * best));
@@ -96,7 +99,8 @@ pub fn find(exemplar: &Exemplar, job: Job) -> Result<(Continuation, f64)> {
         [(a, _), (b, _)] => (Continuation::Lattice(refine(exemplar, [a, b], 2)), goodness),
         [(a, _)] => {
             let across = if a.x.abs() > a.y.abs() { DVec2::Y * extent } else { DVec2::X * extent };
-            (Continuation::Row(refine(exemplar, [a, across], 1)), goodness)
+            let [period, _] = refine(exemplar, [a, across], 1);
+            (Continuation::Row([straight(period), across]), goodness)
         }
         _ if few => (Continuation::Tile([DVec2::X * extent, DVec2::Y * extent]), 0.0),
         _ => (Continuation::Free, 0.0),
@@ -128,17 +132,48 @@ fn peaks(correlation: &Autocorrelation, width: usize, height: usize, least: f32)
                 if i < 4 { value > other } else { value >= other }
             });
             if is_peak {
-                // The vertex of the parabola through three values.
+                // The vertex of the parabola through three values: where it is, and how far it rises above the middle one.
                 let vertex = |low: f32, high: f32| {
-                    let curvature = f64::from(low + high - 2.0 * value);
-                    if curvature < -1e-9 { (f64::from(low - high) / (2.0 * curvature)).clamp(-0.5, 0.5) } else { 0.0 }
+                    let (slope, curvature) = (high - low, low + high - 2.0 * value);
+                    if curvature > -1e-6 {
+                        return (0.0, 0.0);
+                    }
+                    (-0.5 * slope / curvature, -0.125 * slope * slope / curvature)
                 };
-                let offset = DVec2::new(vertex(at(-1, 0), at(1, 0)), vertex(at(0, -1), at(0, 1)));
-                found.push((DVec2::new(x as f64, y as f64) + offset, value));
+                let (right, rise_x) = vertex(at(-1, 0), at(1, 0));
+                let (down, rise_y) = vertex(at(0, -1), at(0, 1));
+                let shift = DVec2::new(x as f64 + f64::from(right), y as f64 + f64::from(down));
+                found.push((shift, (value + rise_x + rise_y).min(1.0)));
             }
         }
     }
     found
+}
+
+/// Measures every shift again by the farthest peak that is a multiple of it: an error there counts by its fraction only.
+fn sharpen(peaks: &mut [(DVec2, f32)]) {
+    let all: Vec<DVec2> = peaks.iter().map(|p| p.0).collect();
+    for (shift, _) in peaks {
+        for times in 2.. {
+            let expected = *shift * f64::from(times);
+            let nearest =
+                all.iter().min_by(|p, q| p.distance_squared(expected).total_cmp(&q.distance_squared(expected)));
+            match nearest.filter(|p| p.distance(expected) < 1.0) {
+                Some(peak) => *shift = *peak / f64::from(times),
+                None => break,
+            }
+        }
+    }
+}
+
+/// A period that all but follows an axis follows it: a row of few lamps cannot tell a slant of 1 % from their own disorder,
+/// but carried on for long it would leave the plane's axes, along which the photo was unwarped.
+fn straight(period: DVec2) -> DVec2 {
+    match () {
+        _ if period.x.abs() < MOST_SLANT * period.y.abs() => DVec2::new(0.0, period.length().copysign(period.y)),
+        _ if period.y.abs() < MOST_SLANT * period.x.abs() => DVec2::new(period.length().copysign(period.x), 0.0),
+        _ => period,
+    }
 }
 
 /// Fits the first `count` basis vectors to the centres of like lamps: every pair whose difference is near `i a + j b`

@@ -7,13 +7,13 @@ use crate::job::Monitor;
 use crate::rng::Rng;
 use glam::DMat2;
 
-struct Exemplar3 {
+struct Design {
     unwarped: Image,
     light: Image,
     valid: Image,
 }
 
-impl Exemplar3 {
+impl Design {
     /// Lamps where `lamp` says so; colours vary from pixel to pixel so that every source pixel can be told.
     fn new(width: usize, height: usize, lamp: impl Fn(f64, f64) -> bool) -> Self {
         let on = |x: usize, y: usize| lamp(x as f64 + 0.5, y as f64 + 0.5);
@@ -117,7 +117,7 @@ fn grids_go_on_in_phase() {
         [("square", 40.0, 40.0, 14.0, 14.0), ("rectangular", 48.0, 40.0, 20.0, 10.0), ("odd", 37.3, 51.7, 11.0, 23.0)]
     {
         for cut in [false, true] {
-            let mut exemplar = Exemplar3::new(300, 280, grid(px, py, w, h));
+            let mut exemplar = Design::new(300, 280, grid(px, py, w, h));
             if cut {
                 exemplar = exemplar.with_corners_cut();
             }
@@ -140,7 +140,7 @@ fn hexagonal_skewed_and_mixed_lattices_go_on_in_phase() {
     ];
     for (name, a, b, radius) in patterns {
         let inverse = DMat2::from_cols(a, b).inverse();
-        let exemplar = Exemplar3::new(320, 300, |x, y| {
+        let exemplar = Design::new(320, 300, |x, y| {
             let p = DVec2::new(x - 17.5, y - 11.5);
             let base = (inverse * p).floor();
             (0..4).any(|i| {
@@ -155,7 +155,7 @@ fn hexagonal_skewed_and_mixed_lattices_go_on_in_phase() {
     }
 
     // Square and round lamps in alternate columns: both kinds stay, in their own columns.
-    let exemplar = Exemplar3::new(360, 300, |x, y| {
+    let exemplar = Design::new(360, 300, |x, y| {
         let (u, v) = ((x - 10.0).rem_euclid(100.0) - 25.0, (y - 6.0).rem_euclid(50.0) - 25.0);
         (u.abs() < 12.0 && v.abs() < 12.0) || (u - 50.0).hypot(v) < 8.0
     });
@@ -174,7 +174,7 @@ fn hexagonal_skewed_and_mixed_lattices_go_on_in_phase() {
 #[test]
 fn missing_lamps_stay_missing_in_proportion() {
     let (px, py) = (40.0, 36.0);
-    let exemplar = Exemplar3::new(400, 396, |x, y| {
+    let exemplar = Design::new(400, 396, |x, y| {
         let cell = [((x - 9.0) / px).floor() as i64 as u64, ((y - 7.0) / py).floor() as i64 as u64];
         grid(px, py, 16.0, 12.0)(x, y) && Rng::new(77, &cell).next_f64() < 0.9
     });
@@ -190,7 +190,7 @@ fn missing_lamps_stay_missing_in_proportion() {
 
 #[test]
 fn every_block_size_serves() {
-    let exemplar = Exemplar3::new(512, 480, grid(48.0, 40.0, 20.0, 10.0)).with_corners_cut();
+    let exemplar = Design::new(512, 480, grid(48.0, 40.0, 20.0, 10.0)).with_corners_cut();
     for block in (25..=200).step_by(25) {
         let params = Params { width: 640, height: 600, block, ..Params::default() };
         let result = exemplar.run(&params).unwrap();
@@ -200,7 +200,7 @@ fn every_block_size_serves() {
 }
 
 /// Round lamps at random, at least `gap` apart.
-fn blobs(width: usize, height: usize, gap: f64) -> (Exemplar3, usize) {
+fn blobs(width: usize, height: usize, gap: f64) -> (Design, usize) {
     let mut rng = Rng::new(21, &[]);
     let mut centres: Vec<(DVec2, f64)> = Vec::new();
     for _ in 0..4000 {
@@ -210,7 +210,7 @@ fn blobs(width: usize, height: usize, gap: f64) -> (Exemplar3, usize) {
         }
     }
     let count = centres.len();
-    (Exemplar3::new(width, height, |x, y| centres.iter().any(|c| c.0.distance(DVec2::new(x, y)) < c.1)), count)
+    (Design::new(width, height, |x, y| centres.iter().any(|c| c.0.distance(DVec2::new(x, y)) < c.1)), count)
 }
 
 #[test]
@@ -226,13 +226,19 @@ fn scattered_lamps_stay_whole_and_as_many() {
     let result = exemplar.run(&Params { width: 700, height: 700, ..Params::default() }).unwrap();
     assert_eq!(result.continuation, Continuation::Free);
     let s = score(&result, per_area, (least, mean, most), None);
-    // About 400 lamps: the standard deviation of their mean area is 1.3 %, that of their number is below 5 %.
-    assert!(s.cut == 0 && s.merged == 0 && (s.density - 1.0).abs() < 0.1 && (s.area - 1.0).abs() < 0.05, "{s:?}");
+    // Patches show contiguous pieces again and again, so the texture is a sample of no more lamps than the exemplar has. Their
+    // areas vary by a third: the mean area, and the number at a given share of light, have a standard deviation of a third
+    // over the root of that number; three of them are allowed. The share of light itself is kept more closely.
+    let deviation = (areas.iter().map(|a| (a / mean - 1.0).powi(2)).sum::<f64>() / areas.len() as f64).sqrt();
+    let allowed = 3.0 * deviation / (areas.len() as f64).sqrt();
+    assert!(s.cut == 0 && s.merged == 0, "{s:?}");
+    assert!((s.density - 1.0).abs() < allowed && (s.area - 1.0).abs() < allowed, "{s:?} {allowed}");
+    assert!(result.error < 0.1, "{}", result.error);
 }
 
 #[test]
 fn a_texture_inside_the_exemplar_is_copied_bit_by_bit() {
-    let exemplar = Exemplar3::new(120, 90, grid(30.0, 30.0, 10.0, 12.0));
+    let exemplar = Design::new(120, 90, grid(30.0, 30.0, 10.0, 12.0));
     let result = exemplar.run(&Params { width: 120, height: 90, ..Params::default() }).unwrap();
     assert_eq!(result.continuation, Continuation::Copy);
     assert_eq!(result.error, 0.0);
@@ -245,7 +251,7 @@ fn a_texture_inside_the_exemplar_is_copied_bit_by_bit() {
 
 #[test]
 fn copied_lamps_are_those_of_the_exemplar_and_a_photo_adds_detail() {
-    let exemplar = Exemplar3::new(200, 200, grid(40.0, 40.0, 14.0, 14.0));
+    let exemplar = Design::new(200, 200, grid(40.0, 40.0, 14.0, 14.0));
     let params = Params { width: 500, height: 500, working_side: 100, ..Params::default() };
     let result = exemplar.run(&params).unwrap();
     let key = |c: &[f32]| [c[0].to_bits(), c[1].to_bits(), c[2].to_bits()];
@@ -270,7 +276,7 @@ fn copied_lamps_are_those_of_the_exemplar_and_a_photo_adds_detail() {
 
 #[test]
 fn reduced_textures_keep_their_light() {
-    let exemplar = Exemplar3::new(200, 200, grid(40.0, 40.0, 14.0, 14.0));
+    let exemplar = Design::new(200, 200, grid(40.0, 40.0, 14.0, 14.0));
     let mean = |e: &Emission| e.texture.data.iter().map(|&v| f64::from(v)).sum::<f64>() / e.texture.data.len() as f64;
     let full = exemplar.run(&Params { width: 600, height: 600, ..Params::default() }).unwrap();
     for scale in [1.7, 4.0, 12.5] {
@@ -282,7 +288,7 @@ fn reduced_textures_keep_their_light() {
 
 #[test]
 fn the_bits_do_not_depend_on_the_threads() {
-    let lattice = Exemplar3::new(200, 180, grid(33.0, 29.0, 12.0, 9.0)).with_corners_cut();
+    let lattice = Design::new(200, 180, grid(33.0, 29.0, 12.0, 9.0)).with_corners_cut();
     for exemplar in [lattice, blobs(200, 180, 22.0).0] {
         let params = Params { width: 300, height: 300, scale: 1.3, ..Params::default() };
         let with = |threads| Pool::new(threads).unwrap().run(|| exemplar.run(&params)).unwrap();
@@ -295,7 +301,7 @@ fn the_bits_do_not_depend_on_the_threads() {
 
 #[test]
 fn one_lamp_is_repeated_at_the_size_of_the_exemplar() {
-    let exemplar = Exemplar3::new(80, 60, |x, y| (x - 40.0).abs() < 10.0 && (y - 25.0).abs() < 8.0);
+    let exemplar = Design::new(80, 60, |x, y| (x - 40.0).abs() < 10.0 && (y - 25.0).abs() < 8.0);
     let result = exemplar.run(&Params { width: 240, height: 180, ..Params::default() }).unwrap();
     assert!(matches!(result.continuation, Continuation::Tile(_)));
     assert_eq!(result.luminaires.len(), 9);
@@ -306,18 +312,18 @@ fn one_lamp_is_repeated_at_the_size_of_the_exemplar() {
 #[test]
 fn lights_that_touch_every_border_go_on() {
     // All light.
-    let all = Exemplar3::new(64, 48, |_, _| true);
+    let all = Design::new(64, 48, |_, _| true);
     let result = all.run(&Params { width: 200, height: 150, ..Params::default() }).unwrap();
     assert!(result.mask.data.iter().all(|&m| m == 1.0));
     assert_eq!(result.luminaires.len(), 1);
 
     // One lamp that touches every border: a diamond.
-    let diamond = Exemplar3::new(64, 64, |x, y| (x - 32.0).abs() + (y - 32.0).abs() < 32.5);
+    let diamond = Design::new(64, 64, |x, y| (x - 32.0).abs() + (y - 32.0).abs() < 32.5);
     let result = diamond.run(&Params { width: 200, height: 200, ..Params::default() }).unwrap();
     assert!(result.error < 0.25, "{}", result.error);
 
     // Lines that run through the whole image keep their spacing.
-    let lines = Exemplar3::new(200, 200, |_, y| (y - 5.0).rem_euclid(24.0) < 6.0);
+    let lines = Design::new(200, 200, |_, y| (y - 5.0).rem_euclid(24.0) < 6.0);
     let result = lines.run(&Params { width: 500, height: 480, ..Params::default() }).unwrap();
     assert!(result.error < 0.05, "{}", result.error);
     assert_eq!(result.luminaires.len(), 20);
@@ -326,7 +332,7 @@ fn lights_that_touch_every_border_go_on() {
 
 #[test]
 fn odd_sizes_give_finite_results() {
-    let exemplar = Exemplar3::new(100, 80, grid(25.0, 20.0, 9.0, 7.0));
+    let exemplar = Design::new(100, 80, grid(25.0, 20.0, 9.0, 7.0));
     for (width, height) in [(1, 1), (1, 300), (300, 1), (3, 5), (101, 80)] {
         for scale in [0.01, 0.7, 1.0, 30.0] {
             let params = Params { width, height, scale, ..Params::default() };
@@ -337,11 +343,11 @@ fn odd_sizes_give_finite_results() {
     }
     // Exemplars of one row, one column, one pixel; and of one valid pixel.
     for (width, height) in [(60, 1), (1, 60), (1, 1)] {
-        let thin = Exemplar3::new(width, height, |x, y| ((x + y) as usize).is_multiple_of(5) || width + height == 2);
+        let thin = Design::new(width, height, |x, y| ((x + y) as usize).is_multiple_of(5) || width + height == 2);
         let result = thin.run(&Params { width: 90, height: 70, ..Params::default() }).unwrap();
         assert_eq!(result.texture.count_non_finite(), 0);
     }
-    let mut point = Exemplar3::new(40, 40, |_, _| true);
+    let mut point = Design::new(40, 40, |_, _| true);
     point.valid.data.fill(0.0);
     point.valid.data[40 * 7 + 9] = 1.0;
     let result = point.run(&Params { width: 50, height: 50, working_side: 16, ..Params::default() }).unwrap();
@@ -350,13 +356,13 @@ fn odd_sizes_give_finite_results() {
     // A patch larger than the exemplar, and a period longer than it.
     let params = Params { width: 400, height: 300, block: 5000, ..Params::default() };
     assert!(exemplar.run(&params).unwrap().error < 0.05);
-    let half = Exemplar3::new(100, 80, grid(140.0, 110.0, 30.0, 20.0));
+    let half = Design::new(100, 80, grid(140.0, 110.0, 30.0, 20.0));
     assert_eq!(half.run(&params).unwrap().texture.count_non_finite(), 0);
 }
 
 #[test]
 fn pixels_that_are_not_numbers_are_left_out() {
-    let mut exemplar = Exemplar3::new(160, 160, grid(32.0, 32.0, 12.0, 12.0));
+    let mut exemplar = Design::new(160, 160, grid(32.0, 32.0, 12.0, 12.0));
     for i in 0..40 {
         let at = (70 + i / 8) * 160 + 60 + i % 8;
         exemplar.unwarped.data[3 * at] = f32::NAN;
@@ -373,12 +379,12 @@ fn pixels_that_are_not_numbers_are_left_out() {
 
 #[test]
 fn what_has_no_answer_is_an_error_that_says_so() {
-    let dark = Exemplar3::new(20, 20, |_, _| false);
+    let dark = Design::new(20, 20, |_, _| false);
     let error = dark.run(&Params::default()).unwrap_err();
     assert_eq!(error.kind, ErrorKind::Degenerate);
     assert!(error.message.contains("no light is marked"));
 
-    let mut exemplar = Exemplar3::new(20, 20, |x, _| x < 5.0);
+    let mut exemplar = Design::new(20, 20, |x, _| x < 5.0);
     for bad in [
         Params { width: 0, ..Params::default() },
         Params { height: 70_000, ..Params::default() },

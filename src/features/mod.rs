@@ -81,7 +81,8 @@ pub struct Params {
     pub near: f32,
     /// Far plane of Eq. 1, in `[1.001, 1e6]` times `near`.
     pub far: f32,
-    /// Half-width of the window of the normals' plane fits, in pixels, in `[1, 64]`; 0 = one per 200 columns, at least 2.
+    /// Half-width of the window of the normals' plane fits, in pixels, in `[1, 64]`; 0 = one per 100 columns, at least 2.
+    /// Wider windows see through more noise and round off more of what is small.
     pub normal_radius: usize,
 }
 
@@ -133,7 +134,7 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Features> {
 
     // Depth and normals, from the best source there is.
     let geometry_job = job.part(0.3, 0.8);
-    let radius = if params.normal_radius > 0 { params.normal_radius } else { (width / 200).max(2) };
+    let radius = if params.normal_radius > 0 { params.normal_radius } else { (width / 100).clamp(2, 64) };
     let (surface, depth_source, layout) = match (&input.depth, &input.room) {
         (Some(map), _) => {
             input.photo.check_same_size("photo", map.image, "depth")?;

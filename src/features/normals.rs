@@ -29,6 +29,33 @@ struct RowSums {
     ww: f64,
 }
 
+impl RowSums {
+    fn of(i: f64, w: f64) -> Self {
+        Self { n: 1.0, i, ii: i * i, w, iw: i * w, ww: w * w }
+    }
+
+    fn plus(&self, other: &Self, sign: f64) -> Self {
+        Self {
+            n: self.n + sign * other.n,
+            i: self.i + sign * other.i,
+            ii: self.ii + sign * other.ii,
+            w: self.w + sign * other.w,
+            iw: self.iw + sign * other.iw,
+            ww: self.ww + sign * other.ww,
+        }
+    }
+
+    /// The same sums with columns counted from `x`.
+    fn about(&self, x: f64) -> Self {
+        Self {
+            i: self.i - x * self.n,
+            ii: self.ii - 2.0 * x * self.i + x * x * self.n,
+            iw: self.iw - x * self.w,
+            ..*self
+        }
+    }
+}
+
 /// A regression plane about its pixel: `w ≈ value + dx i + dy j`, and the mean square of what it leaves.
 #[derive(Clone, Copy)]
 struct Fit {
@@ -103,25 +130,22 @@ fn fit_band(inverse_depth: &Image, confidence: &Image, radius: usize, from: usiz
     let (width, height) = (inverse_depth.width, inverse_depth.height);
     let (first, last) = (from.saturating_sub(radius), (to + radius).min(height));
 
-    // Along rows.
+    // Along rows: differences of running sums, about each pixel's own column.
     let mut sums = Vec::with_capacity((last - first) * width);
+    let mut running = Vec::with_capacity(width + 1);
     for y in first..last {
-        let (row, known) = (inverse_depth.row(y), confidence.row(y));
-        for x in 0..width {
-            let mut s = RowSums::default();
-            let (a, b) = (x.saturating_sub(radius), (x + radius + 1).min(width));
-            for (k, (&w, &c)) in (a..b).zip(row[a..b].iter().zip(&known[a..b])) {
-                if c > 0.0 {
-                    let (i, w) = (k as f64 - x as f64, f64::from(w));
-                    s.n += 1.0;
-                    s.i += i;
-                    s.ii += i * i;
-                    s.w += w;
-                    s.iw += i * w;
-                    s.ww += w * w;
-                }
+        running.clear();
+        let mut s = RowSums::default();
+        running.push(s);
+        for (x, (&w, &c)) in inverse_depth.row(y).iter().zip(confidence.row(y)).enumerate() {
+            if c > 0.0 {
+                s = s.plus(&RowSums::of(x as f64, f64::from(w)), 1.0);
             }
-            sums.push(s);
+            running.push(s);
+        }
+        for x in 0..width {
+            let (a, b) = (x.saturating_sub(radius), (x + radius + 1).min(width));
+            sums.push(running[b].plus(&running[a], -1.0).about(x as f64));
         }
     }
 
@@ -132,12 +156,7 @@ fn fit_band(inverse_depth: &Image, confidence: &Image, radius: usize, from: usiz
             let (mut t, mut tj, mut tjj, mut tij, mut tjw) = (RowSums::default(), 0.0, 0.0, 0.0, 0.0);
             for k in y.saturating_sub(radius)..(y + radius + 1).min(height) {
                 let (s, j) = (&sums[(k - first) * width + x], k as f64 - y as f64);
-                t.n += s.n;
-                t.i += s.i;
-                t.ii += s.ii;
-                t.w += s.w;
-                t.iw += s.iw;
-                t.ww += s.ww;
+                t = t.plus(s, 1.0);
                 tj += j * s.n;
                 tjj += j * j * s.n;
                 tij += j * s.i;

@@ -16,10 +16,7 @@ pub(super) fn guard(work: impl FnOnce() -> Result<()>) -> luxfer_status {
 }
 
 /// Runs an entry point on an object; an error's message is kept in the object's context for the calling thread.
-pub(super) fn enter<H: Handle>(
-    handle: *const H,
-    work: impl FnOnce(&Arc<H::Object>) -> Result<()>,
-) -> luxfer_status {
+pub(super) fn enter<H: Handle>(handle: *const H, work: impl FnOnce(&Arc<H::Object>) -> Result<()>) -> luxfer_status {
     guard(|| {
         let object = handle::borrow(handle, "the handle")?;
         let result = catch(|| work(&object));

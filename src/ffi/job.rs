@@ -73,9 +73,10 @@ impl Job {
                 shared.finished.notify_all();
             }
         };
-        let thread = thread::Builder::new().name("luxfer-job".into()).spawn(run).map_err(|e| {
-            Error::new(ErrorKind::OutOfMemory, format!("could not start a thread for the job: {e}"))
-        })?;
+        let thread = thread::Builder::new()
+            .name("luxfer-job".into())
+            .spawn(run)
+            .map_err(|e| Error::new(ErrorKind::OutOfMemory, format!("could not start a thread for the job: {e}")))?;
         Ok(Self { context: context.clone(), shared, thread: Mutex::new(Some(thread)) })
     }
 
@@ -146,7 +147,11 @@ pub unsafe extern "C" fn luxfer_job_wait(
 /// Asks how far a job is, without waiting. *fraction becomes its progress in [0, 1], *finished 1 if it has ended, well or
 /// not, else 0; either may be NULL. Any thread.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_job_poll(job: *mut luxfer_job, fraction: *mut f64, finished: *mut i32) -> luxfer_status {
+pub unsafe extern "C" fn luxfer_job_poll(
+    job: *mut luxfer_job,
+    fraction: *mut f64,
+    finished: *mut i32,
+) -> luxfer_status {
     enter(job, |job| {
         let result = job.wait(Duration::ZERO);
         let progress = job.shared.monitor.progress();

@@ -9,7 +9,11 @@ pub(super) struct Out<T>(*mut T);
 
 impl<T> Out<T> {
     pub(super) fn new(place: *mut T, name: &str) -> Result<Self> {
-        if place.is_null() { Err(Error::argument(format!("{name} is NULL; it must point to a place for the result"))) } else { Ok(Self(place)) }
+        if place.is_null() {
+            Err(Error::argument(format!("{name} is NULL; it must point to a place for the result")))
+        } else {
+            Ok(Self(place))
+        }
     }
 
     pub(super) fn set(self, value: T) {

@@ -28,8 +28,7 @@ pub struct luxfer_scene {
 
 /// Takes size bytes of a file that is being written; called one or more times, in order, on the calling thread with no
 /// lock held. Returns 0 to go on, anything else to give up: the export then returns LUXFER_IO. Must not throw or jump out.
-pub type luxfer_write_fn =
-    Option<unsafe extern "C" fn(user: *mut c_void, data: *const c_void, size: usize) -> i32>;
+pub type luxfer_write_fn = Option<unsafe extern "C" fn(user: *mut c_void, data: *const c_void, size: usize) -> i32>;
 
 /// How much there is in a scene. Set struct_size before the call.
 #[repr(C)]
@@ -246,7 +245,8 @@ pub unsafe extern "C" fn luxfer_scene_export_memory(
     user: *mut c_void,
 ) -> luxfer_status {
     enter(scene, |object| {
-        let write = write.ok_or_else(|| Error::argument("write is NULL; it must be a function that takes the bytes"))?;
+        let write =
+            write.ok_or_else(|| Error::argument("write is NULL; it must be a function that takes the bytes"))?;
         let bytes = gltf::export(&object.snapshot())?;
         // SAFETY: the caller's function, with the caller's pointer.
         let answer = unsafe { write(user, bytes.as_ptr().cast(), bytes.len()) };

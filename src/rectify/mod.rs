@@ -1,12 +1,68 @@
 //! Rectification: edges to lines to vanishing points to a homography to an unwarped texture (Lipp et al., §5).
+//!
+//! ```text
+//! photo ─▶ gradient ─▶ segments ───────▶ vanishing ─▶ camera ─▶ View
+//!             └─▶ canny ─▶ hough ─┘        ├ manhattan ─ sphere
+//!                                          └ successive ─ metric
+//! View + mask ─▶ plane ─▶ quad ─▶ unwarp ─▶ resample ─▶ Unwarped
+//! ```
+//!
+//! The paper's method, gradient-restricted Hough lines and successive RANSAC groups, is there as printed
+//! ([`Params::printed`]). The default differs where measurements asked for it: segments with end points instead of
+//! infinite lines, three orthogonal directions sought at once with an unknown focal length, then each refined freely on
+//! the sphere. The paper maps a rectangle of any shape onto the quadrilateral; here the focal length gives the plane its
+//! true aspect ratio.
+//!
+//! Not modelled: lens distortion, pixels that are not square, rooms whose walls are not at right angles (their directions
+//! are found, but the axes are made orthogonal).
 
-use crate::error::Result;
+mod camera;
+pub mod canny;
+pub mod gradient;
+pub mod hough;
+mod manhattan;
+pub mod metric;
+mod plane;
+mod quad;
+mod resample;
+pub mod segments;
+mod sphere;
+mod successive;
+mod unwarp;
+pub mod vanishing;
+
+pub use resample::warp;
+pub use unwarp::unwarp;
+
+use crate::error::{Error, Result, check_range};
 use crate::geometry::{Homography, Perspective, Segment};
-use crate::image::Image;
+use crate::image::{Image, pyramid};
 use crate::job::Job;
 use glam::{DVec2, DVec3};
 
-/// How far a vanishing point is from a line.
+/// Longest side of the picture in which lines are sought: larger photos are reduced, which costs no precision that
+/// lenses and walls have.
+const DETECTION_SIDE: usize = 1600;
+
+/// How lines are found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LineDetector {
+    /// Regions of like gradient direction, with sub-pixel end points.
+    Regions,
+    /// The paper's gradient-restricted Hough transform of Canny edges, its lines trimmed to their edges.
+    Hough,
+}
+
+/// How vanishing points are found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Search {
+    /// Three orthogonal directions and the focal length at once, then each refined freely.
+    Manhattan,
+    /// The paper's: one group of lines after the other.
+    Successive,
+}
+
+/// How far a vanishing point is from a line, in [`Search::Successive`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Metric {
     /// The paper's measure on the detected segment, in homogeneous form: finite at infinity.
@@ -17,10 +73,13 @@ pub enum Metric {
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Params {
+    pub detector: LineDetector,
+    pub search: Search,
     pub metric: Metric,
-    /// Half-width in radians of the band around the gradient direction that votes (paper: 2.5°).
+    /// Half-width in radians of the band around the gradient direction that votes in the Hough transform, in
+    /// `(0, pi / 2]` (paper: 2.5°).
     pub hough_band: f64,
-    /// Focal length in pixels, if known.
+    /// Focal length in pixels, if known; > 0.
     pub focal: Option<f64>,
     /// Principal point in pixels; the image centre if absent.
     pub principal: Option<DVec2>,
@@ -29,7 +88,39 @@ pub struct Params {
 
 impl Default for Params {
     fn default() -> Self {
-        Self { metric: Metric::Segment, hough_band: 2.5f64.to_radians(), focal: None, principal: None, seed: 1 }
+        Self {
+            detector: LineDetector::Regions,
+            search: Search::Manhattan,
+            metric: Metric::Segment,
+            hough_band: 2.5f64.to_radians(),
+            focal: None,
+            principal: None,
+            seed: 1,
+        }
+    }
+}
+
+impl Params {
+    /// The paper's method as printed.
+    pub fn printed() -> Self {
+        Self {
+            detector: LineDetector::Hough,
+            search: Search::Successive,
+            metric: Metric::VisibleLine,
+            ..Self::default()
+        }
+    }
+
+    fn check(&self) -> Result<()> {
+        check_range("hough_band", self.hough_band, 1e-4, std::f64::consts::FRAC_PI_2)?;
+        if let Some(focal) = self.focal {
+            check_range("focal", focal, 1e-3, 1e9)?;
+        }
+        if let Some(principal) = self.principal {
+            check_range("principal.x", principal.x, -1e9, 1e9)?;
+            check_range("principal.y", principal.y, -1e9, 1e9)?;
+        }
+        Ok(())
     }
 }
 
@@ -53,9 +144,66 @@ pub struct View {
     pub perspective: Perspective,
 }
 
-/// Finds lines, vanishing points and the camera of a linear RGB photo.
-pub fn find_view(_photo: &Image, _params: &Params, _job: Job) -> Result<View> {
-    todo!()
+/// Finds lines, vanishing points and the camera of a linear RGB photo. Pixels that are not finite make no lines.
+///
+/// A photo in which no two lines meet is an [`ErrorKind::Degenerate`](crate::error::ErrorKind) error.
+pub fn find_view(photo: &Image, params: &Params, job: Job) -> Result<View> {
+    params.check()?;
+    let segments = find_segments(photo, params, job.part(0.0, 0.7))?;
+    view_from_segments(&segments, photo.width, photo.height, params, job.part(0.7, 1.0))
+}
+
+/// The straight edges of a photo, in its pixels.
+pub fn find_segments(photo: &Image, params: &Params, job: Job) -> Result<Vec<Segment>> {
+    let longest = photo.width.max(photo.height);
+    if longest <= DETECTION_SIDE {
+        return segments_at_full_size(photo, params, job);
+    }
+    let reduce = |side: usize| (side * DETECTION_SIDE).div_ceil(longest).max(1);
+    let reduced = pyramid::resize(photo, reduce(photo.width), reduce(photo.height), job.part(0.0, 0.3))?;
+    let scale = DVec2::new(photo.width as f64 / reduced.width as f64, photo.height as f64 / reduced.height as f64);
+    let mut segments = segments_at_full_size(&reduced, params, job.part(0.3, 1.0))?;
+    for s in &mut segments {
+        (s.a, s.b) = (s.a * scale, s.b * scale);
+    }
+    Ok(segments)
+}
+
+fn segments_at_full_size(photo: &Image, params: &Params, job: Job) -> Result<Vec<Segment>> {
+    let luma = gradient::encoded_luma(photo, job.part(0.0, 0.2))?;
+    let gradients = gradient::gradients(&luma, job.part(0.2, 0.4))?;
+    match params.detector {
+        LineDetector::Regions => segments::detect(&gradients, job.part(0.4, 1.0)),
+        LineDetector::Hough => {
+            let edges = canny::edges(&gradients, job.part(0.4, 0.5))?;
+            let peaks = hough::peaks(&gradients, &edges, params.hough_band, job.part(0.5, 0.7))?;
+            match params.metric {
+                Metric::Segment => hough::pieces(&gradients, &edges, &peaks, params.hough_band, job.part(0.7, 1.0)),
+                Metric::VisibleLine => Ok(hough::whole_lines(&gradients, &peaks)),
+            }
+        }
+    }
+}
+
+/// The same as [`find_view`] from segments found by other means.
+pub fn view_from_segments(
+    segments: &[Segment],
+    width: usize,
+    height: usize,
+    params: &Params,
+    job: Job,
+) -> Result<View> {
+    if width == 0 || height == 0 {
+        return Err(Error::argument(format!("image size is {width} x {height}; both must be at least 1")));
+    }
+    let found = vanishing::from_segments(segments, width, height, 3, params, job)?;
+    let oriented = camera::orient(&found, width, height, params);
+    let axis = |member: &Option<usize>| member.and_then(|k| oriented.axis_of[k]);
+    Ok(View {
+        segments: segments.iter().copied().zip(found.members.iter().map(axis)).collect(),
+        vanishing_points: oriented.vanishing_points,
+        perspective: oriented.perspective,
+    })
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -74,6 +222,7 @@ impl Default for UnwarpParams {
     }
 }
 
+/// A plane of the photo as seen from straight in front of it, turned so that right and down are nearly the photo's.
 #[derive(Clone, Debug)]
 pub struct Unwarped {
     /// Linear RGB.
@@ -84,20 +233,10 @@ pub struct Unwarped {
     pub to_photo: Homography,
     /// Size of an unwarped pixel as a share of the camera's distance from the plane: times that distance, metres.
     pub pixel_size: f64,
-    /// Corners of the unwarped rectangle in the photo.
+    /// Corners of the unwarped rectangle in the photo, which may lie outside it: top left, then clockwise.
     pub corners: [DVec2; 4],
     /// Trust in the aspect ratio, in `[0, 1]`: low where the focal length had to be assumed.
     pub aspect_confidence: f64,
     /// Expected error of each corner in unwarped pixels.
     pub corner_error: [f64; 4],
-}
-
-/// Unwarps the plane that `mask` marks in the photo.
-pub fn unwarp(_photo: &Image, _view: &View, _mask: &Image, _params: &UnwarpParams, _job: Job) -> Result<Unwarped> {
-    todo!()
-}
-
-/// Resamples any image of the photo's size the way [`unwarp`] did; outside the photo the result is 0.
-pub fn warp(_source: &Image, _to_source: &Homography, _width: usize, _height: usize, _job: Job) -> Result<Image> {
-    todo!()
 }

@@ -1,26 +1,37 @@
-//! Rendering: unidirectional path tracing with next-event estimation and multiple importance sampling.
+//! Rendering: unidirectional path tracing with next-event estimation and multiple importance sampling (Kajiya 1986;
+//! Veach 1997), for images and for the irradiance of surfaces (Lipp et al. 2024, section 7; StyLit, section 3.2).
+//!
+//! [`World`] makes a scene ready; [`run`] renders a camera's view; [`irradiance`] samples the light that arrives at a point.
+//! All estimates are unbiased and nothing is clamped; the same seed gives the same bits on any number of threads.
+//!
+//! `sampler` numbers → `path` a walk → (`light` one light of all, by way of `emissive` and `environment`; `vertex` what was
+//! hit; `bsdf` how it scatters, by way of `ggx`) → a [`PathSink`] → `film` passes, means and variances.
+//!
+//! Not modelled: volumes, refraction in solids, frosted glass, polarisation, wavelengths, depth of field, motion blur.
 
-use crate::error::Result;
-use crate::image::Image;
+mod bsdf;
+mod distribution;
+mod emissive;
+mod environment;
+mod film;
+mod ggx;
+mod light;
+mod path;
+mod sampler;
+mod vertex;
+mod world;
+
+pub use world::World;
+
+use crate::error::{Error, Result, check_range};
+use crate::image::{Image, MAX_SIDE};
 use crate::job::Job;
-use crate::scene::{Camera, Scene};
+use crate::scene::Camera;
+use film::Passes;
 use glam::{Vec2, Vec3};
-use std::sync::Arc;
-
-/// A scene made ready for tracing: acceleration structure and light distributions.
-pub struct World {
-    scene: Arc<Scene>,
-}
-
-impl World {
-    pub fn build(scene: Arc<Scene>, _job: Job) -> Result<Self> {
-        Ok(Self { scene })
-    }
-
-    pub fn scene(&self) -> &Arc<Scene> {
-        &self.scene
-    }
-}
+use sampler::Sampler;
+use std::time::{Duration, Instant};
+use vertex::Vertex;
 
 /// Where light of a path comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,9 +64,15 @@ pub struct SurfacePoint {
     pub front: bool,
 }
 
-/// Adds one sample of the irradiance (lux) at a point to a sink; `sample` counts up, `seed` separates estimates.
-pub fn irradiance<S: PathSink>(_world: &World, _point: &SurfacePoint, _seed: u64, _sample: u32, _sink: &mut S) {
-    todo!()
+/// Adds one sample of the irradiance (lux) at a point to a sink; `sample` counts up, `seed` separates estimates. Samples of
+/// one seed are stratified among each other: their mean converges faster than independent ones, best at powers of two.
+/// A point that is not on the scene's surfaces adds nothing.
+pub fn irradiance<S: PathSink>(world: &World, point: &SurfacePoint, seed: u64, sample: u32, sink: &mut S) {
+    let mesh = world.scene().meshes.get(point.mesh as usize);
+    if mesh.is_some_and(|m| (point.triangle as usize) < m.triangles.len()) {
+        let vertex = Vertex::new(world, point.mesh, point.triangle, point.barycentric);
+        path::gather(world, &vertex, point.front, &mut Sampler::new(seed, sample), sink);
+    }
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -91,13 +108,61 @@ pub struct Film {
     pub error: f64,
 }
 
-/// Renders a camera's view; `publish` is called with the film after every pass.
-pub fn run(
-    _world: &World,
-    _camera: &Camera,
-    _params: &Params,
-    _job: Job,
-    _publish: &mut dyn FnMut(&Film),
-) -> Result<Film> {
-    todo!()
+/// Renders a camera's view; `publish` is called with the film after every pass. Each pass doubles the samples, so that
+/// the first image comes soon. To be called on the library's own pool.
+///
+/// # Errors
+/// Parameters out of range, a camera that cannot see, no memory; cancelled, when the film last published stays good.
+pub fn run(world: &World, camera: &Camera, params: &Params, job: Job, publish: &mut dyn FnMut(&Film)) -> Result<Film> {
+    check(camera, params)?;
+    let start = Instant::now();
+    let budget = Duration::from_millis(u64::from(params.time_budget_ms));
+    let mut passes = Passes::new(world, camera, params)?;
+    loop {
+        // As many samples as there are, so that every pass is half of the image.
+        let done = passes.samples();
+        let mut count = done.max(FIRST_PASS).min(params.samples - done);
+        if params.time_budget_ms > 0 && done > 0 {
+            count = count.min(affordable(start.elapsed(), budget, done));
+        }
+        let part = |samples: u32| f64::from(samples) / f64::from(params.samples);
+        passes.add(count, job.part(part(done), part(done + count)))?;
+        let film = passes.film()?;
+        publish(&film);
+        let out_of_time = params.time_budget_ms > 0 && affordable(start.elapsed(), budget, film.samples) == 0;
+        let good_enough = params.target_error > 0.0 && film.error <= f64::from(params.target_error);
+        if film.samples >= params.samples || out_of_time || good_enough {
+            job.report(1.0);
+            return Ok(film);
+        }
+    }
 }
+
+/// Samples per pixel of the first pass.
+const FIRST_PASS: u32 = 4;
+
+/// How many more samples the remaining time allows, at the speed so far.
+fn affordable(elapsed: Duration, budget: Duration, samples: u32) -> u32 {
+    let left = budget.saturating_sub(elapsed).as_secs_f64();
+    (left / elapsed.as_secs_f64().max(1e-9) * f64::from(samples)) as u32
+}
+
+fn check(camera: &Camera, params: &Params) -> Result<()> {
+    check_range("width", params.width, 1, MAX_SIDE)?;
+    check_range("height", params.height, 1, MAX_SIDE)?;
+    check_range("samples", params.samples, 1, 1 << 20)?;
+    check_range("target_error", params.target_error, 0.0, f32::MAX)?;
+    let vectors = [camera.position, camera.forward, camera.up];
+    let sees = camera.forward.cross(camera.up).length_squared() > 0.0;
+    if vectors.iter().any(|v| !v.is_finite()) || !sees || !(camera.fov_y > 0.0 && camera.fov_y < std::f32::consts::PI) {
+        return Err(Error::argument(format!(
+            "camera {:?} cannot see: its position must be finite, forward and up must not be parallel, and fov_y (now {}) \
+             must lie in (0, pi)",
+            camera.name, camera.fov_y
+        )));
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests;

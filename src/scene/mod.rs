@@ -3,6 +3,7 @@
 //! Metres, right-handed, Y up. All meshes are in world space: a loader applies its node transforms. Emission is in
 //! cd/m² (`factor × texture × strength`, as glTF has it), punctual lights in candela (point, spot) and lux (directional).
 
+pub mod accel;
 pub mod camera;
 pub mod gltf;
 pub mod light;

@@ -89,13 +89,15 @@ impl Scene {
         let lengths = [("normals", mesh.normals.len()), ("uvs[0]", mesh.uvs[0].len()), ("uvs[1]", mesh.uvs[1].len())];
         for (what, len) in lengths {
             if len != 0 && len != count {
-                return Err(Error::argument(format!("it has {len} {what}; there must be none or {count}, as positions")));
+                return Err(Error::argument(format!(
+                    "it has {len} {what}; there must be none or {count}, as positions"
+                )));
             }
         }
         match mesh.triangles.iter().enumerate().find(|(_, t)| t.iter().any(|&i| i as usize >= count)) {
-            Some((i, t)) => {
-                Err(Error::argument(format!("triangle {i} is {t:?}; its indices must be below {count}, the vertex count")))
-            }
+            Some((i, t)) => Err(Error::argument(format!(
+                "triangle {i} is {t:?}; its indices must be below {count}, the vertex count"
+            ))),
             None => Ok(()),
         }
     }
@@ -127,7 +129,9 @@ fn check_image(image: &Image) -> Result<()> {
 /// Light and its reflection are never negative.
 fn check_positive(image: &Image) -> Result<()> {
     match image.data.iter().position(|&v| v < 0.0) {
-        Some(i) => Err(Error::argument(format!("sample {i} of the image is {}; light must not be negative", image.data[i]))),
+        Some(i) => {
+            Err(Error::argument(format!("sample {i} of the image is {}; light must not be negative", image.data[i])))
+        }
         None => Ok(()),
     }
 }

@@ -14,6 +14,8 @@ pub struct Classified {
     pub mask: Image,
     pub confidence: Image,
     pub unseen: Image,
+    /// Mean of `unseen` over the pixels looked at.
+    pub mean_unseen: f64,
 }
 
 /// `xᵀAx + bᵀx + c` of standardised features; `a` holds the upper triangle row by row, empty if `A` is zero.
@@ -77,6 +79,8 @@ pub fn run(
     let mean: Vec<f32> = chosen.standard.mean.iter().map(|&v| v as f32).collect();
     let scale: Vec<f32> = chosen.standard.scale.iter().map(|&v| v as f32).collect();
 
+    let (familiar, unfamiliar) = (chosen.familiar.scale as f32, chosen.unfamiliar.scale as f32);
+
     // Confidence and unseen in one pass, interleaved.
     let mut both = Image::new(width, height, 2)?;
     exec::for_rows(&mut both.data, width * 2, job.part(0.0, 0.8), |y, row| {
@@ -93,8 +97,10 @@ pub fn run(
             let distance = seen.iter().map(|form| form.evaluate(&planes));
             let nearest = distance.fold([f32::INFINITY; TILE], |a, b| std::array::from_fn(|k| a[k].min(b[k])));
             for (k, out) in out.chunks_exact_mut(2).enumerate() {
-                out[0] = 1.0 / (1.0 + (-z[k]).exp());
-                out[1] = 1.0 - (-(nearest[k].max(1.0).sqrt() - 1.0)).exp();
+                let beyond = 1.0 - (1.0 - nearest[k].max(1.0).sqrt()).exp();
+                let calibration = familiar + (unfamiliar - familiar) * beyond;
+                out[0] = 1.0 / (1.0 + (-calibration * z[k]).exp());
+                out[1] = beyond;
             }
         }
     })?;
@@ -106,8 +112,10 @@ pub fn run(
             unseen.data[i] = 0.0;
         }
     }
+    let looked_at = within.map_or(width * height, |w| w.data.iter().filter(|w| **w > 0.5).count());
+    let mean_unseen = unseen.data.iter().map(|&u| f64::from(u)).sum::<f64>() / looked_at.max(1) as f64;
     let mut mask = Image::new(width, height, 1)?;
     mask.data.iter_mut().zip(&confidence.data).for_each(|(m, &c)| *m = f32::from(c > 0.5));
     job.report(1.0);
-    Ok(Classified { mask, confidence, unseen })
+    Ok(Classified { mask, confidence, unseen, mean_unseen })
 }

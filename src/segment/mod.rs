@@ -8,8 +8,8 @@
 //!
 //! The paper does not name its classifier. Here it is logistic regression, with linear or with quadratic terms of the
 //! features: models without memory of single samples carry on to surfaces no stroke touched, where trees and kernels
-//! do not. Which of the two, and how far to trust its probabilities, is decided on strokes held out of the training:
-//! pixels of one stroke are too alike to test each other.
+//! do not. Which of the two, and how far to trust its probabilities, is decided on strokes and parts of strokes held out of
+//! the training: neighbouring pixels are too alike to test each other.
 //!
 //! The paper's two phases are two runs: the plane first ([`StrokeSet::plane_examples`]), then the lights `within` its
 //! mask, by colour alone ([`Params::for_lights`]), because lights lie on the plane and share its geometry.
@@ -86,7 +86,8 @@ pub struct Segmentation {
     pub confidence: Image,
     /// How far a pixel's features lie beyond those of all strokes, in `[0, 1]`: where it is high, one more stroke helps.
     pub unseen: Image,
-    /// Expected share of wrong pixels, from cross-validation over strokes, in `[0, 1]`.
+    /// Expected share of wrong pixels, in `[0, 1]`, by cross-validation: the error on held-out parts of strokes where
+    /// pixels are like those painted, the error on wholly held-out strokes where they are `unseen`.
     pub error: f64,
     pub model: Model,
     /// Samples used of the negative and the positive class.
@@ -130,19 +131,16 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Segmentation> {
 
     // Every pixel.
     let classified = classify::run(features, input.within, &channels, &chosen, job.part(0.4, 1.0))?;
+    let unseen = classified.mean_unseen;
+    let error = chosen.familiar.error * (1.0 - unseen) + chosen.unfamiliar.error * unseen;
     Ok(Segmentation {
         mask: classified.mask,
         confidence: classified.confidence,
         unseen: classified.unseen,
-        error: chosen.error,
+        error,
         model: chosen.model,
         samples: samples.counts,
         contradictory: samples.contradictory,
         off_image: samples.off_image,
     })
-}
-
-/// The mask grown by a disc of `radius` pixels.
-pub fn dilate(_mask: &Image, _radius: usize) -> Result<Image> {
-    todo!()
 }

@@ -5,27 +5,33 @@ use crate::error::{Error, Result};
 use crate::image::try_vec;
 use crate::rng;
 
-/// One class of one stroke, or a part of a stroke: what cross-validation holds out together.
-pub struct Group {
+/// Where a sample is from: what cross-validation holds out together.
+#[derive(Clone, Copy)]
+pub struct Origin {
     pub positive: bool,
-    /// Indices into the samples.
-    pub members: Vec<usize>,
+    /// Number of its stroke among those of both classes.
+    pub stroke: usize,
+    /// Which quarter of its stroke, along the stroke's longer extent.
+    pub part: usize,
 }
 
 pub struct Samples {
     /// One after the other, `dimension` values each.
     pub values: Vec<f64>,
     pub dimension: usize,
-    pub positive: Vec<bool>,
-    pub groups: Vec<Group>,
+    /// The feature channel each value is of.
+    pub channels: Vec<usize>,
+    pub origins: Vec<Origin>,
+    /// Number of strokes of the negative and the positive class.
+    pub strokes: [usize; 2],
     /// Of the negative and the positive class.
     pub counts: [usize; 2],
     pub contradictory: usize,
     pub off_image: usize,
 }
 
-/// A class with a single stroke is split along it into this many groups.
-const PARTS: usize = 4;
+/// Parts a stroke is split into for cross-validation.
+pub const PARTS: usize = 4;
 
 /// Draws the samples. Later strokes win where strokes disagree.
 pub fn draw(input: &Input, channels: &[usize], params: &Params) -> Result<Samples> {
@@ -58,8 +64,9 @@ pub fn draw(input: &Input, channels: &[usize], params: &Params) -> Result<Sample
     let mut samples = Samples {
         values: Vec::new(),
         dimension: channels.len(),
-        positive: Vec::new(),
-        groups: Vec::new(),
+        channels: channels.to_vec(),
+        origins: Vec::new(),
+        strokes: [0; 2],
         counts: [0; 2],
         contradictory,
         off_image,
@@ -89,18 +96,15 @@ pub fn draw(input: &Input, channels: &[usize], params: &Params) -> Result<Sample
             }
             stroke.sort_unstable();
         }
-        if strokes.len() == 1 {
-            strokes = split(&strokes[0], features.width);
-        }
-        for stroke in strokes.iter().filter(|s| !s.is_empty()) {
-            let first = samples.positive.len();
-            for &p in stroke {
+        for pixels in strokes.iter().filter(|s| !s.is_empty()) {
+            let stroke = samples.strokes[0] + samples.strokes[1];
+            for (p, part) in parts(pixels, features.width) {
                 let pixel = &features.data[p as usize * features.channels..][..features.channels];
                 samples.values.extend(channels.iter().map(|&c| f64::from(pixel[c])));
-                samples.positive.push(positive);
+                samples.origins.push(Origin { positive, stroke, part });
             }
-            samples.groups.push(Group { positive, members: (first..samples.positive.len()).collect() });
-            samples.counts[usize::from(positive)] += stroke.len();
+            samples.counts[usize::from(positive)] += pixels.len();
+            samples.strokes[usize::from(positive)] += 1;
         }
     }
     Ok(samples)
@@ -119,8 +123,8 @@ fn shares(sizes: &[usize], total: usize) -> Vec<usize> {
     shares
 }
 
-/// Splits one stroke into pieces along its longer extent, to be held out one by one.
-fn split(pixels: &[u32], width: usize) -> Vec<Vec<u32>> {
+/// The pixels of a stroke in order along its longer extent, with the quarter each is in.
+fn parts(pixels: &[u32], width: usize) -> impl Iterator<Item = (u32, usize)> {
     let position = |p: u32| (p as usize % width, p as usize / width);
     let extent = |f: fn((usize, usize)) -> usize| {
         let values = || pixels.iter().map(|&p| f(position(p)));
@@ -129,7 +133,8 @@ fn split(pixels: &[u32], width: usize) -> Vec<Vec<u32>> {
     let is_wide = extent(|p| p.0) >= extent(|p| p.1);
     let mut sorted = pixels.to_vec();
     sorted.sort_by_key(|&p| if is_wide { (position(p).0, p) } else { (position(p).1, p) });
-    sorted.chunks(sorted.len().div_ceil(PARTS)).map(<[u32]>::to_vec).collect()
+    let count = sorted.len();
+    sorted.into_iter().enumerate().map(move |(k, p)| (p, k * PARTS / count))
 }
 
 #[cfg(test)]
@@ -145,11 +150,9 @@ mod tests {
     }
 
     #[test]
-    fn a_lone_stroke_is_split_along_its_length() {
+    fn a_stroke_has_four_parts_along_its_length() {
         let pixels: Vec<u32> = (0..20).flat_map(|y| [y * 50 + 7, y * 50 + 8]).collect();
-        let parts = split(&pixels, 50);
-        assert_eq!(parts.len(), 4);
-        assert!(parts.iter().enumerate().all(|(i, p)| p.iter().all(|&q| (q / 50 / 5) as usize == i)));
-        assert_eq!(split(&[3], 50), [[3]]);
+        assert!(parts(&pixels, 50).all(|(p, part)| (p / 50 / 5) as usize == part));
+        assert_eq!(parts(&[3], 50).collect::<Vec<_>>(), [(3, 0)]);
     }
 }

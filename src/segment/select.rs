@@ -1,14 +1,18 @@
-//! Which model, and how far to trust it: cross-validation over strokes, then calibration on what was held out.
+//! Which model, and how far to trust it: cross-validation, then calibration on what was held out.
+//!
+//! Two questions, two ways to hold out. Parts of strokes: how well does the model do on what the user has painted? Whole
+//! strokes: how well does it carry on to what the user has not? Each has its own error and its own calibration, and
+//! every pixel is given the mix of both that its distance from the strokes asks for.
 
 use super::Model;
 use super::logistic::{self, Problem};
-use super::samples::Samples;
+use super::samples::{PARTS, Samples};
 use super::standardise::{Standard, term_count, terms};
 use crate::error::Result;
 use crate::exec;
 use crate::job::Job;
 
-/// Most folds; with more groups of samples than that some are held out together.
+/// Most folds; with more strokes than that some are held out together.
 const FOLDS: usize = 8;
 /// Samples of each class that cross-validation uses: enough to compare two models.
 const CV_SAMPLES: usize = 250;
@@ -21,10 +25,12 @@ const PREFER_LINEAR: f64 = 0.97;
 pub struct Chosen {
     pub model: Model,
     pub standard: Standard,
-    /// Weights of the terms (see `standardise::terms`), calibration included.
+    /// Weights of the terms (see `standardise::terms`), not calibrated.
     pub weights: Vec<f64>,
-    /// Share of held-out samples that were wrong, classes and strokes weighing the same.
-    pub error: f64,
+    /// Where the features are like those of the strokes.
+    pub familiar: Trust,
+    /// Where they are not.
+    pub unfamiliar: Trust,
     /// For each class the mean and the inverse covariance of its samples, in standardised features, scaled so that
     /// 99 % of its samples are within distance 1.
     pub seen: Vec<Ellipsoid>,
@@ -36,68 +42,111 @@ pub struct Ellipsoid {
     pub inverse: Vec<f64>,
 }
 
-struct Validated {
-    model: Model,
-    weights: Vec<f64>,
+/// What a kind of cross-validation says.
+#[derive(Clone, Copy)]
+pub struct Trust {
+    /// Share of held-out samples that were wrong, classes and strokes weighing the same.
+    pub error: f64,
+    /// The factor that calibrates logits.
+    pub scale: f64,
+    /// Mean log loss of the calibrated held-out samples.
     loss: f64,
-    error: f64,
-    scale: f64,
+}
+
+/// One family's fit to all samples, and the terms it was fitted on.
+struct Fitted {
+    model: Model,
+    rows: Vec<f64>,
+    dimension: usize,
+    weights: Vec<f64>,
 }
 
 pub fn choose(samples: &Samples, ridge: f64, job: Job) -> Result<Chosen> {
     let standard = Standard::of(samples);
     let x: Vec<Vec<f64>> = samples.values.chunks_exact(samples.dimension).map(|v| standard.apply(v)).collect();
+    let positive: Vec<bool> = samples.origins.iter().map(|o| o.positive).collect();
+    let (by_part, by_stroke) = (folds_of_parts(samples), folds_of_strokes(samples));
 
-    let linear = validate(samples, &x, Model::Linear, ridge, job.part(0.0, 0.2))?;
-    let quadratic = validate(samples, &x, Model::Quadratic, ridge, job.part(0.2, 1.0))?;
-    let best = if quadratic.loss < PREFER_LINEAR * linear.loss { quadratic } else { linear };
+    let judge = |model: Model, job: Job| -> Result<(Fitted, Trust, Trust)> {
+        let fitted = fit(samples, &x, &positive, model, ridge, job.part(0.0, 0.2))?;
+        let familiar = validate(samples, &positive, &fitted, &by_part, ridge, job.part(0.2, 0.5))?;
+        let unfamiliar = validate(samples, &positive, &fitted, &by_stroke, ridge, job.part(0.5, 1.0))?;
+        Ok((fitted, familiar, unfamiliar))
+    };
+    let linear = judge(Model::Linear, job.part(0.0, 0.2))?;
+    let quadratic = judge(Model::Quadratic, job.part(0.2, 1.0))?;
+    let loss = |j: &(Fitted, Trust, Trust)| j.1.loss + j.2.loss;
+    let is_quadratic = loss(&quadratic) < PREFER_LINEAR * loss(&linear);
+    let (best, familiar, unfamiliar) = if is_quadratic { quadratic } else { linear };
 
     let seen = [false, true].iter().map(|&class| ellipsoid(samples, &x, class)).collect();
-    let weights = best.weights.iter().map(|w| w * best.scale).collect();
-    Ok(Chosen { model: best.model, standard, weights, error: best.error, seen })
+    Ok(Chosen { model: best.model, standard, weights: best.weights, familiar, unfamiliar, seen })
 }
 
-/// Fits one model to all samples, and judges it by fits that each leave out some strokes.
-fn validate(samples: &Samples, x: &[Vec<f64>], model: Model, ridge: f64, job: Job) -> Result<Validated> {
+fn fit(samples: &Samples, x: &[Vec<f64>], positive: &[bool], model: Model, ridge: f64, job: Job) -> Result<Fitted> {
     let dimension = term_count(model, samples.dimension);
     let mut rows = Vec::with_capacity(x.len() * dimension);
     x.iter().for_each(|x| terms(model, x, &mut rows));
+    let problem = Problem { rows: &rows, dimension, positive, weights: &balanced(positive, |_| true) };
+    let weights = logistic::fit(&problem, ridge, &vec![0.0; dimension], job)?;
+    Ok(Fitted { model, rows, dimension, weights })
+}
 
-    // Classes weigh the same whatever the number of their samples.
-    let class_weight = |positive: bool| 1.0 / samples.counts[usize::from(positive)] as f64;
-    let weights: Vec<f64> = samples.positive.iter().map(|&p| class_weight(p)).collect();
-    let problem = Problem { rows: &rows, dimension, positive: &samples.positive, weights: &weights };
-    let all = logistic::fit(&problem, ridge, &vec![0.0; dimension], job.part(0.0, 0.3))?;
+/// Weights under which the classes weigh the same, whatever the number of samples that are `used` of each.
+fn balanced(positive: &[bool], used: impl Fn(usize) -> bool) -> Vec<f64> {
+    let mut counts = [0usize; 2];
+    (0..positive.len()).filter(|&i| used(i)).for_each(|i| counts[usize::from(positive[i])] += 1);
+    let weight = |i: usize| if used(i) { 0.5 / counts[usize::from(positive[i])] as f64 } else { 0.0 };
+    (0..positive.len()).map(weight).collect()
+}
 
-    // Groups are dealt to folds in order, so that no fold holds out all of a class unless the class is one group.
-    let groups = &samples.groups;
-    let folds = groups.len().min(FOLDS);
-    let held_out = exec::map(folds, job.part(0.3, 1.0), |fold| -> Result<Vec<(f64, bool, f64)>> {
-        let mut weights = weights.clone();
-        let mut tested = Vec::new();
-        for (g, group) in groups.iter().enumerate() {
-            let of_class = groups.iter().filter(|o| o.positive == group.positive).count();
-            let keep = (CV_SAMPLES / of_class).max(8);
-            let stride = group.members.len().div_ceil(keep);
-            let is_out = g % folds == fold && of_class > 1;
-            for (k, &i) in group.members.iter().enumerate() {
-                weights[i] = if is_out || k % stride != 0 { 0.0 } else { weights[i] * stride as f64 };
-            }
-            if g % folds == fold {
-                // Every stroke has the same say within its class, and the classes have the same.
-                let share = 0.5 / (of_class * group.members.len()) as f64;
-                tested.extend(group.members.iter().map(|&i| (i, share)));
-            }
-        }
-        let fitted = logistic::fit(&Problem { weights: &weights, ..problem }, ridge, &all, job)?;
-        let logit = |i: usize| logistic::dot(&fitted, &rows[i * dimension..(i + 1) * dimension]);
-        Ok(tested.into_iter().map(|(i, share)| (logit(i), samples.positive[i], share)).collect())
+fn folds_of_parts(samples: &Samples) -> Vec<usize> {
+    samples.origins.iter().map(|o| o.part).collect()
+}
+
+/// Strokes are dealt to folds in order, so that no fold holds all of a class; a lone stroke of its class is dealt by parts.
+fn folds_of_strokes(samples: &Samples) -> Vec<usize> {
+    let folds = (samples.strokes[0] + samples.strokes[1]).clamp(PARTS, FOLDS);
+    let is_lone = |positive: bool| samples.strokes[usize::from(positive)] == 1;
+    samples.origins.iter().map(|o| (o.stroke + if is_lone(o.positive) { o.part } else { 0 }) % folds).collect()
+}
+
+/// Judges a model by fits that each leave out one fold.
+fn validate(
+    samples: &Samples,
+    positive: &[bool],
+    fitted: &Fitted,
+    fold_of: &[usize],
+    ridge: f64,
+    job: Job,
+) -> Result<Trust> {
+    let Fitted { rows, dimension, .. } = fitted;
+    let count = fold_of.iter().max().map_or(0, |last| last + 1);
+    let stride = |i: usize| samples.counts[usize::from(positive[i])].div_ceil(CV_SAMPLES);
+    let mut size_of_stroke = vec![0usize; samples.strokes[0] + samples.strokes[1]];
+    samples.origins.iter().for_each(|o| size_of_stroke[o.stroke] += 1);
+
+    let held_out = exec::map(count, job, |fold| -> Result<Vec<(f64, bool, f64)>> {
+        // A class that would be left without any sample keeps its own.
+        let keeps = |class: bool| (0..positive.len()).all(|i| positive[i] != class || fold_of[i] == fold);
+        let keeps = [keeps(false), keeps(true)];
+        let used = |i: usize| (fold_of[i] != fold || keeps[usize::from(positive[i])]) && i % stride(i) == 0;
+        let weights = balanced(positive, used);
+        let problem = Problem { rows, dimension: *dimension, positive, weights: &weights };
+        let without = logistic::fit(&problem, ridge, &fitted.weights, job)?;
+        // Every stroke has the same say within its class, and the classes have the same.
+        let tested = samples.origins.iter().enumerate().filter(|(i, _)| fold_of[*i] == fold);
+        let result = tested.map(|(i, o)| {
+            let share = 0.5 / (samples.strokes[usize::from(o.positive)] * size_of_stroke[o.stroke]) as f64;
+            (logistic::dot(&without, &rows[i * dimension..(i + 1) * dimension]), o.positive, share)
+        });
+        Ok(result.collect())
     })?;
     let held_out: Vec<(f64, bool, f64)> = held_out.into_iter().collect::<Result<Vec<_>>>()?.concat();
-
-    let error = held_out.iter().filter(|(z, p, _)| (*z > 0.0) != *p).map(|(_, _, share)| share).sum::<f64>().min(1.0);
+    let wrong = held_out.iter().filter(|(z, p, _)| (*z > 0.0) != *p);
+    let error = wrong.fold(0.0, |sum, (_, _, share)| sum + share).min(1.0);
     let (scale, loss) = calibrate(&held_out);
-    Ok(Validated { model, weights: all, loss, error, scale })
+    Ok(Trust { error, scale, loss })
 }
 
 /// The factor on logits that gives held-out samples the least log loss (temperature scaling, Guo et al. 2017), and that
@@ -119,7 +168,7 @@ fn calibrate(held_out: &[(f64, bool, f64)]) -> (f64, f64) {
 fn ellipsoid(samples: &Samples, x: &[Vec<f64>], class: bool) -> Ellipsoid {
     let d = samples.dimension;
     let members: Vec<&Vec<f64>> =
-        x.iter().zip(&samples.positive).filter(|(_, p)| **p == class).map(|(x, _)| x).collect();
+        x.iter().zip(&samples.origins).filter(|(_, o)| o.positive == class).map(|(x, _)| x).collect();
     let n = members.len() as f64;
     let centre: Vec<f64> = (0..d).map(|i| members.iter().map(|x| x[i]).sum::<f64>() / n).collect();
     let mut covariance = vec![0.0; d * d];

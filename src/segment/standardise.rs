@@ -3,6 +3,11 @@
 use super::Model;
 use super::samples::Samples;
 
+/// Channels that are one vector: CIELAB colour, position and normal. Their components have the same unit and share one
+/// scale. Scaled each by itself, a channel that hardly varies, such as the tint of a white ceiling, would be blown up into
+/// evidence, and dark purple frames would pass for lamps.
+const VECTORS: [std::ops::Range<usize>; 3] = [0..3, 4..7, 7..10];
+
 /// The affine map that makes the samples' features comparable; features without spread become 0.
 #[derive(Clone, Debug)]
 pub struct Standard {
@@ -12,7 +17,7 @@ pub struct Standard {
 
 impl Standard {
     pub fn of(samples: &Samples) -> Self {
-        let (n, d) = (samples.positive.len() as f64, samples.dimension);
+        let (n, d) = (samples.origins.len() as f64, samples.dimension);
         let mut mean = vec![0.0; d];
         let mut square = vec![0.0; d];
         for x in samples.values.chunks_exact(d) {
@@ -21,11 +26,16 @@ impl Standard {
         for x in samples.values.chunks_exact(d) {
             (0..d).for_each(|i| square[i] += (x[i] - mean[i]).powi(2) / n);
         }
+        let spread: Vec<f64> = square.iter().map(|v| v.sqrt()).collect();
+        let vector_of = |i: usize| VECTORS.iter().position(|v| v.contains(&samples.channels[i]));
         let scale = (0..d)
             .map(|i| {
-                let spread = square[i].sqrt();
                 // Below rounding of the features themselves there is nothing to learn.
-                if spread > 1e-6 * mean[i].abs().max(1e-30) { 1.0 / spread } else { 0.0 }
+                if spread[i] <= 1e-6 * mean[i].abs().max(1e-30) {
+                    return 0.0;
+                }
+                let partners = (0..d).filter(|&j| j == i || (vector_of(i).is_some() && vector_of(j) == vector_of(i)));
+                1.0 / partners.map(|j| spread[j]).fold(0.0, f64::max)
             })
             .collect();
         Self { mean, scale }

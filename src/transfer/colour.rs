@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::image::Image;
+use crate::job::Job;
 use crate::segment;
 use glam::{DVec3, Vec3};
 
@@ -15,18 +16,18 @@ pub enum TargetColour {
 }
 
 /// Halo of a lamp that glare brightens, as a share of the photo's longer side.
-const HALO: f64 = 0.01;
+const HALO: f32 = 0.01;
 
 /// Mean linear colour of the chosen part, relative to the photo's white.
-pub(super) fn target(which: TargetColour, photo: &Image, plane: &Image, lights: &Image) -> Result<Vec3> {
+pub(super) fn target(which: TargetColour, photo: &Image, plane: &Image, lights: &Image, job: Job) -> Result<Vec3> {
     photo.check_same_size("the photo", plane, "the plane's mask")?;
     photo.check_same_size("the photo", lights, "the lights' mask")?;
     let everything = |_: usize| true;
     let mean = match which {
         TargetColour::WholeImage => mean_where(photo, everything),
         TargetColour::Surface => {
-            let radius = (HALO * photo.width.max(photo.height) as f64).ceil() as usize;
-            let glare = segment::dilate(lights, radius)?;
+            let radius = (HALO * photo.width.max(photo.height) as f32).ceil();
+            let glare = segment::dilate(lights, radius, job)?;
             let beside = |i: usize| plane.data[i] > 0.5 && glare.data[i] <= 0.5;
             let on_plane = |i: usize| plane.data[i] > 0.5 && lights.data[i] <= 0.5;
             mean_where(photo, beside).or_else(|| mean_where(photo, on_plane))

@@ -93,9 +93,9 @@ impl Transfer {
         let plane = need(&self.results.plane, "run stage Plane")?;
         let lights = need(&self.results.lights, "run stage Lights")?;
         let unsolved = need(&self.results.unsolved, "run stage Emission")?;
-        let target = colour::target(self.params.target, photo, &plane.mask, &lights.mask)?;
+        let target = colour::target(self.params.target, photo, &plane.mask, &lights.mask, job.part(0.0, 0.02))?;
 
-        let world = World::build(unsolved.scene.clone(), job.part(0.0, 0.1))?;
+        let world = World::build(unsolved.scene.clone(), job.part(0.02, 0.1))?;
         let mesh = unsolved.placed.mesh;
         let triangles: Vec<_> = (0..unsolved.scene.meshes[mesh].triangles.len()).map(|t| (mesh, t)).collect();
         let input = relight::Input {

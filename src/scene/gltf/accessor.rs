@@ -33,7 +33,10 @@ impl<'a> Strided<'a> {
         let size = kind.size() * components;
         let stride = match file.root.get(view).and_then(|v| v.byte_stride) {
             Some(stride) if stride.0 < size => {
-                return Err(Error::format(format!("the stride {} is shorter than an element of {size} bytes", stride.0)));
+                return Err(Error::format(format!(
+                    "the stride {} is shorter than an element of {size} bytes",
+                    stride.0
+                )));
             }
             Some(stride) => stride.0,
             None => size,

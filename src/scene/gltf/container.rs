@@ -73,7 +73,9 @@ impl<'a> File<'a> {
         }
         let relative = safe_path(uri)?;
         let base = self.base.ok_or_else(|| {
-            Error::argument(format!("the file refers to {uri:?} beside it: say in which folder that is, or load by path"))
+            Error::argument(format!(
+                "the file refers to {uri:?} beside it: say in which folder that is, or load by path"
+            ))
         })?;
         let path = base.join(relative);
         let failed = |e: std::io::Error| Error::new(ErrorKind::Io, format!("{}: {e}", path.display()));
@@ -194,7 +196,8 @@ mod tests {
     #[test]
     fn paths_cannot_leave_their_folder() {
         assert_eq!(safe_path("a%20b/c.png").unwrap(), PathBuf::from("a b/c.png"));
-        for bad in ["../x", "a/../../x", "/etc/passwd", "%2e%2e/x", "http://host/x", "a\\..\\x", "C:/x", "", ".", "%zz", "%2"]
+        for bad in
+            ["../x", "a/../../x", "/etc/passwd", "%2e%2e/x", "http://host/x", "a\\..\\x", "C:/x", "", ".", "%zz", "%2"]
         {
             assert_eq!(safe_path(bad).unwrap_err().kind, ErrorKind::Format, "{bad}");
         }

@@ -27,7 +27,8 @@ pub fn export(scene: &Scene) -> Result<Vec<u8>> {
     scene.validate()?;
     let mut writer = Writer::default();
     for material in &scene.materials {
-        let json = writer.material(scene, material).map_err(|e| e.within(format_args!("material {:?}", material.name)))?;
+        let json =
+            writer.material(scene, material).map_err(|e| e.within(format_args!("material {:?}", material.name)))?;
         writer.materials.push(json);
     }
     for mesh in scene.meshes.iter().filter(|m| !m.triangles.is_empty()) {
@@ -148,7 +149,9 @@ impl Writer {
         let (kind, strength, position, direction) = match *light {
             PunctualLight::Point { position, intensity } => ("point", intensity, position, Vec3::NEG_Z),
             PunctualLight::Spot { position, direction, intensity, .. } => ("spot", intensity, position, direction),
-            PunctualLight::Directional { direction, illuminance } => ("directional", illuminance, Vec3::ZERO, direction),
+            PunctualLight::Directional { direction, illuminance } => {
+                ("directional", illuminance, Vec3::ZERO, direction)
+            }
         };
         let (colour, intensity) = split_peak(strength);
         let mut json = json!({ "type": kind, "color": colour.to_array(), "intensity": intensity });
@@ -352,5 +355,8 @@ fn decompose(transform: Mat3) -> Result<(Vec2, f32, Vec2)> {
     if transform_matrix(offset, rotation, scale).abs_diff_eq(transform, 1e-4 * largest) {
         return Ok((offset, rotation, scale));
     }
-    Err(Error::new(ErrorKind::Unsupported, format!("the texture transform {transform} has shear, which glTF cannot hold")))
+    Err(Error::new(
+        ErrorKind::Unsupported,
+        format!("the texture transform {transform} has shear, which glTF cannot hold"),
+    ))
 }

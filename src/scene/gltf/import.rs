@@ -11,6 +11,7 @@ use gltf::json::extensions::scene::khr_lights_punctual::{Light, Type};
 use gltf::json::mesh::{Mode, Primitive, Semantic};
 use gltf::json::validation::Checked;
 use gltf::json::{self, Index};
+use std::f32::consts::FRAC_PI_2;
 use std::path::Path;
 
 /// Most vertices, and most triangles, of all meshes together once instances are written out.
@@ -180,11 +181,7 @@ impl Importer<'_> {
     }
 
     /// Counts what a primitive will add before anything is allocated: instances multiply what a small file holds.
-    fn reserve(
-        &mut self,
-        positions: Index<json::Accessor>,
-        indices: Option<Index<json::Accessor>>,
-    ) -> Result<()> {
+    fn reserve(&mut self, positions: Index<json::Accessor>, indices: Option<Index<json::Accessor>>) -> Result<()> {
         let vertices = accessor::count(self.file, positions)?;
         let corners = indices.map_or(Ok(vertices), |index| accessor::count(self.file, index))?;
         self.vertices = self.vertices.saturating_add(vertices);
@@ -256,11 +253,7 @@ fn local_transform(node: &json::Node) -> DMat4 {
     let rotation = DQuat::from_array(rotation);
     let rotation = if rotation.length_squared() > 0.0 { rotation.normalize() } else { DQuat::IDENTITY };
     let translation = node.translation.unwrap_or([0.0; 3]);
-    DMat4::from_scale_rotation_translation(
-        Vec3::from(scale).as_dvec3(),
-        rotation,
-        Vec3::from(translation).as_dvec3(),
-    )
+    DMat4::from_scale_rotation_translation(Vec3::from(scale).as_dvec3(), rotation, Vec3::from(translation).as_dvec3())
 }
 
 fn bring_in<T, U: Clone + Default>(values: Vec<T>, change: impl Fn(T) -> U) -> Result<Vec<U>> {
@@ -321,8 +314,8 @@ fn punctual(light: &Light, transform: DMat4) -> Result<PunctualLight> {
                 position,
                 direction: direction()?,
                 intensity: strength,
-                inner_angle: spot.inner_cone_angle,
-                outer_angle: spot.outer_cone_angle,
+                inner_angle: spot.inner_cone_angle.min(spot.outer_cone_angle).min(FRAC_PI_2),
+                outer_angle: spot.outer_cone_angle.min(FRAC_PI_2),
             })
         }
         Checked::Invalid => Err(Error::format("its type is unknown")),

@@ -4,9 +4,9 @@ use super::container::{File, missing};
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::io::{self, Encoding, MAX_PIXELS};
 use crate::scene::{AlphaMode, Material, Texture, TextureRef, Wrap};
+use glam::{Mat3, Vec2, Vec3};
 use gltf::json::validation::Checked;
 use gltf::json::{Index, extensions, material, texture};
-use glam::{Mat3, Vec2, Vec3};
 
 /// Where the bytes of an image are. Writers that do not share images often share their bytes.
 #[derive(Clone, Copy, PartialEq)]
@@ -31,27 +31,28 @@ impl<'a> Materials<'a> {
         Self { file, textures: Vec::new(), keys: Vec::new(), pixels: 0 }
     }
 
+    /// Factors just outside their range, as some writers leave them, are brought back into it.
     pub fn read(&mut self, index: usize, json: &material::Material) -> Result<Material> {
         let pbr = &json.pbr_metallic_roughness;
         let [r, g, b, alpha] = pbr.base_color_factor.0;
         let extensions = json.extensions.as_ref();
         let transmission = extensions.and_then(|e| e.transmission.as_ref()).map_or(0.0, |t| t.transmission_factor.0);
         let strength = extensions.and_then(|e| e.emissive_strength.as_ref()).map_or(1.0, |s| s.emissive_strength.0);
-        // The extension allows 0, meaning total reflection's limit; such a surface is treated as the default glass.
+        // The extension allows 0 for surfaces that reflect everything; such a surface is taken for ordinary glass.
         let ior = extensions.and_then(|e| e.ior.as_ref()).map_or(1.5, |i| i.ior.0);
         Ok(Material {
             name: json.name.clone().unwrap_or_else(|| format!("Material {index}")),
-            base_color: Vec3::new(r, g, b),
+            base_color: Vec3::new(r, g, b).clamp(Vec3::ZERO, Vec3::ONE),
             base_color_texture: self.optional(pbr.base_color_texture.as_ref(), Encoding::Srgb)?,
-            alpha,
+            alpha: alpha.clamp(0.0, 1.0),
             alpha_mode: match &json.alpha_mode {
                 Checked::Valid(material::AlphaMode::Opaque) => AlphaMode::Opaque,
                 Checked::Valid(material::AlphaMode::Mask) => AlphaMode::Mask(json.alpha_cutoff.map_or(0.5, |c| c.0)),
                 Checked::Valid(material::AlphaMode::Blend) => AlphaMode::Blend,
                 Checked::Invalid => return Err(Error::format("its alphaMode is unknown")),
             },
-            metallic: pbr.metallic_factor.0,
-            roughness: pbr.roughness_factor.0,
+            metallic: pbr.metallic_factor.0.clamp(0.0, 1.0),
+            roughness: pbr.roughness_factor.0.clamp(0.0, 1.0),
             metallic_roughness_texture: self.optional(pbr.metallic_roughness_texture.as_ref(), Encoding::Linear)?,
             normal_texture: match &json.normal_texture {
                 Some(normal) => Some(self.reference(normal.index, normal.tex_coord, None, Encoding::Linear)?),
@@ -61,8 +62,8 @@ impl<'a> Materials<'a> {
             emission: Vec3::from(json.emissive_factor.0) * strength,
             emission_texture: self.optional(json.emissive_texture.as_ref(), Encoding::Srgb)?,
             double_sided: json.double_sided,
-            transmission,
-            ior: if ior == 0.0 { 1.5 } else { ior },
+            transmission: transmission.clamp(0.0, 1.0),
+            ior: if ior == 0.0 { 1.5 } else { ior.max(1.0) },
         })
     }
 

@@ -167,7 +167,9 @@ fn transforms_are_applied_and_reflections_keep_their_front() {
     });
     let mesh = &import(&nested, None).unwrap().meshes[0];
     let [a, b, c] = mesh.corners(0);
-    assert!(near(a, Vec3::new(1.0, 2.0, 3.0)) && near(b, Vec3::new(-1.0, 2.0, 3.0)) && near(c, Vec3::new(1.0, 0.0, 3.0)));
+    assert!(
+        near(a, Vec3::new(1.0, 2.0, 3.0)) && near(b, Vec3::new(-1.0, 2.0, 3.0)) && near(c, Vec3::new(1.0, 0.0, 3.0))
+    );
     assert!((b - a).cross(c - a).z > 0.0 && mesh.name == "Own");
 }
 

@@ -31,9 +31,9 @@ pub fn fit(points: &[DVec3], centre: DVec3, normal: DVec3) -> Frame {
 /// The direction of u along the world axes.
 fn upright(normal: DVec3) -> DVec3 {
     let candidate = if normal.y.abs() < WALL {
-        // On a wall v is as near to straight down as can be, and u = normal × v... turned back from it.
+        // On a wall v is as near to straight down as can be; u = normal × v.
         let down = DVec3::NEG_Y - normal * DVec3::NEG_Y.dot(normal);
-        normal.cross(-down)
+        normal.cross(down)
     } else {
         DVec3::X - normal * normal.x
     };
@@ -145,7 +145,12 @@ mod tests {
             (DVec3::X, DVec3::NEG_Z, DVec3::NEG_Y),
         ] {
             let frame = fit(&square(u, v), DVec3::ZERO, normal);
-            assert!((frame.u - u).length() < 1e-12 && (frame.v - v).length() < 1e-12, "{normal}: {} {}", frame.u, frame.v);
+            assert!(
+                (frame.u - u).length() < 1e-12 && (frame.v - v).length() < 1e-12,
+                "{normal}: {} {}",
+                frame.u,
+                frame.v
+            );
         }
     }
 }

@@ -66,13 +66,12 @@ pub fn from_triangles(scene: &Scene, triangles: &[(usize, usize)]) -> Result<Sur
 }
 
 fn check_triangles(scene: &Scene, triangles: &[(usize, usize)]) -> Result<()> {
-    let known = |&(mesh, triangle): &(usize, usize)| {
-        scene.meshes.get(mesh).is_some_and(|m| triangle < m.triangles.len())
-    };
+    let known =
+        |&(mesh, triangle): &(usize, usize)| scene.meshes.get(mesh).is_some_and(|m| triangle < m.triangles.len());
     match triangles.iter().find(|t| !known(t)) {
-        Some((mesh, triangle)) => {
-            Err(Error::argument(format!("triangle {triangle} of mesh {mesh} is not in the scene; find the surface again")))
-        }
+        Some((mesh, triangle)) => Err(Error::argument(format!(
+            "triangle {triangle} of mesh {mesh} is not in the scene; find the surface again"
+        ))),
         None => Ok(()),
     }
 }

@@ -20,8 +20,9 @@ pub fn find(scene: &Scene, name: &str) -> Result<Vec<usize>> {
         .filter_map(|&(i, _)| Some((i, scene.materials.get(scene.meshes[i].material)?.name.as_str())))
         .collect();
     let wanted = name.to_lowercase();
-    let matchers: [&dyn Fn(&str) -> bool; 3] =
-        [&|n| n == name, &|n| n.to_lowercase() == wanted, &|n| !wanted.is_empty() && n.to_lowercase().contains(&wanted)];
+    let matchers: [&dyn Fn(&str) -> bool; 3] = [&|n| n == name, &|n| n.to_lowercase() == wanted, &|n| {
+        !wanted.is_empty() && n.to_lowercase().contains(&wanted)
+    }];
     for (strictness, matches) in matchers.iter().enumerate() {
         for list in [&objects, &materials] {
             let found: Vec<_> = list.iter().filter(|(_, n)| matches(n)).collect();

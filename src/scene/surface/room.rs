@@ -24,7 +24,9 @@ pub fn facing(scene: &Scene, patches: &[Patch]) -> Result<(usize, DVec3)> {
     let mut best: Option<(f64, usize, DVec3)> = None;
     for (i, patch) in patches.iter().enumerate() {
         for normal in [wound(scene, patch), -wound(scene, patch)] {
-            let score = patch.area * sight(scene, &chunks, patch, normal) * (1.0 + CAMERA_WEIGHT * cameras(scene, patch, normal));
+            let score = patch.area
+                * sight(scene, &chunks, patch, normal)
+                * (1.0 + CAMERA_WEIGHT * cameras(scene, patch, normal));
             if best.is_none_or(|(b, ..)| score > b) {
                 best = Some((score, i, normal));
             }

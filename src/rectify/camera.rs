@@ -1,0 +1,167 @@
+//! The camera from its vanishing points: focal length, principal point and orthonormal room axes.
+
+use super::vanishing::Vanishing;
+use super::{Params, VanishingPoint};
+use crate::geometry::linear::symmetric_eigen;
+use crate::geometry::perspective::{HORIZONTAL_A, HORIZONTAL_B, VERTICAL};
+use crate::geometry::{FocalSource, Perspective};
+use glam::{DMat3, DVec2, DVec3};
+
+/// Usual focal length as a share of the image width, and the deviation of its logarithm over photos of rooms.
+const USUAL_FOCAL: f64 = 0.85;
+pub const USUAL_SPREAD: f64 = 0.35;
+
+/// The error in radians of an axis that nothing but convention fixes.
+const FREE_ERROR: f64 = 0.5;
+
+/// A camera with the vanishing point of each of its axes.
+pub struct Oriented {
+    pub perspective: Perspective,
+    pub vanishing_points: [VanishingPoint; 3],
+    /// For each point of the input the axis it became, if any.
+    pub axis_of: Vec<Option<usize>>,
+}
+
+/// Names the vanishing points, finds the focal length and makes the axes orthonormal.
+pub fn orient(found: &Vanishing, width: usize, height: usize, params: &Params) -> Oriented {
+    let principal = params.principal(width, height);
+    let usual = USUAL_FOCAL * width as f64;
+    let orthogonal = &found.points[..found.points.len().min(3)];
+    let (focal, focal_source) = match (params.focal, focal_from_points(orthogonal, principal, usual)) {
+        (Some(f), _) => (f, FocalSource::Given),
+        (None, Some((log_focal, spread))) => {
+            // The usual focal length is one more observation; it decides only where the points say little.
+            let (a, b) = (spread.powi(-2), USUAL_SPREAD.powi(-2));
+            let focal = ((log_focal * a + usual.ln() * b) / (a + b)).exp();
+            (focal, if a > b { FocalSource::VanishingPoints } else { FocalSource::Assumed })
+        }
+        (None, None) => (usual, FocalSource::Assumed),
+    };
+
+    // Directions in camera space; those far from orthogonal to a better supported one are no room axes.
+    let ray = |p: &VanishingPoint| direction(p.point, principal, focal);
+    let mut chosen: Vec<usize> = Vec::new();
+    for (k, p) in orthogonal.iter().enumerate() {
+        if chosen.iter().all(|&c| ray(&orthogonal[c]).dot(ray(p)).abs() < 0.4) {
+            chosen.push(k);
+        }
+    }
+
+    // Name them: the vertical is the one nearest the image's vertical, the second horizontal the one we look along.
+    let mut named: [Option<usize>; 3] = [None; 3];
+    let take = |from: &mut Vec<usize>, value: &dyn Fn(DVec3) -> f64| {
+        let best = (0..from.len())
+            .max_by(|&a, &b| value(ray(&orthogonal[from[a]])).total_cmp(&value(ray(&orthogonal[from[b]]))));
+        best.map(|b| from.remove(b))
+    };
+    let mut rest = chosen.clone();
+    let is_vertical = |d: DVec3| d.y.abs() > std::f64::consts::FRAC_1_SQRT_2;
+    if chosen.len() == 3 || chosen.iter().any(|&c| is_vertical(ray(&orthogonal[c]))) {
+        named[VERTICAL] = take(&mut rest, &|d| d.y.abs());
+    }
+    let looks_along = |d: DVec3| d.z.abs() > std::f64::consts::FRAC_1_SQRT_2;
+    if rest.len() == 2 || rest.first().is_some_and(|&c| looks_along(ray(&orthogonal[c]))) {
+        named[HORIZONTAL_B] = take(&mut rest, &|d| d.z.abs());
+    }
+    named[HORIZONTAL_A] = rest.pop();
+
+    let axes = orthonormal(named.map(|n| n.map(|k| (ray(&orthogonal[k]), orthogonal[k].error))));
+    let perspective = Perspective { focal, focal_source, principal, axes };
+    let vanishing_points = std::array::from_fn(|axis| match named[axis] {
+        Some(k) => orthogonal[k].clone(),
+        None => {
+            let error = named.iter().flatten().map(|&k| orthogonal[k].error.powi(2)).sum::<f64>().sqrt();
+            let error = if named.iter().flatten().count() == 2 { error } else { FREE_ERROR };
+            VanishingPoint { point: perspective.vanishing_point(axis).normalize(), support: 0, error }
+        }
+    });
+    let axis_of = (0..found.points.len()).map(|k| named.iter().position(|&n| n == Some(k))).collect();
+    Oriented { perspective, vanishing_points, axis_of }
+}
+
+/// Camera-space unit direction that vanishes in a homogeneous pixel.
+fn direction(point: DVec3, principal: DVec2, focal: f64) -> DVec3 {
+    (point.truncate() - principal * point.z).extend(point.z * focal).normalize()
+}
+
+/// The logarithm of the focal length in pixels and its standard deviation, from every pair of points that should be
+/// orthogonal: `(v1 - c) · (v2 - c) + f² w1 w2 = 0`, linear in f², each pair weighted by the certainty of its angle.
+pub fn focal_from_points(points: &[VanishingPoint], principal: DVec2, start: f64) -> Option<(f64, f64)> {
+    let mut square = start * start;
+    let mut deviation = f64::INFINITY;
+    for _ in 0..20 {
+        let (mut information, mut right) = (0.0, 0.0);
+        for (i, p) in points.iter().enumerate() {
+            for q in &points[..i] {
+                let (a, b) = (p.point.truncate() - principal * p.point.z, q.point.truncate() - principal * q.point.z);
+                let focal = square.sqrt();
+                let norm = a.extend(p.point.z * focal).length() * b.extend(q.point.z * focal).length();
+                let (g, k) = (a.dot(b) / norm, p.point.z * q.point.z / norm);
+                let weight = 1.0 / (p.error * p.error + q.error * q.error).max(1e-24);
+                information += weight * k * k;
+                right -= weight * g * k;
+            }
+        }
+        let next = right / information;
+        if !(next.is_finite() && next > 0.0) {
+            return None;
+        }
+        deviation = (1.0 / information).sqrt() / (2.0 * next);
+        let converged = (next / square - 1.0).abs() < 1e-12;
+        square = next;
+        if converged {
+            break;
+        }
+    }
+    (deviation.is_finite() && (0.1..10.0).contains(&(square.sqrt() / start)))
+        .then(|| (square.ln() / 2.0, deviation.max(1e-9)))
+}
+
+/// The rotation nearest to the given directions, each weighted by its certainty (Wahba's problem, by polar
+/// decomposition); what is missing follows from orthogonality, then from an upright camera.
+fn orthonormal(directions: [Option<(DVec3, f64)>; 3]) -> DMat3 {
+    let [a, down, ahead] = directions;
+    let down = down.map(|(d, e)| (if d.y < 0.0 { -d } else { d }, e));
+    let ahead = ahead.map(|(d, e)| (if d.z < 0.0 { -d } else { d }, e));
+    let across = |from: DVec3, d: DVec3| (d - from * from.dot(d)).normalize_or(from.any_orthonormal_vector());
+    let free = |d: DVec3| (d, FREE_ERROR);
+    let upright = |d: DVec3| if d.y < 0.0 { -d } else { d };
+    let (down, ahead) = match (a, down, ahead) {
+        (_, Some(down), Some(ahead)) => (down, ahead),
+        (Some((a, _)), Some(down), None) => {
+            let ahead = across(down.0, down.0.cross(a).normalize_or(DVec3::Z));
+            (down, free(if ahead.z < 0.0 { -ahead } else { ahead }))
+        }
+        (Some((a, _)), None, Some(ahead)) => (free(upright(across(ahead.0, ahead.0.cross(a)))), ahead),
+        (None, Some(down), None) => (down, free(across(down.0, DVec3::Z))),
+        (None, None, Some(ahead)) => (free(upright(across(ahead.0, DVec3::Y))), ahead),
+        (Some((a, _)), None, None) => {
+            let down = upright(across(a, DVec3::Y));
+            let ahead = a.cross(down);
+            (free(down), free(if ahead.z < 0.0 { -ahead } else { ahead }))
+        }
+        (None, None, None) => (free(DVec3::Y), free(DVec3::Z)),
+    };
+    let right = down.0.cross(ahead.0);
+    let a = a.map_or((right, FREE_ERROR), |(d, e)| (if d.dot(right) < 0.0 { -d } else { d }, e));
+    polar([a, down, ahead])
+}
+
+/// `M (Mᵀ M)^(-1/2)` of the columns scaled by their certainties.
+fn polar(columns: [(DVec3, f64); 3]) -> DMat3 {
+    // A spread of weights beyond 1e4 would only cost digits.
+    let least = columns.iter().map(|c| c.1).fold(f64::INFINITY, f64::min).max(1e-12);
+    let scaled = columns.map(|(d, e)| d * (least / e.max(least)).max(1e-4));
+    let gram = std::array::from_fn(|r| std::array::from_fn(|c| scaled[r].dot(scaled[c])));
+    let (values, vectors) = symmetric_eigen::<3>(gram);
+    let mut inverse_root = DMat3::ZERO;
+    for (value, vector) in values.iter().zip(vectors) {
+        let v = DVec3::from_array(vector);
+        inverse_root += DMat3::from_cols(v * v.x, v * v.y, v * v.z) * (1.0 / value.max(1e-300).sqrt());
+    }
+    let rotation = DMat3::from_cols(scaled[0], scaled[1], scaled[2]) * inverse_root;
+    // Rounding left by the graded weights.
+    let ahead = rotation.z_axis.normalize();
+    let down = (rotation.y_axis - ahead * ahead.dot(rotation.y_axis)).normalize();
+    DMat3::from_cols(down.cross(ahead), down, ahead)
+}

@@ -1,0 +1,86 @@
+//! Canny's edge detection (1986): thin edges at the maxima of the gradient, followed by hysteresis.
+
+use super::gradient::Gradients;
+use crate::error::Result;
+use crate::image::try_vec;
+use crate::job::Job;
+
+/// Gradient magnitudes, in encoded luma per pixel: an edge must exceed the second somewhere, and the first throughout.
+const WEAK: f32 = 0.015;
+const STRONG: f32 = 0.04;
+
+/// Indices of the edge pixels, in rising order.
+pub fn edges(gradients: &Gradients, job: Job) -> Result<Vec<u32>> {
+    let Gradients { width, height, derivative, magnitude } = gradients;
+    let (width, height) = (*width, *height);
+    const NONE: u8 = 0;
+    const CANDIDATE: u8 = 1;
+    const EDGE: u8 = 2;
+    let mut state = try_vec(width * height, NONE)?;
+    let mut pending: Vec<u32> = Vec::new();
+
+    // Keep the pixels whose gradient is the largest across the edge, interpolated between the neighbours on either side.
+    for y in 1..height.saturating_sub(1) {
+        job.check()?;
+        for x in 1..width.saturating_sub(1) {
+            let i = y * width + x;
+            let m = magnitude[i];
+            if m < WEAK {
+                continue;
+            }
+            let [dx, dy] = derivative[i];
+            let (along, across, t) = if dx.abs() >= dy.abs() {
+                (1isize, width as isize, dy / dx)
+            } else {
+                (width as isize, 1isize, dx / dy)
+            };
+            let at = |offset: isize| magnitude[(i as isize + offset) as usize];
+            let side = if t >= 0.0 { across } else { -across };
+            let t = t.abs();
+            let ahead = at(along) * (1.0 - t) + at(along + side) * t;
+            let behind = at(-along) * (1.0 - t) + at(-along - side) * t;
+            if m > ahead && m >= behind {
+                state[i] = CANDIDATE;
+                if m >= STRONG {
+                    state[i] = EDGE;
+                    pending.push(i as u32);
+                }
+            }
+        }
+    }
+    // Candidates connected with a strong edge are edges too.
+    while let Some(i) = pending.pop() {
+        let (x, y) = (i as usize % width, i as usize / width);
+        for ny in y - 1..=y + 1 {
+            for nx in x - 1..=x + 1 {
+                let n = ny * width + nx;
+                if state[n] == CANDIDATE {
+                    state[n] = EDGE;
+                    pending.push(n as u32);
+                }
+            }
+        }
+    }
+    Ok((0..state.len() as u32).filter(|&i| state[i as usize] == EDGE).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::image::Image;
+    use crate::job::Monitor;
+    use crate::rectify::gradient::gradients;
+
+    #[test]
+    fn a_step_has_one_edge_pixel_per_row() {
+        let monitor = Monitor::default();
+        let luma = Image::from_fn(40, 30, |x, _| [if x < 20 { 0.2 } else { 0.7 }]).unwrap();
+        let found = edges(&gradients(&luma, monitor.job()).unwrap(), monitor.job()).unwrap();
+        for y in 2..28 {
+            let row: Vec<u32> = found.iter().filter(|&&i| i / 40 == y).map(|i| i % 40).collect();
+            assert!(row == [19] || row == [20], "{row:?}");
+        }
+        let flat = Image::from_fn(1, 9, |_, y| [y as f32]).unwrap();
+        assert!(edges(&gradients(&flat, monitor.job()).unwrap(), monitor.job()).unwrap().is_empty());
+    }
+}

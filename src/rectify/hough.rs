@@ -1,0 +1,173 @@
+//! The paper's lines (§5.1): a Hough transform in which each edge pixel votes only for the lines within a few degrees of
+//! the one across its gradient, the maxima of the accumulator, and the pieces of each line that edges cover.
+
+use super::gradient::Gradients;
+use crate::error::Result;
+use crate::geometry::Segment;
+use crate::image::try_vec;
+use crate::job::Job;
+use glam::DVec2;
+use std::f64::consts::PI;
+
+/// Directions of the accumulator over half a turn: half a degree each.
+const ANGLES: usize = 360;
+
+/// Least votes of a maximum, as a share of the image's shorter side, and the most maxima taken.
+const LEAST_VOTES: f64 = 0.06;
+const MOST_LINES: usize = 600;
+
+/// Cells around a maximum in which no other counts: angle and distance.
+const APART: (usize, usize) = (4, 4);
+
+/// Distance of an edge pixel from its line, gap bridged in a piece, least length of a piece, in pixels.
+const REACH: f64 = 1.5;
+const GAP: f64 = 6.0;
+
+/// A line `cos(theta) x + sin(theta) y = rho` about the image centre, `theta` in `[0, pi)`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Peak {
+    pub rho: f64,
+    pub theta: f64,
+    pub votes: u32,
+}
+
+/// The lines with the most votes, best first.
+pub fn peaks(gradients: &Gradients, edges: &[u32], band: f64, job: Job) -> Result<Vec<Peak>> {
+    let (width, height) = (gradients.width, gradients.height);
+    let centre = DVec2::new(width as f64, height as f64) / 2.0;
+    let reach = centre.length().ceil() as usize + 1;
+    let rows = 2 * reach + 1;
+    let mut votes = try_vec(ANGLES * rows, 0u32)?;
+    let table: Vec<DVec2> = (0..ANGLES).map(|k| DVec2::from_angle(k as f64 * PI / ANGLES as f64)).collect();
+    let half_band = (band / PI * ANGLES as f64).round() as isize;
+    for (done, &i) in edges.iter().enumerate() {
+        if done % 16_384 == 0 {
+            job.check()?;
+        }
+        let [dx, dy] = gradients.derivative[i as usize];
+        let direction = (f64::from(dy).atan2(f64::from(dx)) / PI * ANGLES as f64).round() as isize;
+        let p = position(width, i) - centre;
+        for k in direction - half_band..=direction + half_band {
+            let k = k.rem_euclid(ANGLES as isize) as usize;
+            let rho = table[k].dot(p).round() as isize + reach as isize;
+            votes[k * rows + rho as usize] += 1;
+        }
+    }
+
+    // Maxima over their neighbourhood; the accumulator closes on itself with the sign of rho changed.
+    let least = ((LEAST_VOTES * width.min(height) as f64) as u32).max(8);
+    let mut found: Vec<(u32, usize, usize)> = Vec::new();
+    for k in 0..ANGLES {
+        job.check()?;
+        for r in 0..rows {
+            let v = votes[k * rows + r];
+            if v < least {
+                continue;
+            }
+            let is_maximum = (-(APART.0 as isize)..=APART.0 as isize).all(|dk| {
+                let nk = k as isize + dk;
+                let mirrored = nk < 0 || nk >= ANGLES as isize;
+                let nk = nk.rem_euclid(ANGLES as isize) as usize;
+                (-(APART.1 as isize)..=APART.1 as isize).all(|dr| {
+                    let nr = r as isize + dr;
+                    let nr = if mirrored { rows as isize - 1 - nr } else { nr };
+                    let Some(&other) = (0..rows as isize).contains(&nr).then(|| &votes[nk * rows + nr as usize]) else {
+                        return true;
+                    };
+                    // Of equals the first in memory wins.
+                    other < v || (other == v && nk * rows + nr as usize >= k * rows + r)
+                })
+            });
+            if is_maximum {
+                found.push((v, k, r));
+            }
+        }
+    }
+    found.sort_by(|a, b| b.0.cmp(&a.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+    found.truncate(MOST_LINES);
+    let peak = |(votes, k, r): (u32, usize, usize)| Peak {
+        rho: r as f64 - reach as f64,
+        theta: k as f64 * PI / ANGLES as f64,
+        votes,
+    };
+    Ok(found.into_iter().map(peak).collect())
+}
+
+/// The pieces of the lines that edge pixels of a like gradient cover, each refitted by least squares. An edge pixel
+/// belongs to the strongest line that claims it.
+pub fn pieces(gradients: &Gradients, edges: &[u32], peaks: &[Peak], band: f64, job: Job) -> Result<Vec<Segment>> {
+    let centre = DVec2::new(gradients.width as f64, gradients.height as f64) / 2.0;
+    let least_agreement = (2.0 * band).max(5f64.to_radians()).cos();
+    let least_length = (0.02 * centre.length()).max(8.0);
+    let mut taken = try_vec(edges.len(), false)?;
+    let mut segments = Vec::new();
+    for (done, peak) in peaks.iter().enumerate() {
+        job.check()?;
+        job.report(done as f64 / peaks.len() as f64);
+        let normal = DVec2::from_angle(peak.theta);
+        let mut support: Vec<(f64, usize)> = Vec::new();
+        for (slot, &i) in edges.iter().enumerate().filter(|(slot, _)| !taken[*slot]) {
+            let p = position(gradients.width, i) - centre;
+            if (normal.dot(p) - peak.rho).abs() > REACH {
+                continue;
+            }
+            let [dx, dy] = gradients.derivative[i as usize];
+            let gradient = DVec2::new(f64::from(dx), f64::from(dy)).normalize();
+            if normal.dot(gradient).abs() >= least_agreement {
+                support.push((normal.perp_dot(p), slot));
+            }
+        }
+        support.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        for run in support.chunk_by(|a, b| b.0 - a.0 <= GAP) {
+            let length = run[run.len() - 1].0 - run[0].0;
+            // At least two thirds of a piece are edge.
+            if length < least_length || (run.len() as f64) < length * 2.0 / 3.0 {
+                continue;
+            }
+            let points: Vec<DVec2> = run.iter().map(|&(_, slot)| refined_position(gradients, edges[slot])).collect();
+            segments.push(fit(&points));
+            run.iter().for_each(|&(_, slot)| taken[slot] = true);
+        }
+    }
+    Ok(segments)
+}
+
+/// The whole visible part of each line, as the paper has it.
+pub fn whole_lines(gradients: &Gradients, peaks: &[Peak]) -> Vec<Segment> {
+    let size = DVec2::new(gradients.width as f64, gradients.height as f64);
+    let line = |peak: &Peak| {
+        let normal = DVec2::from_angle(peak.theta);
+        let foot = size / 2.0 + normal * peak.rho;
+        super::metric::visible(&Segment { a: foot, b: foot + normal.perp() }, size.x, size.y)
+    };
+    peaks.iter().filter_map(line).collect()
+}
+
+fn position(width: usize, index: u32) -> DVec2 {
+    DVec2::new((index as usize % width) as f64 + 0.5, (index as usize / width) as f64 + 0.5)
+}
+
+/// An edge pixel moved along the nearer axis of its gradient to the vertex of a parabola through three magnitudes.
+fn refined_position(gradients: &Gradients, index: u32) -> DVec2 {
+    let i = index as usize;
+    let [dx, dy] = gradients.derivative[i];
+    let (axis, stride) = if dx.abs() >= dy.abs() { (DVec2::X, 1) } else { (DVec2::Y, gradients.width) };
+    let m = |i: usize| f64::from(gradients.magnitude[i]);
+    // Edge pixels never lie on the border.
+    let (before, here, after) = (m(i - stride), m(i), m(i + stride));
+    let bend = before - 2.0 * here + after;
+    let offset = if bend < 0.0 { ((before - after) / (2.0 * bend)).clamp(-0.5, 0.5) } else { 0.0 };
+    position(gradients.width, index) + axis * offset
+}
+
+/// Total least squares through points in order along a line.
+fn fit(points: &[DVec2]) -> Segment {
+    let centre = points.iter().sum::<DVec2>() / points.len() as f64;
+    let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
+    for d in points.iter().map(|&p| p - centre) {
+        (xx, xy, yy) = (xx + d.x * d.x, xy + d.x * d.y, yy + d.y * d.y);
+    }
+    let direction = DVec2::from_angle(0.5 * (2.0 * xy).atan2(xx - yy));
+    let along = |p: DVec2| centre + direction * direction.dot(p - centre);
+    Segment { a: along(points[0]), b: along(points[points.len() - 1]) }
+}

@@ -1,0 +1,217 @@
+//! Three orthogonal vanishing points at once, with a focal length that may be unknown: candidates from pairs of lines,
+//! triplets from pairs of candidates and from a candidate and a line, a joint refinement of rotation and focal length.
+
+use super::sphere::{Evidence, project, refine, unproject};
+use crate::error::Result;
+use crate::exec;
+use crate::geometry::linear;
+use crate::job::Job;
+use crate::rng::Rng;
+use glam::{DMat3, DQuat, DVec3};
+
+/// Focal lengths tried where none follows from the candidates, in half image sides: 20 to 110 degrees of view.
+const FOCALS: [f64; 7] = [0.7, 0.95, 1.3, 1.7, 2.2, 3.2, 5.5];
+
+/// The focal length expected when nothing is known (0.85 of the width), and the deviation of its logarithm.
+pub const USUAL_FOCAL: f64 = 1.7;
+pub const USUAL_SPREAD: f64 = 0.4;
+
+/// Share of all evidence that a focal length one deviation off the usual must win back.
+const FOCAL_COST: f64 = 0.004;
+
+/// Pairs of lines drawn, candidates kept, lines paired with a candidate, and triplets refined.
+const PAIRS: usize = 800;
+const CANDIDATES: usize = 8;
+const PARTNERS: usize = 40;
+const FINALISTS: usize = 12;
+
+/// An orthogonal triplet: camera-space directions as columns, the focal length in units of the frame.
+#[derive(Clone, Copy, Debug)]
+pub struct Triplet {
+    pub axes: DMat3,
+    pub focal: f64,
+    pub score: f64,
+}
+
+/// The best triplet; `None` if no two lines meet in a point that can be told from them. Lines are expected longest first.
+pub fn search(lines: &[Evidence], focal: Option<f64>, seed: u64, job: Job) -> Result<Option<Triplet>> {
+    let candidates = candidates(lines, focal.unwrap_or(USUAL_FOCAL), CANDIDATES, seed, job.part(0.0, 0.3))?;
+    let hypotheses = hypotheses(lines, &candidates, focal);
+    // Score all on the longest lines, the best on all lines after refinement.
+    let longest = &lines[..lines.len().min(200)];
+    let scores = exec::map(hypotheses.len(), job.part(0.3, 0.7), |i| score(longest, &hypotheses[i]))?;
+    let mut ranked: Vec<(f64, Triplet)> = scores.into_iter().zip(hypotheses).collect();
+    ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut finalists: Vec<Triplet> = Vec::new();
+    for (_, triplet) in ranked {
+        if finalists.len() == FINALISTS {
+            break;
+        }
+        if finalists.iter().all(|f| !similar(f, &triplet)) {
+            finalists.push(triplet);
+        }
+    }
+    let refined = exec::map(finalists.len(), job.part(0.7, 1.0), |i| refine_jointly(lines, finalists[i], focal))?;
+    Ok(refined.into_iter().max_by(|a, b| a.score.total_cmp(&b.score)))
+}
+
+/// The direction that most lines agree with.
+pub fn strongest(lines: &[Evidence], focal: f64, seed: u64, job: Job) -> Result<Option<DVec3>> {
+    Ok(candidates(lines, focal, 1, seed, job)?.first().map(|&p| unproject(p, focal)))
+}
+
+/// Single vanishing points of pairs of lines, each refined, the best one first; each next one is judged mainly by the
+/// lines that those before it leave unexplained.
+fn candidates(lines: &[Evidence], focal: f64, count: usize, seed: u64, job: Job) -> Result<Vec<DVec3>> {
+    let cumulative: Vec<f64> = lines
+        .iter()
+        .scan(0.0, |sum, e| {
+            *sum += e.weight;
+            Some(*sum)
+        })
+        .collect();
+    let total = cumulative.last().copied().unwrap_or(0.0);
+    let draw = |rng: &mut Rng| cumulative.partition_point(|&c| c <= rng.next_f64() * total).min(lines.len() - 1);
+    let points: Vec<DVec3> = (0..if lines.len() < 2 { 0 } else { PAIRS })
+        .filter_map(|k| {
+            let mut rng = Rng::new(seed, &[k as u64]);
+            let (a, b) = (lines[draw(&mut rng)].line.line, lines[draw(&mut rng)].line.line);
+            let p = a.cross(b);
+            (p.length() > 1e-9).then(|| p.normalize())
+        })
+        .collect();
+    let agreements = exec::map(points.len(), job, |i| -> Vec<f32> {
+        lines.iter().map(|e| e.agreement(points[i]) as f32).collect()
+    })?;
+    let mut weights: Vec<f32> = lines.iter().map(|e| e.weight as f32).collect();
+    let mut found: Vec<DVec3> = Vec::new();
+    for _ in 0..count {
+        let value = |i: usize| agreements[i].iter().zip(&weights).map(|(a, w)| a * w).sum::<f32>();
+        let Some((best, _)) =
+            (0..points.len()).map(|i| (i, value(i))).max_by(|a, b| a.1.total_cmp(&b.1)).filter(|b| b.1 > 0.0)
+        else {
+            break;
+        };
+        let start = unproject(points[best], focal);
+        let point = project(refine(lines, start, focal).map_or(start, |r| r.direction), focal);
+        for (w, (e, a)) in weights.iter_mut().zip(lines.iter().zip(&agreements[best])) {
+            *w *= 1.0 - 0.9 * a.max(e.agreement(point) as f32);
+        }
+        found.push(point);
+    }
+    Ok(found)
+}
+
+/// Triplets worth a look.
+fn hypotheses(lines: &[Evidence], candidates: &[DVec3], focal: Option<f64>) -> Vec<Triplet> {
+    let mut out = Vec::new();
+    let given = focal.map(|f| [f]);
+    let focals: &[f64] = given.as_ref().map_or(&FOCALS, |f| f);
+    let mut push = |a: DVec3, b: DVec3, focal: f64| {
+        let b = (b - a * a.dot(b)).normalize_or_zero();
+        if b != DVec3::ZERO {
+            out.push(Triplet { axes: DMat3::from_cols(a, b, a.cross(b)), focal, score: 0.0 });
+        }
+    };
+    for (i, &p) in candidates.iter().enumerate() {
+        // Two candidates: orthogonality gives the focal length, unless one is nearly at infinity.
+        for &q in &candidates[i + 1..] {
+            let square = -(p.x * q.x + p.y * q.y) / (p.z * q.z);
+            let implied = square.max(0.0).sqrt();
+            if focal.is_none() && (FOCALS[0]..=FOCALS[6]).contains(&implied) {
+                push(unproject(p, implied), unproject(q, implied), implied);
+            }
+            for &f in focals {
+                let (a, b) = (unproject(p, f), unproject(q, f));
+                if a.dot(b).abs() < 0.15 {
+                    push(a, b, f);
+                }
+            }
+        }
+        // A candidate and a long line that does not run towards it.
+        for partner in lines.iter().filter(|e| e.agreement(p) == 0.0).take(PARTNERS) {
+            for &f in focals {
+                let l = partner.line.line;
+                let a = unproject(p, f);
+                push(a, a.cross(DVec3::new(l.x, l.y, l.z / f)).normalize_or_zero(), f);
+            }
+        }
+    }
+    out
+}
+
+/// Evidence that the triplet explains, less the cost of an unusual focal length, as a share of all evidence.
+fn score(lines: &[Evidence], triplet: &Triplet) -> f64 {
+    let points = [0, 1, 2].map(|k| project(triplet.axes.col(k), triplet.focal));
+    let (mut explained, mut total) = (0.0, 0.0);
+    for e in lines {
+        explained += e.weight * points.iter().map(|&p| e.agreement(p)).fold(0.0, f64::max);
+        total += e.weight;
+    }
+    let unusual = (triplet.focal / USUAL_FOCAL).ln() / USUAL_SPREAD;
+    explained / total - FOCAL_COST * unusual * unusual
+}
+
+fn similar(a: &Triplet, b: &Triplet) -> bool {
+    let close = |d: DVec3| (0..3).any(|k| b.axes.col(k).dot(d).abs() > 0.9995);
+    (0..3).all(|k| close(a.axes.col(k))) && (a.focal / b.focal).ln().abs() < 0.1
+}
+
+/// Gauss-Newton over a rotation vector and the logarithm of the focal length, robustly reweighted.
+fn refine_jointly(lines: &[Evidence], start: Triplet, focal: Option<f64>) -> Triplet {
+    let mut best = Triplet { score: score(lines, &start), ..start };
+    let mut current = best;
+    for _ in 0..8 {
+        let mut normal = [[0.0; 4]; 4];
+        let mut right = [0.0; 4];
+        let mut scale = 0.0;
+        let points = [0, 1, 2].map(|k| project(current.axes.col(k), current.focal));
+        for e in lines {
+            let Some((k, agreement)) =
+                (0..3).map(|k| (k, e.agreement(points[k]))).max_by(|a, b| a.1.total_cmp(&b.1)).filter(|b| b.1 > 0.0)
+            else {
+                continue;
+            };
+            // Derivative of the sine: of l . p over the distance of p, p = (dx, dy, dz / f).
+            let (l, d, p) = (e.line.line, current.axes.col(k), points[k]);
+            let distance = (p.truncate() - e.line.centre * p.z).length();
+            if distance < 1e-9 {
+                continue;
+            }
+            let g = DVec3::new(l.x, l.y, l.z / current.focal) / distance;
+            let by_rotation = d.cross(g);
+            let by_focal = -l.z * p.z / distance;
+            let derivative = [by_rotation.x, by_rotation.y, by_rotation.z, by_focal];
+            let sine = l.dot(p) / distance;
+            let weight = agreement * agreement * e.weight * e.stiffness;
+            scale += agreement * agreement * e.weight;
+            for r in 0..4 {
+                for c in 0..4 {
+                    normal[r][c] += weight * derivative[r] * derivative[c];
+                }
+                right[r] -= weight * derivative[r] * sine;
+            }
+        }
+        // The usual focal length is a weak observation; a given one is firm.
+        let firmness = if focal.is_some() { 1e12 } else { 0.01 / (USUAL_SPREAD * USUAL_SPREAD) } * scale;
+        normal[3][3] += firmness;
+        if focal.is_none() {
+            right[3] -= firmness * (current.focal / USUAL_FOCAL).ln();
+        }
+        for (r, row) in normal.iter_mut().enumerate() {
+            row[r] += 1e-9 * scale;
+        }
+        let Some(step) = linear::solve(normal, right) else { break };
+        let rotation = DMat3::from_quat(DQuat::from_scaled_axis(DVec3::new(step[0], step[1], step[2])));
+        let focal = if focal.is_some() { current.focal } else { (current.focal * step[3].exp()).clamp(0.4, 12.0) };
+        current = Triplet { axes: rotation * current.axes, focal, score: 0.0 };
+        current.score = score(lines, &current);
+        if current.score > best.score {
+            best = current;
+        }
+        if step.iter().all(|s| s.abs() < 1e-9) {
+            break;
+        }
+    }
+    best
+}

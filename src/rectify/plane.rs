@@ -1,0 +1,142 @@
+//! Which plane of the room a mask shows, and the coordinates on it.
+
+use super::View;
+use crate::error::{Error, Result};
+use crate::geometry::perspective::{HORIZONTAL_A, HORIZONTAL_B, VERTICAL};
+use crate::geometry::{Homography, Perspective};
+use crate::image::Image;
+use glam::{DMat3, DVec2, DVec3};
+
+/// Most mask pixels looked at; more are thinned out evenly.
+const MOST_PIXELS: usize = 1 << 18;
+
+/// Least sine of the angle between a plane and the rays that see it, for half of the mask.
+const LEAST_INCIDENCE: f64 = 0.02;
+
+/// A plane at distance 1 from the camera, parallel to two room axes.
+#[derive(Clone, Debug)]
+pub struct Plane {
+    /// Indices of the room axes along the plane's first and second coordinate.
+    pub axes: [usize; 2],
+    /// Camera-space directions of the coordinates: rightwards and downwards as the photo shows them.
+    pub right: DVec3,
+    pub down: DVec3,
+    /// Unit normal away from the camera.
+    pub normal: DVec3,
+    pub perspective: Perspective,
+}
+
+impl Plane {
+    /// From plane coordinates to homogeneous pixels, the third coordinate positive in front of the camera.
+    pub fn to_photo(&self) -> Homography {
+        Homography(self.perspective.intrinsics() * DMat3::from_cols(self.right, self.down, self.normal))
+    }
+
+    /// Where the ray through a pixel meets the plane; `None` from the plane's horizon on.
+    pub fn meet(&self, pixel: DVec2) -> Option<DVec2> {
+        let ray = self.perspective.ray(pixel);
+        let depth = self.normal.dot(ray);
+        (depth > 1e-9).then(|| DVec2::new(self.right.dot(ray), self.down.dot(ray)) / depth)
+    }
+
+    /// Side in plane units of the square that a pixel sees on average: the root of the Jacobian's determinant, which is
+    /// `1 / (f² (n · ray)³)`.
+    pub fn pixel_side(&self, pixel: DVec2) -> f64 {
+        self.normal.dot(self.perspective.ray(pixel)).powf(-1.5) / self.perspective.focal
+    }
+}
+
+/// Centres of the pixels that a mask marks with at least one half.
+pub fn marked_pixels(mask: &Image) -> Result<Vec<DVec2>> {
+    let marked: Vec<u32> =
+        (0..mask.width * mask.height).filter(|i| mask.data[i * mask.channels] >= 0.5).map(|i| i as u32).collect();
+    if marked.is_empty() {
+        return Err(Error::degenerate(
+            "the plane's mask is empty: paint a stroke on the plane that carries the lights",
+        ));
+    }
+    let step = marked.len().div_ceil(MOST_PIXELS);
+    let centre = |i: u32| DVec2::new((i as usize % mask.width) as f64 + 0.5, (i as usize / mask.width) as f64 + 0.5);
+    Ok(marked.into_iter().step_by(step).map(centre).collect())
+}
+
+/// The plane along the given axes, or along the two that suit the mask best.
+pub fn choose(view: &View, mask: &Image, pixels: &[DVec2], axes: Option<[usize; 2]>) -> Result<Plane> {
+    let pair = match axes {
+        Some([a, b]) if a < 3 && b < 3 && a != b => [a, b],
+        Some([a, b]) => {
+            return Err(Error::argument(format!("axes are [{a}, {b}]; they must be two different ones of 0, 1 and 2")));
+        }
+        None => best_pair(view, mask, pixels),
+    };
+    let plane = facing(&view.perspective, pair, pixels);
+    let mut incidence: Vec<f64> =
+        pixels.iter().map(|&p| plane.normal.dot(view.perspective.ray(p).normalize())).collect();
+    let half = incidence.len() / 2;
+    let median = *incidence.select_nth_unstable_by(half, f64::total_cmp).1;
+    if !(median >= LEAST_INCIDENCE) {
+        return Err(Error::degenerate(format!(
+            "the camera sees the plane along axes {} and {} edge-on (half of the mask at less than {:.1} degrees): choose \
+             other axes, or mark a plane that the photo shows from further off it",
+            pair[0],
+            pair[1],
+            LEAST_INCIDENCE.asin().to_degrees()
+        )));
+    }
+    Ok(plane)
+}
+
+/// The plane of two axes on the side of the camera where most of the pixels are, its coordinates turned and flipped to
+/// agree with the photo's right and down.
+fn facing(perspective: &Perspective, [i, j]: [usize; 2], pixels: &[DVec2]) -> Plane {
+    let normal = perspective.axes.col(3 - i - j);
+    let ahead = pixels.iter().filter(|&&p| normal.dot(perspective.ray(p)) > 0.0).count();
+    let normal = if 2 * ahead >= pixels.len() { normal } else { -normal };
+    let seen: Vec<DVec2> = pixels.iter().copied().filter(|&p| normal.dot(perspective.ray(p)) > 0.0).collect();
+    let centre = seen.iter().sum::<DVec2>() / seen.len().max(1) as f64;
+    // How an axis runs in the photo near the centre of the mask.
+    let runs = |axis: usize| {
+        let v = perspective.vanishing_point(axis);
+        (v.truncate() - centre * v.z).normalize_or_zero()
+    };
+    let (i, j) = if runs(i).x.abs() >= runs(j).x.abs() { (i, j) } else { (j, i) };
+    let right = perspective.axes.col(i) * if runs(i).x < 0.0 { -1.0 } else { 1.0 };
+    // Not mirrored: as the camera sees it, right, down and away are right-handed.
+    let down = normal.cross(right);
+    Plane { axes: [i, j], right, down, normal, perspective: *perspective }
+}
+
+/// The two axes whose plane suits the mask: it lies on one side of the plane's horizon, and the lines in it run along
+/// both axes and not along the third. A mask wholly above the horizon is a ceiling unless the lines object.
+fn best_pair(view: &View, mask: &Image, pixels: &[DVec2]) -> [usize; 2] {
+    // Length of the segments inside the mask along each axis.
+    let inside = |p: DVec2| {
+        p.x >= 0.0
+            && p.y >= 0.0
+            && p.x < mask.width as f64
+            && p.y < mask.height as f64
+            && mask.pixel(p.x as usize, p.y as usize)[0] >= 0.5
+    };
+    let mut lengths = [0.0; 3];
+    for (segment, axis) in &view.segments {
+        if let Some(axis) = axis {
+            let hits = [segment.a, segment.midpoint(), segment.b].into_iter().filter(|&p| inside(p)).count();
+            lengths[*axis] += segment.length() * hits as f64 / 3.0;
+        }
+    }
+    let total: f64 = lengths.iter().sum();
+    let share = lengths.map(|l| if total > 0.0 { l / total } else { 1.0 / 3.0 });
+    let value = |[i, j]: [usize; 2]| {
+        let third = 3 - i - j;
+        let normal = view.perspective.axes.col(third);
+        let ahead = pixels.iter().filter(|&&p| normal.dot(view.perspective.ray(p)) > 0.0).count() as f64;
+        let share_ahead = ahead / pixels.len() as f64;
+        let one_sided = (2.0 * share_ahead - 1.0).abs();
+        let lines = 1.0 - share[third] + share[i].min(share[j]);
+        // The vertical points down: no pixel of a ceiling is ahead along it.
+        let ceiling = if third == VERTICAL && share_ahead < 0.02 { 1.5 } else { 1.0 };
+        one_sided.powi(4) * lines * ceiling
+    };
+    let pairs = [[HORIZONTAL_A, HORIZONTAL_B], [HORIZONTAL_A, VERTICAL], [VERTICAL, HORIZONTAL_B]];
+    pairs.into_iter().rev().max_by(|&a, &b| value(a).total_cmp(&value(b))).unwrap_or(pairs[0])
+}

@@ -1,0 +1,91 @@
+//! The largest quadrilateral around a plane's mask whose sides run to the two vanishing points (§5.3): a rectangle in
+//! plane coordinates, on the camera's side of the horizon and without what is magnified too much.
+
+use super::plane::Plane;
+use crate::error::{Error, Result};
+use crate::image::Image;
+use glam::DVec2;
+
+/// Cells along each side of the grid on which the rectangle is sought.
+const GRID: usize = 96;
+
+/// A rectangle in plane coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rectangle {
+    pub low: DVec2,
+    pub high: DVec2,
+    /// Side in plane units of the smallest square that one photo pixel sees in it.
+    pub densest: f64,
+}
+
+/// The rectangle that holds most of the plane that the mask marks, less what it must hold besides.
+pub fn largest(plane: &Plane, mask: &Image, pixels: &[DVec2], max_magnification: f64) -> Result<Rectangle> {
+    // Pixels on the camera's side of the horizon, and how much of the plane each sees.
+    let mut seen: Vec<(f64, DVec2)> =
+        pixels.iter().filter_map(|&p| plane.meet(p).map(|q| (plane.pixel_side(p), q))).collect();
+    if seen.is_empty() {
+        return Err(Error::degenerate("the mask lies beyond the plane's horizon: choose other axes"));
+    }
+    seen.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let densest = seen[seen.len() / 50].0;
+    let farthest = densest * max_magnification;
+    seen.truncate(seen.partition_point(|s| s.0 <= farthest).max(1));
+    // Room for the pixels at the rim, of which only centres were counted.
+    let rim = DVec2::splat(densest / 2.0);
+    let (low, high) =
+        seen.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), (_, q)| (low.min(*q), high.max(*q)));
+    let (low, high) = (low - rim, high + rim);
+
+    // Gain 1 for each cell that shows the plane, lose 1 for each that does not, and never reach behind the camera.
+    let cell = (high - low) / GRID as f64;
+    let to_photo = plane.to_photo();
+    let mut gain = vec![[0.0f64; GRID]; GRID];
+    for (y, row) in gain.iter_mut().enumerate() {
+        for (x, gain) in row.iter_mut().enumerate() {
+            let corner =
+                |dx: f64, dy: f64| to_photo.apply_homogeneous(low + cell * DVec2::new(x as f64 + dx, y as f64 + dy));
+            let in_front = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)].iter().all(|c| corner(c.0, c.1).z > 1e-6);
+            let centre = corner(0.5, 0.5);
+            let photo = centre.truncate() / centre.z;
+            let shows = in_front && marks(mask, photo) && plane.pixel_side(photo) <= farthest;
+            *gain = if shows {
+                1.0
+            } else if in_front {
+                -1.0
+            } else {
+                -1e9
+            };
+        }
+    }
+    let ([x0, y0], [x1, y1]) = densest_block(&gain);
+    let at = |x: usize, y: usize| low + cell * DVec2::new(x as f64, y as f64);
+    Ok(Rectangle { low: at(x0, y0), high: at(x1, y1), densest })
+}
+
+/// Whether the pixel at a position of the photo is marked.
+pub fn marks(mask: &Image, p: DVec2) -> bool {
+    p.x >= 0.0 && p.y >= 0.0 && p.x <= mask.width as f64 && p.y <= mask.height as f64 && mask.sample(p.x, p.y, 0) >= 0.5
+}
+
+/// The block of cells with the greatest sum, as its first cell and the one past its last (Kadane's algorithm over every
+/// range of rows).
+fn densest_block(gain: &[[f64; GRID]]) -> ([usize; 2], [usize; 2]) {
+    let mut best = (f64::NEG_INFINITY, [0, 0], [GRID, GRID]);
+    for top in 0..GRID {
+        let mut sums = [0.0; GRID];
+        for bottom in top..GRID {
+            let (mut run, mut start) = (0.0, 0);
+            for x in 0..GRID {
+                sums[x] += gain[bottom][x];
+                if run <= 0.0 {
+                    (run, start) = (0.0, x);
+                }
+                run += sums[x];
+                if run > best.0 {
+                    best = (run, [start, top], [x + 1, bottom + 1]);
+                }
+            }
+        }
+    }
+    (best.1, best.2)
+}

@@ -1,0 +1,174 @@
+//! One vanishing point on the Gaussian sphere: how well lines agree with it, its refinement and its covariance.
+//!
+//! The paper optimises `alpha = 1 - 1 / (rho + 1)`; on the sphere points at infinity are ordinary points and no
+//! coordinate is ill-conditioned there.
+
+use super::metric::Line;
+use crate::geometry::{Segment, linear::symmetric_eigen};
+use glam::{DVec2, DVec3};
+
+/// Largest distance of a segment's endpoints from the line to its vanishing point, in units of half the image's longer
+/// side: about 2 pixels of 640.
+const ENDPOINT_LIMIT: f64 = 0.006;
+
+/// Largest sine of the angle between a segment and the line to its vanishing point, which short segments need besides.
+const SINE_LIMIT: f64 = 0.06;
+
+/// Endpoint noise assumed before any residual is seen, in the same unit, and the number of segments that is worth.
+const PRIOR_NOISE: f64 = 0.001;
+const PRIOR_COUNT: f64 = 2.0;
+
+/// Image coordinates relative to the principal point, half the longer side being 1.
+#[derive(Clone, Copy, Debug)]
+pub struct Frame {
+    pub principal: DVec2,
+    pub scale: f64,
+}
+
+impl Frame {
+    pub fn new(width: usize, height: usize, principal: DVec2) -> Self {
+        Self { principal, scale: width.max(height) as f64 / 2.0 }
+    }
+
+    /// Segments as evidence, each with its index; those without length are left out.
+    pub fn evidence(&self, segments: &[Segment]) -> Vec<(usize, Evidence)> {
+        let to_frame = |p: DVec2| (p - self.principal) / self.scale;
+        let prepare = |s: &Segment| Line::new(&Segment { a: to_frame(s.a), b: to_frame(s.b) });
+        segments.iter().enumerate().filter_map(|(i, s)| prepare(s).map(|line| (i, Evidence::new(line)))).collect()
+    }
+
+    /// A homogeneous point of the frame in homogeneous pixels of unit length.
+    pub fn to_pixels(&self, p: DVec3) -> DVec3 {
+        // A third coordinate that is nothing but rounding is a point at infinity.
+        let w = if p.z.abs() <= 1e-13 * p.truncate().length() { 0.0 } else { p.z };
+        (p.truncate() * self.scale + self.principal * w).extend(w).normalize()
+    }
+
+    pub fn from_pixels(&self, p: DVec3) -> DVec3 {
+        ((p.truncate() - self.principal * p.z) / self.scale).extend(p.z)
+    }
+}
+
+/// A line in the frame with its say: its length.
+#[derive(Clone, Copy, Debug)]
+pub struct Evidence {
+    pub line: Line,
+    pub weight: f64,
+    /// What turns a squared sine into a squared residual whose limit is 1.
+    pub stiffness: f64,
+}
+
+impl Evidence {
+    fn new(line: Line) -> Self {
+        let stiffness = (line.half / ENDPOINT_LIMIT).powi(2) + SINE_LIMIT.powi(-2);
+        Self { line, weight: 2.0 * line.half, stiffness }
+    }
+
+    /// Squared residual; beyond 1 the line does not belong to the point.
+    pub fn residual(&self, p: DVec3) -> f64 {
+        let away = p.truncate() - self.line.centre * p.z;
+        let distance = away.length_squared();
+        let across = self.line.direction.perp_dot(away);
+        if distance > 0.0 { self.stiffness * across * across / distance } else { 0.0 }
+    }
+
+    /// Agreement in `[0, 1]`.
+    pub fn agreement(&self, p: DVec3) -> f64 {
+        (1.0 - self.residual(p)).max(0.0)
+    }
+}
+
+/// The homogeneous frame point a camera-space direction vanishes in, and back; `focal` in units of the frame.
+pub fn project(direction: DVec3, focal: f64) -> DVec3 {
+    direction.truncate().extend(direction.z / focal)
+}
+
+pub fn unproject(p: DVec3, focal: f64) -> DVec3 {
+    p.truncate().extend(p.z * focal).normalize()
+}
+
+/// A refined vanishing point.
+#[derive(Clone, Copy, Debug)]
+pub struct Refined {
+    /// Unit direction in camera space.
+    pub direction: DVec3,
+    /// Standard deviation of that direction in radians.
+    pub error: f64,
+}
+
+/// The direction that the given lines agree on best, from a start near it: iteratively reweighted least squares of the
+/// sine between each line and the line to the point, Tukey's biweight leaving out what is beyond its limit. `None`
+/// where fewer than two different lines remain.
+pub fn refine(lines: &[Evidence], start: DVec3, focal: f64) -> Option<Refined> {
+    let mut direction = start;
+    for _ in 0..20 {
+        let last = direction;
+        direction = smallest_eigenvector(lines, direction, focal)?;
+        direction *= direction.dot(last).signum();
+        if direction.distance_squared(last) < 1e-28 {
+            break;
+        }
+    }
+    let error = deviation(lines, direction, focal)?;
+    Some(Refined { direction, error })
+}
+
+/// Row of the least-squares problem: the derivative of a line's sine by the direction, and the weight of its square.
+fn row(evidence: &Evidence, direction: DVec3, focal: f64) -> Option<(DVec3, f64)> {
+    let p = project(direction, focal);
+    let bisquare = evidence.agreement(p).powi(2);
+    let distance = (p.truncate() - evidence.line.centre * p.z).length();
+    let l = evidence.line.line;
+    (bisquare > 0.0 && distance > 1e-9)
+        .then(|| (DVec3::new(l.x, l.y, l.z / focal) / distance, bisquare * evidence.weight * evidence.stiffness))
+}
+
+fn smallest_eigenvector(lines: &[Evidence], direction: DVec3, focal: f64) -> Option<DVec3> {
+    let mut normal = [[0.0; 3]; 3];
+    for (gradient, weight) in lines.iter().filter_map(|e| row(e, direction, focal)) {
+        let g = gradient.to_array();
+        for r in 0..3 {
+            for c in 0..3 {
+                normal[r][c] += weight * g[r] * g[c];
+            }
+        }
+    }
+    let (values, vectors) = symmetric_eigen(normal);
+    // Two lines that coincide fix no point.
+    (values[1] > values[2] * 1e-12 && values[2] > 0.0).then(|| DVec3::from_array(vectors[0]).normalize())
+}
+
+/// Standard deviation of a direction by the sandwich formula `N⁻¹ M N⁻¹` in the tangent plane: `N` is what the weights
+/// presume, `M` what endpoint noise of the size of the residuals does to them.
+fn deviation(lines: &[Evidence], direction: DVec3, focal: f64) -> Option<f64> {
+    let (e1, e2) = direction.any_orthonormal_pair();
+    let p = project(direction, focal);
+    let (mut count, mut squares) = (0.0, 0.0);
+    let (mut n, mut m) = ([0.0; 3], [0.0; 3]);
+    for evidence in lines {
+        let Some((gradient, weight)) = row(evidence, direction, focal) else { continue };
+        let (u, v) = (gradient.dot(e1), gradient.dot(e2));
+        let half = evidence.line.half;
+        let noise = weight * weight / (half * half);
+        for (i, product) in [u * u, u * v, v * v].into_iter().enumerate() {
+            n[i] += weight * product;
+            m[i] += noise * product;
+        }
+        count += 1.0;
+        squares += evidence.line.endpoint_distance(p).powi(2);
+    }
+    let variance = (squares + PRIOR_COUNT * PRIOR_NOISE * PRIOR_NOISE) / ((count - 2.0f64).max(0.0) + PRIOR_COUNT);
+    let determinant = n[0] * n[2] - n[1] * n[1];
+    if !(count >= 2.0 && determinant > 1e-12 * n[0] * n[2]) {
+        return None;
+    }
+    let inverse = [n[2] / determinant, -n[1] / determinant, n[0] / determinant];
+    // Trace of N⁻¹ M N⁻¹ = sum over the elements of M and N⁻².
+    let square = [
+        inverse[0] * inverse[0] + inverse[1] * inverse[1],
+        inverse[1] * (inverse[0] + inverse[2]),
+        inverse[1] * inverse[1] + inverse[2] * inverse[2],
+    ];
+    let trace = square[0] * m[0] + 2.0 * square[1] * m[1] + square[2] * m[2];
+    Some((variance * trace).sqrt().min(std::f64::consts::FRAC_PI_2))
+}

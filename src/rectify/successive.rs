@@ -1,0 +1,124 @@
+//! The paper's search (§5.2): RANSAC finds one group of converging lines after the other among those that remain, each
+//! point then optimised over `(alpha, theta)`.
+
+use super::metric::{Line, visible};
+use super::sphere::Frame;
+use super::{Metric, Params};
+use crate::error::Result;
+use crate::exec;
+use crate::geometry::Segment;
+use crate::job::Job;
+use crate::rng::Rng;
+use glam::{DVec2, DVec3};
+
+/// Pairs of lines drawn for each point.
+const DRAWS: usize = 600;
+
+/// At most `count` vanishing points in homogeneous pixels, in the order they were found.
+pub fn search(
+    frame: &Frame,
+    segments: &[Segment],
+    width: usize,
+    height: usize,
+    count: usize,
+    params: &Params,
+    job: Job,
+) -> Result<Vec<DVec3>> {
+    let (w, h) = (width as f64, height as f64);
+    let mut lines: Vec<Line> = segments
+        .iter()
+        .filter_map(|s| match params.metric {
+            Metric::Segment => Line::new(s),
+            Metric::VisibleLine => visible(s, w, h).and_then(|s| Line::new(&s)),
+        })
+        .collect();
+    // Inlier limits that measure best on labelled photos, in pixels of a picture 640 wide.
+    let limit = w.max(h) / 640.0 * if params.metric == Metric::Segment { 1.5 } else { 8.0 };
+    let distance = |line: &Line, p: DVec3| match params.metric {
+        Metric::Segment => line.endpoint_distance(p),
+        Metric::VisibleLine => line.printed_distance(p),
+    };
+
+    let mut found = Vec::new();
+    for round in 0..count {
+        if lines.len() < 2 {
+            break;
+        }
+        // The pair of lines whose meeting point most lines agree with.
+        let votes = exec::map(DRAWS, job.part(round as f64 / count as f64, (round + 1) as f64 / count as f64), |k| {
+            let mut rng = Rng::new(params.seed, &[round as u64, k as u64]);
+            let (a, b) = (lines[rng.below(lines.len())].line, lines[rng.below(lines.len())].line);
+            let p = a.cross(b);
+            let p = (p.length() > 1e-9).then(|| p.normalize());
+            (p.map_or(0, |p| lines.iter().filter(|l| distance(l, p) < limit).count()), p)
+        })?;
+        let Some((support, Some(start))) = votes.into_iter().rev().max_by_key(|v| v.0) else { break };
+        if support < 2 {
+            break;
+        }
+        let group: Vec<Line> = lines.iter().filter(|l| distance(l, start) < limit).copied().collect();
+        let loss = |p: DVec3| group.iter().map(|l| distance(l, p).min(limit)).sum::<f64>();
+        let point = regress(start, frame.principal, loss);
+        let point = if group.len() > 2 { point } else { start };
+        lines.retain(|l| distance(l, point) >= limit && distance(l, start) >= limit);
+        found.push(point);
+    }
+    Ok(found)
+}
+
+/// The homogeneous point at `(alpha, theta)` about an origin: `rho = alpha / (1 - alpha)`, so `alpha = 1` is infinity.
+pub fn from_alpha(alpha: f64, theta: f64, origin: DVec2) -> DVec3 {
+    let w = 1.0 - alpha;
+    (DVec2::from_angle(theta) * alpha + origin * w).extend(w)
+}
+
+/// `alpha = 1 - 1 / (rho + 1)` and the angle of a homogeneous point.
+pub fn to_alpha(p: DVec3, origin: DVec2) -> (f64, f64) {
+    let away = (p.truncate() - origin * p.z) * if p.z < 0.0 { -1.0 } else { 1.0 };
+    let rho = away.length();
+    (rho / (rho + p.z.abs()), away.to_angle())
+}
+
+/// Pattern search over `(alpha, theta)` from a start; the steps of alpha shrink towards 1 as those of rho grow.
+fn regress(start: DVec3, origin: DVec2, loss: impl Fn(DVec3) -> f64) -> DVec3 {
+    let (mut alpha, mut theta) = to_alpha(start, origin);
+    let mut best = loss(start);
+    let mut point = start;
+    let mut step = 0.2;
+    while step > 1e-9 {
+        let reach = (1.0 - alpha).max(1e-9) * step;
+        let turn = step * 0.3;
+        let tries = [(reach, 0.0), (-reach, 0.0), (0.0, turn), (0.0, -turn)];
+        let next = tries
+            .iter()
+            .map(|(da, dt)| ((alpha + da).clamp(0.0, 1.0), theta + dt))
+            .map(|(a, t)| (loss(from_alpha(a, t, origin)), a, t))
+            .min_by(|a, b| a.0.total_cmp(&b.0));
+        match next {
+            Some((value, a, t)) if value < best => {
+                (best, alpha, theta) = (value, a, t);
+                point = from_alpha(a, t, origin);
+            }
+            _ => step *= 0.5,
+        }
+    }
+    point.normalize()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn alpha_maps_back_and_reaches_infinity() {
+        let origin = DVec2::new(320.0, 240.0);
+        for p in [DVec3::new(10.0, 20.0, 1.0), DVec3::new(-3000.0, 5.0, -0.5), DVec3::new(0.6, -0.8, 0.0)] {
+            let (alpha, theta) = to_alpha(p, origin);
+            let back = from_alpha(alpha, theta, origin);
+            assert!(back.normalize().cross(p.normalize()).length() < 1e-12);
+        }
+        assert_eq!(to_alpha(DVec3::X, origin).0, 1.0);
+        let (alpha, _) = to_alpha(DVec3::new(320.0, 243.0, 1.0), origin);
+        assert!((alpha - (1.0 - 1.0 / 4.0)).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,141 @@
+//! Vanishing points from line segments (§5.2): up to three directions, orthogonal where the search is Manhattan's, each
+//! then refined freely with its own covariance.
+
+use super::sphere::{Evidence, Frame, Refined, project, refine, unproject};
+use super::{Params, Search, VanishingPoint, manhattan, successive};
+use crate::error::{Error, Result, check_range};
+use crate::geometry::Segment;
+use crate::job::Job;
+use glam::{DVec2, DVec3};
+
+/// Lines used to search and refine; further ones, the shortest, are only assigned.
+const MOST_LINES: usize = 2500;
+
+/// A direction less certain than this, in radians, is none.
+const WORST_ERROR: f64 = 0.2;
+
+/// The vanishing points of a set of segments.
+#[derive(Clone, Debug)]
+pub struct Vanishing {
+    /// The first three at most are near orthogonal; best supported first among them.
+    pub points: Vec<VanishingPoint>,
+    /// For each segment the point it runs to.
+    pub members: Vec<Option<usize>>,
+    /// Focal length in pixels under which the points are most nearly orthogonal; a weak guess from one finite point.
+    pub focal: f64,
+}
+
+/// Finds at most `count` vanishing points of segments in an image of the given size. Segments without length or with
+/// coordinates that are not finite take no part. An error if no point can be found.
+pub fn from_segments(
+    segments: &[Segment],
+    width: usize,
+    height: usize,
+    count: usize,
+    params: &Params,
+    job: Job,
+) -> Result<Vanishing> {
+    params.check()?;
+    check_range("count of vanishing points", count, 1, 64)?;
+    let frame = Frame::new(width, height, params.principal(width, height));
+    let mut evidence = frame.evidence(segments);
+    evidence.sort_by(|a, b| b.1.weight.total_cmp(&a.1.weight));
+    let lines: Vec<Evidence> = evidence.iter().take(MOST_LINES).map(|(_, e)| *e).collect();
+
+    let given = params.focal.map(|f| f / frame.scale);
+    let mut focal = given.unwrap_or(manhattan::USUAL_FOCAL);
+    let mut found: Vec<Refined> = Vec::new();
+    match params.search {
+        Search::Manhattan => {
+            if let Some(triplet) = manhattan::search(&lines, given, params.seed, job.part(0.0, 0.8))? {
+                focal = triplet.focal;
+                let axes = [0, 1, 2].map(|k| triplet.axes.col(k));
+                found = refine_freely(&lines, &axes, focal);
+            }
+            // Directions beside the three, from the lines that run along none of them.
+            while found.len() < count && !found.is_empty() {
+                let points: Vec<DVec3> = found.iter().map(|r| project(r.direction, focal)).collect();
+                let rest: Vec<Evidence> =
+                    lines.iter().filter(|e| points.iter().all(|&p| e.agreement(p) == 0.0)).copied().collect();
+                let Some(start) = manhattan::strongest(&rest, focal, params.seed, job.part(0.8, 0.9))? else { break };
+                let Some(point) = refine(&rest, start, focal).filter(|r| r.error < WORST_ERROR) else { break };
+                found.push(point);
+            }
+        }
+        Search::Successive => {
+            let points = successive::search(&frame, segments, width, height, count, params, job.part(0.0, 0.8))?;
+            found.extend(points.iter().map(|&p| {
+                let direction = unproject(frame.from_pixels(p), focal);
+                let error = refine(&lines, direction, focal).map_or(WORST_ERROR, |r| r.error);
+                Refined { direction, error }
+            }));
+        }
+    }
+
+    // Assign every segment to the point it agrees with best, and count.
+    let points: Vec<DVec3> = found.iter().map(|r| project(r.direction, focal)).collect();
+    let mut members = vec![None; segments.len()];
+    let mut support = vec![(0usize, 0.0f64); points.len()];
+    for (index, e) in &evidence {
+        let best = points.iter().map(|&p| e.agreement(p)).enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
+        if let Some((k, _)) = best.filter(|b| b.1 > 0.0) {
+            members[*index] = Some(k);
+            support[k] = (support[k].0 + 1, support[k].1 + e.weight);
+        }
+    }
+
+    // Keep what at least two lines support; the longest support comes first within the orthogonal three.
+    let mut order: Vec<usize> = (0..points.len()).filter(|&k| support[k].0 >= 2).collect();
+    order.sort_by(|&a, &b| (a >= 3).cmp(&(b >= 3)).then(support[b].1.total_cmp(&support[a].1)));
+    order.truncate(count);
+    if order.is_empty() {
+        return Err(Error::degenerate(format!(
+            "no lines found that meet in a vanishing point ({} usable segments): use a photo with straight edges of the \
+             room in focus, or set the room axes by hand",
+            evidence.len()
+        )));
+    }
+    for member in &mut members {
+        *member = member.and_then(|k: usize| order.iter().position(|&o| o == k));
+    }
+    let points = order
+        .iter()
+        .map(|&k| VanishingPoint { point: frame.to_pixels(points[k]), support: support[k].0, error: found[k].error })
+        .collect();
+    job.report(1.0);
+    Ok(Vanishing { points, members, focal: focal * frame.scale })
+}
+
+/// Refines each direction on the lines that run along it more nearly than along the others. Directions that no two lines
+/// fix, or that drift into another, are dropped.
+fn refine_freely(lines: &[Evidence], axes: &[DVec3], focal: f64) -> Vec<Refined> {
+    let mut current: Vec<Refined> = axes.iter().map(|&direction| Refined { direction, error: 0.0 }).collect();
+    for _ in 0..3 {
+        let points: Vec<DVec3> = current.iter().map(|r| project(r.direction, focal)).collect();
+        let mut groups = vec![Vec::new(); points.len()];
+        for e in lines {
+            let best = points.iter().map(|&p| e.agreement(p)).enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
+            if let Some((k, _)) = best.filter(|b| b.1 > 0.0) {
+                groups[k].push(*e);
+            }
+        }
+        let refined: Vec<Refined> =
+            current.iter().zip(&groups).filter_map(|(r, group)| refine(group, r.direction, focal)).collect();
+        current = refined;
+    }
+    let mut kept: Vec<Refined> = Vec::new();
+    for r in current {
+        let apart = kept.iter().all(|k| k.direction.dot(r.direction).abs() < 0.9);
+        if apart && r.error < WORST_ERROR {
+            kept.push(r);
+        }
+    }
+    kept
+}
+
+impl Params {
+    /// The principal point in pixels.
+    pub fn principal(&self, width: usize, height: usize) -> DVec2 {
+        self.principal.unwrap_or(DVec2::new(width as f64, height as f64) / 2.0)
+    }
+}

@@ -1,0 +1,67 @@
+//! Choosing an entry of a table in proportion to its weight.
+
+use crate::error::Result;
+use crate::image::try_vec;
+
+/// A discrete distribution by its running sum.
+pub struct Distribution {
+    /// `cumulative[i]` is the weight of the entries up to and including `i`.
+    cumulative: Vec<f64>,
+}
+
+impl Distribution {
+    /// From weights that are finite and not negative.
+    pub fn new(weights: impl ExactSizeIterator<Item = f64>) -> Result<Self> {
+        let mut cumulative = try_vec(weights.len(), 0.0)?;
+        let mut sum = 0.0;
+        for (c, w) in cumulative.iter_mut().zip(weights) {
+            sum += w;
+            *c = sum;
+        }
+        Ok(Self { cumulative })
+    }
+
+    pub fn len(&self) -> usize {
+        self.cumulative.len()
+    }
+
+    pub fn total(&self) -> f64 {
+        self.cumulative.last().copied().unwrap_or(0.0)
+    }
+
+    pub fn probability(&self, index: usize) -> f64 {
+        let before = if index == 0 { 0.0 } else { self.cumulative[index - 1] };
+        if self.total() > 0.0 { (self.cumulative[index] - before) / self.total() } else { 0.0 }
+    }
+
+    /// The entry at `u` in `[0, 1)` and where within it, again in `[0, 1)`. Entries of no weight are never chosen; there
+    /// must be one that has some.
+    pub fn sample(&self, u: f64) -> (usize, f64) {
+        let target = u * self.total();
+        let index = self.cumulative.partition_point(|&c| c <= target).min(self.cumulative.len() - 1);
+        let before = if index == 0 { 0.0 } else { self.cumulative[index - 1] };
+        let width = self.cumulative[index] - before;
+        (index, if width > 0.0 { ((target - before) / width).min(1.0 - f64::EPSILON) } else { 0.0 })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn entries_come_in_proportion_and_none_without_weight() {
+        let weights = [0.0, 3.0, 0.0, 1.0, 4.0, 0.0];
+        let table = Distribution::new(weights.into_iter()).unwrap();
+        let mut counts = [0; 6];
+        for i in 0..8000 {
+            let (index, rest) = table.sample((f64::from(i) + 0.5) / 8000.0);
+            assert!((0.0..1.0).contains(&rest));
+            counts[index] += 1;
+        }
+        assert_eq!(counts, [0, 3000, 0, 1000, 4000, 0]);
+        assert_eq!(table.probability(4), 0.5);
+        assert_eq!(table.sample(0.0).0, 1);
+        assert_eq!(table.sample(1.0 - 1e-16).0, 4);
+    }
+}

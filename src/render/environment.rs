@@ -1,0 +1,133 @@
+//! Light from the environment, importance-sampled.
+
+use super::distribution::Distribution;
+use super::emissive::mean_channel;
+use crate::error::Result;
+use crate::image::Image;
+use crate::scene::Environment;
+use glam::{Vec2, Vec3};
+use std::f32::consts::{PI, TAU};
+
+/// How directions towards the environment are chosen.
+pub enum EnvironmentSampler {
+    /// Uniform over the sphere.
+    Constant,
+    /// By the pixels of an equirectangular image: each weighs its solid angle times the mean of itself and its
+    /// neighbours, which is positive wherever interpolation lets light through.
+    Image { rows: Distribution, columns: Vec<Distribution> },
+}
+
+impl EnvironmentSampler {
+    /// The sampler and the mean radiance over all directions; none where the environment is dark.
+    pub fn build(environment: &Environment) -> Result<Option<(Self, f64)>> {
+        let image = match environment {
+            Environment::Constant(radiance) => {
+                let mean = f64::from(mean_channel(radiance.max(Vec3::ZERO)));
+                return Ok((mean > 0.0).then_some((Self::Constant, mean)));
+            }
+            Environment::Image(image) => image,
+        };
+        let mut columns = Vec::with_capacity(image.height);
+        for y in 0..image.height {
+            let band = band_solid_angle(y, image.height);
+            let weight = |x: usize| f64::from(neighbourhood(image, x, y)) * band / image.width as f64;
+            columns.push(Distribution::new((0..image.width).map(weight))?);
+        }
+        let rows = Distribution::new(columns.iter().map(Distribution::total))?;
+        let mean = rows.total() / f64::from(2.0 * TAU);
+        Ok((mean > 0.0).then_some((Self::Image { rows, columns }, mean)))
+    }
+
+    /// A direction and its density per steradian.
+    pub fn sample(&self, u: f64, v: f32) -> (Vec3, f32) {
+        match self {
+            Self::Constant => {
+                let (cosine, angle) = (1.0 - 2.0 * u as f32, TAU * v);
+                let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
+                (Vec3::new(sine * angle.cos(), cosine, sine * angle.sin()), 1.0 / (4.0 * PI))
+            }
+            Self::Image { rows, columns } => {
+                let (y, within) = rows.sample(u);
+                let (x, across) = columns[y].sample(f64::from(v));
+                let (width, height) = (columns[y].len(), columns.len());
+                // Uniform in solid angle within the pixel: uniform in the cosine of the polar angle.
+                let (top, bottom) = polar_cosines(y, height);
+                let cosine = (top + (bottom - top) * within) as f32;
+                let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
+                let angle = ((x as f64 + across) / width as f64 - 0.5) as f32 * TAU;
+                let direction = Vec3::new(sine * angle.sin(), cosine, -sine * angle.cos());
+                (direction, self.pixel_density(x, y))
+            }
+        }
+    }
+
+    /// The density with which [`EnvironmentSampler::sample`] chooses a unit direction.
+    pub fn density(&self, direction: Vec3) -> f32 {
+        match self {
+            Self::Constant => 1.0 / (4.0 * PI),
+            Self::Image { columns, .. } => {
+                let (width, height) = (columns[0].len(), columns.len());
+                let uv = equirectangular(direction);
+                let x = ((uv.x * width as f32) as usize).min(width - 1);
+                let y = ((uv.y * height as f32) as usize).min(height - 1);
+                self.pixel_density(x, y)
+            }
+        }
+    }
+
+    fn pixel_density(&self, x: usize, y: usize) -> f32 {
+        match self {
+            Self::Constant => 1.0 / (4.0 * PI),
+            Self::Image { rows, columns } => {
+                let solid_angle = band_solid_angle(y, columns.len()) / columns[y].len() as f64;
+                (rows.probability(y) * columns[y].probability(x) / solid_angle) as f32
+            }
+        }
+    }
+}
+
+/// Radiance from a unit direction: bilinear, wrapping around the horizon, clamped at the poles.
+pub fn radiance(environment: &Environment, direction: Vec3) -> Vec3 {
+    let image = match environment {
+        Environment::Constant(radiance) => return radiance.max(Vec3::ZERO),
+        Environment::Image(image) => image,
+    };
+    let uv = equirectangular(direction);
+    let (x, y) = (uv.x * image.width as f32 - 0.5, uv.y * image.height as f32 - 0.5);
+    let (left, top) = (x.floor(), y.floor());
+    let column = |x: f32| (x as i64).rem_euclid(image.width as i64) as usize;
+    let row = |y: f32| (y as i64).clamp(0, image.height as i64 - 1) as usize;
+    let at = |x: f32, y: f32| image.rgb(column(x), row(y)).max(Vec3::ZERO);
+    let upper = at(left, top).lerp(at(left + 1.0, top), x - left);
+    let lower = at(left, top + 1.0).lerp(at(left + 1.0, top + 1.0), x - left);
+    upper.lerp(lower, y - top)
+}
+
+/// The centre of the image looks along -z, its top along +y, its right along +x.
+fn equirectangular(d: Vec3) -> Vec2 {
+    Vec2::new(0.5 + d.x.atan2(-d.z) / TAU, d.y.clamp(-1.0, 1.0).acos() / PI)
+}
+
+fn polar_cosines(y: usize, height: usize) -> (f64, f64) {
+    let cosine = |y: usize| (std::f64::consts::PI * y as f64 / height as f64).cos();
+    (cosine(y), cosine(y + 1))
+}
+
+/// Solid angle of a row of pixels.
+fn band_solid_angle(y: usize, height: usize) -> f64 {
+    let (top, bottom) = polar_cosines(y, height);
+    std::f64::consts::TAU * (top - bottom)
+}
+
+/// Mean brightness of a pixel and its eight neighbours.
+fn neighbourhood(image: &Image, x: usize, y: usize) -> f32 {
+    let mut sum = 0.0;
+    for dy in 0..3 {
+        for dx in 0..3 {
+            let column = (x + image.width + dx - 1) % image.width;
+            let row = (y + dy).saturating_sub(1).min(image.height - 1);
+            sum += mean_channel(image.rgb(column, row).max(Vec3::ZERO));
+        }
+    }
+    sum / 9.0
+}

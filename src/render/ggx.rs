@@ -1,0 +1,122 @@
+//! The GGX microfacet distribution (Walter et al. 2007) with height-correlated Smith masking (Heitz 2014), its sampling
+//! by visible normals (Heitz 2018), and how much of the light it sends back in all.
+//!
+//! Directions are in a frame whose third axis is the normal; `alpha` is the squared roughness.
+
+use glam::{Vec2, Vec3};
+use std::f32::consts::{PI, TAU};
+
+/// Fresnel reflectance by Schlick's approximation, from that at normal incidence and that at grazing.
+pub fn schlick(f0: Vec3, f90: f32, cosine: f32) -> Vec3 {
+    let m = (1.0 - cosine).clamp(0.0, 1.0);
+    f0 + (Vec3::splat(f90) - f0) * (m * m * m * m * m)
+}
+
+/// Density of facet normals per steradian and projected area.
+fn distribution(h: Vec3, alpha: f32) -> f32 {
+    let a2 = alpha * alpha;
+    let d = (h.x * h.x + h.y * h.y) / a2 + h.z * h.z;
+    1.0 / (PI * a2 * d * d)
+}
+
+fn lambda(w: Vec3, alpha: f32) -> f32 {
+    let tangent2 = (w.x * w.x + w.y * w.y) / (w.z * w.z);
+    ((1.0 + alpha * alpha * tangent2).sqrt() - 1.0) / 2.0
+}
+
+/// The lobe times the cosine of `wi`, without Fresnel's factor; both directions above the surface.
+pub fn lobe(wo: Vec3, wi: Vec3, h: Vec3, alpha: f32) -> f32 {
+    distribution(h, alpha) / (4.0 * wo.z * (1.0 + lambda(wo, alpha) + lambda(wi, alpha)))
+}
+
+/// Density per steradian of the directions that [`sample_normal`] and a reflection lead to.
+pub fn density(wo: Vec3, h: Vec3, alpha: f32) -> f32 {
+    distribution(h, alpha) / (4.0 * wo.z * (1.0 + lambda(wo, alpha)))
+}
+
+/// A facet normal among those that `wo` sees.
+pub fn sample_normal(wo: Vec3, alpha: f32, u: Vec2) -> Vec3 {
+    // Stretch, so that the facets lie on a hemisphere; choose a point of its projection along the view; go back.
+    let v = Vec3::new(alpha * wo.x, alpha * wo.y, wo.z).normalize();
+    let across = v.x * v.x + v.y * v.y;
+    let t1 = if across > 0.0 { Vec3::new(-v.y, v.x, 0.0) / across.sqrt() } else { Vec3::X };
+    let t2 = v.cross(t1);
+    let (radius, angle) = (u.x.sqrt(), TAU * u.y);
+    let p1 = radius * angle.cos();
+    let s = 0.5 * (1.0 + v.z);
+    let p2 = (1.0 - s) * (1.0 - p1 * p1).max(0.0).sqrt() + s * radius * angle.sin();
+    let n = t1 * p1 + t2 * p2 + v * (1.0 - p1 * p1 - p2 * p2).max(0.0).sqrt();
+    Vec3::new(alpha * n.x, alpha * n.y, n.z.max(1e-6)).normalize()
+}
+
+/// Share of light the lobe sends back, by direction and roughness: `f0 * scale + f90 * bias`. What remains is the diffuse
+/// layer's, so that the two together never send back more than they receive (Kelemen and Szirmay-Kalos 2001).
+pub struct AlbedoTable {
+    entries: Vec<Vec2>,
+    averages: Vec<Vec2>,
+}
+
+const SIDE: usize = 32;
+
+impl AlbedoTable {
+    pub fn new() -> Self {
+        let mut entries = Vec::with_capacity(SIDE * SIDE);
+        for i in 0..SIDE * SIDE {
+            let roughness = (i / SIDE) as f32 / (SIDE - 1) as f32;
+            let cosine = ((i % SIDE) as f32 / (SIDE - 1) as f32).max(1e-3);
+            entries.push(directional_albedo(cosine, (roughness * roughness).max(1e-4)));
+        }
+        let averages = entries.chunks_exact(SIDE).map(cosine_average).collect();
+        Self { entries, averages }
+    }
+
+    /// Scale and bias for a direction whose cosine with the normal is given.
+    pub fn directional(&self, cosine: f32, roughness: f32) -> Vec2 {
+        let (row, t) = cell(roughness);
+        let (column, s) = cell(cosine);
+        let at = |row: usize| self.entries[row * SIDE + column].lerp(self.entries[row * SIDE + column + 1], s);
+        at(row).lerp(at(row + 1), t)
+    }
+
+    /// Scale and bias for light from everywhere.
+    pub fn average(&self, roughness: f32) -> Vec2 {
+        let (row, t) = cell(roughness);
+        self.averages[row].lerp(self.averages[row + 1], t)
+    }
+}
+
+fn cell(x: f32) -> (usize, f32) {
+    let x = x.clamp(0.0, 1.0) * (SIDE - 1) as f32;
+    let i = (x as usize).min(SIDE - 2);
+    (i, x - i as f32)
+}
+
+/// Twice the integral of a row times the cosine, of the very interpolant that look-ups use.
+fn cosine_average(row: &[Vec2]) -> Vec2 {
+    let step = 1.0 / (SIDE - 1) as f32;
+    row.windows(2)
+        .enumerate()
+        .map(|(i, ends)| {
+            let (a, b) = (i as f32 * step, (i + 1) as f32 * step);
+            // Exact for the product of two linear functions (Simpson).
+            (ends[0] * a + (ends[0] + ends[1]) * (a + b) + ends[1] * b) * (step / 3.0)
+        })
+        .sum()
+}
+
+fn directional_albedo(cosine: f32, alpha: f32) -> Vec2 {
+    const N: u32 = 256;
+    let wo = Vec3::new((1.0 - cosine * cosine).sqrt(), 0.0, cosine);
+    let mut sum = Vec2::ZERO;
+    for i in 0..N {
+        let u = Vec2::new((i as f32 + 0.5) / N as f32, i.reverse_bits() as f32 * (1.0 / 4_294_967_296.0));
+        let h = sample_normal(wo, alpha, u);
+        let wi = h * (2.0 * wo.dot(h)) - wo;
+        if wi.z > 0.0 {
+            let weight = (1.0 + lambda(wo, alpha)) / (1.0 + lambda(wo, alpha) + lambda(wi, alpha));
+            let grazing = (1.0 - wo.dot(h)).clamp(0.0, 1.0).powi(5);
+            sum += Vec2::new(1.0 - grazing, grazing) * weight;
+        }
+    }
+    sum / N as f32
+}

@@ -1,0 +1,180 @@
+//! Paths from the eye to the light: next-event estimation and multiple importance sampling at every vertex.
+//!
+//! A path that scatters into a light and the same path made by choosing the light are weighed against each other by the
+//! power heuristic (Veach 1997, 9.2.4). Clear panes are no vertices of a path in that sense: shadow rays pass through them
+//! with their share, and paths keep the density of the vertex before. Nothing is clamped: the estimate is unbiased.
+
+use super::bsdf::{Bsdf, Kind};
+use super::environment;
+use super::light::{LightEnd, LightSample};
+use super::sampler::Sampler;
+use super::vertex::Vertex;
+use super::world::{NONE, World};
+use super::{LightSource, PathSink};
+use crate::scene::accel::Ray;
+use glam::{Vec2, Vec3};
+
+/// Vertices of a path from which on it may end by chance.
+const ROULETTE_FROM: u32 = 3;
+/// A guard against paths that never end between perfect mirrors.
+const MOST_VERTICES: u32 = 1024;
+/// The surest a path can be to go on: in a room of white walls it must end some time.
+const SUREST: f32 = 0.98;
+
+/// A path about to leave a vertex or the eye.
+struct Leg {
+    ray: Ray,
+    /// The triangle it leaves.
+    from: u32,
+    throughput: Vec3,
+    /// Where the light was last sampled for, and the density of the direction then chosen; none if only scattering could
+    /// find what lies ahead.
+    rival: Option<(Vec3, f32)>,
+}
+
+/// Adds one estimate of the radiance that arrives along a ray (of unit direction) to a sink.
+pub fn trace<S: PathSink>(world: &World, ray: Ray, sampler: &mut Sampler, sink: &mut S) {
+    walk(world, Leg { ray, from: NONE, throughput: Vec3::ONE, rival: None }, 1.0, sampler, sink);
+}
+
+/// Adds one estimate of the irradiance at a point to a sink.
+pub fn gather<S: PathSink>(world: &World, vertex: &Vertex, front: bool, sampler: &mut Sampler, sink: &mut S) {
+    let normal = if front { vertex.normal } else { -vertex.normal };
+    let receiver = Bsdf::receiver(normal);
+    if let Some(leg) = scatter(world, vertex, &receiver, Vec3::ONE, None, sampler, sink) {
+        let scale = leg.throughput.max_element();
+        walk(world, leg, scale, sampler, sink);
+    }
+}
+
+/// Follows a path to its end. `scale` is what counts as full throughput.
+fn walk<S: PathSink>(world: &World, mut leg: Leg, scale: f32, sampler: &mut Sampler, sink: &mut S) {
+    for bounce in 0..MOST_VERTICES {
+        let Some(hit) = world.closest(&leg.ray, leg.from, sampler.ray_seed()) else {
+            return add_environment(world, &leg, sink);
+        };
+        let vertex = Vertex::of_hit(world, &hit);
+        add_emission(world, &leg, &vertex, sink);
+        // End by chance what can no longer add much.
+        let mut throughput = leg.throughput;
+        if bounce + 1 >= ROULETTE_FROM {
+            let survival = (throughput.max_element() / scale).min(SUREST);
+            let u = (crate::rng::mix(sampler.ray_seed() ^ 0x5c) >> 40) as f32 / (1 << 24) as f32;
+            if !(u < survival) {
+                return;
+            }
+            throughput /= survival;
+        }
+        let bsdf = vertex.bsdf(world, -leg.ray.direction);
+        let Some(next) = scatter(world, &vertex, &bsdf, throughput, leg.rival, sampler, sink) else { return };
+        leg = next;
+    }
+}
+
+/// Adds the light chosen for a vertex and chooses where the path goes on.
+fn scatter<S: PathSink>(
+    world: &World,
+    vertex: &Vertex,
+    bsdf: &Bsdf,
+    throughput: Vec3,
+    rival: Option<(Vec3, f32)>,
+    sampler: &mut Sampler,
+    sink: &mut S,
+) -> Option<Leg> {
+    let lighting = sampler.next();
+    if bsdf.spreads()
+        && let Some(light) = world.lights().sample(world.scene(), vertex.position, &lighting)
+    {
+        add_light(world, vertex, bsdf, throughput, &light, sink);
+    }
+    let choice = sampler.next();
+    let scattered = bsdf.sample(choice.get(2), Vec2::new(choice.get(0), choice.get(1)))?;
+    let throughput = throughput * scattered.weight;
+    if throughput == Vec3::ZERO || !throughput.is_finite() {
+        return None;
+    }
+    let rival = match scattered.kind {
+        Kind::Spread(density) => Some((vertex.position, density)),
+        Kind::Mirrored => None,
+        Kind::Through => rival,
+    };
+    Some(Leg { ray: vertex.ray(scattered.direction), from: vertex.id, throughput, rival })
+}
+
+fn add_light<S: PathSink>(
+    world: &World,
+    vertex: &Vertex,
+    bsdf: &Bsdf,
+    throughput: Vec3,
+    light: &LightSample,
+    sink: &mut S,
+) {
+    let (value, density) = bsdf.eval(light.direction);
+    if value == Vec3::ZERO || light.emission == Vec3::ZERO {
+        return;
+    }
+    let weight = light.solid_angle_density.map_or(1.0, |d| power_heuristic(d, density));
+    // Nothing may stand between the point and the light.
+    let origin = vertex.off_surface(light.direction);
+    let (ray, end) = match light.end {
+        None => (Ray::new(origin, light.direction), NONE),
+        Some(LightEnd::Point(p)) => (Ray { origin, direction: p - origin, t_max: 1.0 }, NONE),
+        Some(LightEnd::Emitter(index, barycentric)) => {
+            let emitter = &world.lights().emitters.emitters[index];
+            let target = Vertex::new(world, emitter.mesh, emitter.triangle, barycentric);
+            let p = target.off_surface(-light.direction);
+            (Ray { origin, direction: p - origin, t_max: 1.0 }, emitter.id)
+        }
+    };
+    let transmittance = world.transmittance(&ray, [vertex.id, end]);
+    if transmittance != Vec3::ZERO {
+        sink.add(light.source, throughput * value * transmittance * (weight / light.density), light.emission);
+    }
+}
+
+/// What a path meets by scattering, weighed against having chosen it as a light.
+fn add_emission<S: PathSink>(world: &World, leg: &Leg, vertex: &Vertex, sink: &mut S) {
+    let Some(index) = world.emitter_of(vertex.id) else { return };
+    let lights = world.lights();
+    let emitter = &lights.emitters.emitters[index];
+    let direction = leg.ray.direction;
+    if !emitter.faces(direction) {
+        return;
+    }
+    let (emission, uv) = emitter.emission(world.scene(), vertex.barycentric);
+    if emission == Vec3::ZERO {
+        return;
+    }
+    let weight = leg.rival.map_or(1.0, |(from, density)| {
+        let distance = vertex.position.distance(from);
+        let rival = lights.surface_density(world.scene(), index, vertex.barycentric, direction, distance);
+        power_heuristic(density, rival)
+    });
+    sink.add(
+        LightSource::Surface { mesh: vertex.mesh, triangle: vertex.triangle, uv },
+        leg.throughput * weight,
+        emission,
+    );
+}
+
+fn add_environment<S: PathSink>(world: &World, leg: &Leg, sink: &mut S) {
+    let Some(environment) = &world.scene().environment else { return };
+    let emission = environment::radiance(environment, leg.ray.direction);
+    if emission == Vec3::ZERO {
+        return;
+    }
+    let weight = leg
+        .rival
+        .map_or(1.0, |(_, density)| power_heuristic(density, world.lights().environment_density(leg.ray.direction)));
+    sink.add(LightSource::Environment, leg.throughput * weight, emission);
+}
+
+/// The weight of a strategy of density `own` against another of density `other`.
+fn power_heuristic(own: f32, other: f32) -> f32 {
+    // As a ratio, so that neither square overflows.
+    if own <= 0.0 {
+        return 0.0;
+    }
+    let ratio = other / own;
+    1.0 / (1.0 + ratio * ratio)
+}

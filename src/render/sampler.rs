@@ -1,0 +1,180 @@
+//! Owen-scrambled Sobol' points (Burley 2020, "Practical hash-based Owen scrambling"), four dimensions at a time.
+//!
+//! A path draws its numbers in blocks of four, which are one four-dimensional Sobol' point; successive blocks are padded,
+//! that is, the same sequence shuffled and scrambled anew. So every 2^k samples of a pixel are stratified in each block.
+
+use crate::rng;
+
+/// The numbers of one path.
+#[derive(Clone)]
+pub struct Sampler {
+    index: u32,
+    seed: u64,
+    block: u64,
+}
+
+/// Four numbers of 32 random bits.
+#[derive(Clone, Copy)]
+pub struct Block([u32; 4]);
+
+impl Block {
+    /// Uniform in `[0, 1)`.
+    pub fn get(&self, dimension: usize) -> f32 {
+        (self.0[dimension] >> 8) as f32 * (1.0 / (1u32 << 24) as f32)
+    }
+
+    /// The same with all 32 bits, for choices among very many.
+    pub fn fine(&self, dimension: usize) -> f64 {
+        f64::from(self.0[dimension]) * (1.0 / 4_294_967_296.0)
+    }
+}
+
+impl Sampler {
+    /// The path of number `index` among those that share `seed`.
+    pub fn new(seed: u64, index: u32) -> Self {
+        Self { index, seed, block: 0 }
+    }
+
+    /// The next four dimensions.
+    pub fn next(&mut self) -> Block {
+        let seed = rng::hash(self.seed, &[self.block]);
+        self.block += 1;
+        let index = scramble(self.index, seed as u32);
+        let point = sobol(index);
+        let (a, b) = (rng::mix(seed ^ 1), rng::mix(seed ^ 2));
+        let seeds = [a as u32, (a >> 32) as u32, b as u32, (b >> 32) as u32];
+        Block(std::array::from_fn(|d| scramble(point[d], seeds[d])))
+    }
+
+    /// A number that belongs to this path and this point of it, for decisions that need no stratification.
+    pub fn ray_seed(&self) -> u64 {
+        rng::hash(self.seed, &[self.block, u64::from(self.index), 0x7261])
+    }
+}
+
+/// Nested uniform scrambling: each bit is flipped by a hash of the bits above it (Laine and Karras 2011, with the
+/// constants of Vegdahl 2021).
+fn scramble(x: u32, seed: u32) -> u32 {
+    let mut x = x.reverse_bits();
+    x ^= x.wrapping_mul(0x3d20_adea);
+    x = x.wrapping_add(seed);
+    x = x.wrapping_mul((seed >> 16) | 1);
+    x ^= x.wrapping_mul(0x0552_6c56);
+    x ^= x.wrapping_mul(0x53a2_2864);
+    x.reverse_bits()
+}
+
+/// The first four dimensions of the Sobol' sequence, the bits of the index taken eight at a time.
+fn sobol(index: u32) -> [u32; 4] {
+    let mut point = [0; 4];
+    for (byte, table) in SOBOL.iter().enumerate() {
+        let row = table[(index >> (8 * byte)) as usize & 255];
+        for (p, r) in point.iter_mut().zip(row) {
+            *p ^= r;
+        }
+    }
+    point
+}
+
+static SOBOL: [[[u32; 4]; 256]; 4] = sobol_tables();
+
+const fn sobol_tables() -> [[[u32; 4]; 256]; 4] {
+    let directions = sobol_directions();
+    let mut tables = [[[0u32; 4]; 256]; 4];
+    let mut byte = 0;
+    while byte < 4 {
+        let mut value = 0;
+        while value < 256 {
+            let mut bit = 0;
+            while bit < 8 {
+                if value >> bit & 1 == 1 {
+                    let mut d = 0;
+                    while d < 4 {
+                        tables[byte][value][d] ^= directions[d][8 * byte + bit];
+                        d += 1;
+                    }
+                }
+                bit += 1;
+            }
+            value += 1;
+        }
+        byte += 1;
+    }
+    tables
+}
+
+/// Direction numbers from the primitive polynomials and initial values of Joe and Kuo (2008), dimensions 1 to 4.
+const fn sobol_directions() -> [[u32; 32]; 4] {
+    const DEGREE: [usize; 4] = [0, 1, 2, 3];
+    const COEFFICIENTS: [u32; 4] = [0, 0, 1, 1];
+    const INITIAL: [[u32; 3]; 4] = [[0, 0, 0], [1, 0, 0], [1, 3, 0], [1, 3, 1]];
+    let mut v = [[0u32; 32]; 4];
+    let mut i = 0;
+    while i < 32 {
+        v[0][i] = 1 << (31 - i);
+        i += 1;
+    }
+    let mut d = 1;
+    while d < 4 {
+        let s = DEGREE[d];
+        let mut i = 0;
+        while i < 32 {
+            if i < s {
+                v[d][i] = INITIAL[d][i] << (31 - i);
+            } else {
+                let mut x = v[d][i - s] ^ (v[d][i - s] >> s);
+                let mut k = 1;
+                while k < s {
+                    if COEFFICIENTS[d] >> (s - 1 - k) & 1 == 1 {
+                        x ^= v[d][i - k];
+                    }
+                    k += 1;
+                }
+                v[d][i] = x;
+            }
+            i += 1;
+        }
+        d += 1;
+    }
+    v
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_power_of_two_is_stratified_in_each_dimension_and_pair() {
+        for seed in 0..20 {
+            let points: Vec<Block> = (0..256).map(|i| Sampler::new(seed, i).next()).collect();
+            for d in 0..4 {
+                let mut strata = [0; 256];
+                points.iter().for_each(|p| strata[(p.get(d) * 256.0) as usize] += 1);
+                assert!(strata.iter().all(|&c| c == 1), "dimension {d}");
+            }
+            // The first two dimensions are a (0, 2)-sequence: every elementary box of area 1/256 holds one point.
+            for log in 0..=8 {
+                let (nx, ny) = (1usize << log, 256usize >> log);
+                let mut boxes = vec![0; 256];
+                points.iter().for_each(|p| {
+                    boxes[(p.get(0) * nx as f32) as usize * ny + (p.get(1) * ny as f32) as usize] += 1;
+                });
+                assert!(boxes.iter().all(|&c| c == 1), "boxes of {nx} x {ny}");
+            }
+        }
+    }
+
+    #[test]
+    fn blocks_and_seeds_are_uncorrelated() {
+        let n = 4096;
+        let (mut blocks, mut seeds) = (0.0, 0.0);
+        for i in 0..n {
+            let mut sampler = Sampler::new(3, i);
+            let (a, b) = (sampler.next().fine(0) - 0.5, sampler.next().fine(0) - 0.5);
+            blocks += a * b;
+            seeds += a * (Sampler::new(4, i).next().fine(0) - 0.5);
+        }
+        let limit = 6.0 / 12.0 / f64::from(n).sqrt();
+        assert!((blocks / f64::from(n)).abs() < limit && (seeds / f64::from(n)).abs() < limit);
+    }
+}

@@ -1,0 +1,256 @@
+//! A scene made ready for tracing.
+
+use super::emissive::Emitters;
+use super::ggx::AlbedoTable;
+use super::light::Lights;
+use super::vertex::{geometric_normal, opacity, substance};
+use crate::error::{Error, Result};
+use crate::image::try_vec;
+use crate::job::Job;
+use crate::rng;
+use crate::scene::accel::{Accel, Hit, Ray};
+use crate::scene::{AlphaMode, Environment, Material, Mesh, Scene, TextureRef};
+use glam::{Vec2, Vec3};
+use std::sync::Arc;
+
+/// A scene made ready for tracing: acceleration structure and light distributions. Triangles are numbered through the
+/// meshes in order.
+pub struct World {
+    scene: Arc<Scene>,
+    accel: Accel,
+    /// Number of the first triangle of each mesh, and of all triangles at the end.
+    first: Vec<u32>,
+    /// Mesh of each triangle.
+    mesh_of: Vec<u32>,
+    /// Index of the emitter of each triangle, or `NONE`; empty where no surface emits.
+    emitter_of: Vec<u32>,
+    lights: Lights,
+    albedo_table: Option<AlbedoTable>,
+    /// Whether light passes through any material: only then do rays ask what they hit.
+    any_see_through: bool,
+}
+
+/// No triangle, no emitter.
+pub const NONE: u32 = u32::MAX;
+
+impl World {
+    /// Checks the indices of a scene and builds what rendering it needs. An empty scene is allowed. To be called on the
+    /// library's own pool.
+    ///
+    /// # Errors
+    /// Indices, sizes or values of the scene that cannot be used, by name; too many triangles; no memory; cancelled.
+    pub fn build(scene: Arc<Scene>, job: Job) -> Result<Self> {
+        check(&scene)?;
+        let count: usize = scene.meshes.iter().map(|m| m.triangles.len()).sum();
+        if count >= 1 << 31 {
+            return Err(Error::argument(format!("scene has {count} triangles; at most 2^31 - 1 are allowed")));
+        }
+        // Number the triangles through all meshes.
+        let mut first = Vec::with_capacity(scene.meshes.len() + 1);
+        let mut mesh_of = try_vec(count, 0u32)?;
+        let mut triangles = try_vec(count, [Vec3::ZERO; 3])?;
+        let mut next = 0;
+        for (index, mesh) in scene.meshes.iter().enumerate() {
+            job.check()?;
+            first.push(next as u32);
+            for triangle in 0..mesh.triangles.len() {
+                mesh_of[next] = index as u32;
+                triangles[next] = mesh.corners(triangle);
+                next += 1;
+            }
+        }
+        first.push(next as u32);
+        let accel = Accel::build(&triangles, job.part(0.0, 0.8))?;
+        // Gather the lights.
+        let numbered = (0..count as u32).map(|id| {
+            let mesh = mesh_of[id as usize];
+            (mesh, id - first[mesh as usize], id)
+        });
+        let emitters = Emitters::build(&scene, numbered)?;
+        let mut emitter_of = Vec::new();
+        if !emitters.emitters.is_empty() {
+            emitter_of = try_vec(count, NONE)?;
+            emitters.emitters.iter().enumerate().for_each(|(i, e)| emitter_of[e.id as usize] = i as u32);
+        }
+        job.check()?;
+        let (low, high) = accel.bounds();
+        let lights = Lights::build(&scene, emitters, (high - low).length() / 2.0)?;
+        let layered = |m: &Material| m.ior > 1.0 && m.metallic < 1.0;
+        let albedo_table = scene.materials.iter().any(layered).then(AlbedoTable::new);
+        let any_see_through = scene.materials.iter().any(|m| m.alpha_mode != AlphaMode::Opaque || m.transmission > 0.0);
+        job.report(1.0);
+        Ok(Self { scene, accel, first, mesh_of, emitter_of, lights, albedo_table, any_see_through })
+    }
+
+    pub fn scene(&self) -> &Arc<Scene> {
+        &self.scene
+    }
+
+    pub fn accel(&self) -> &Accel {
+        &self.accel
+    }
+
+    /// Number of the triangle of a mesh among all triangles.
+    pub fn id(&self, mesh: u32, triangle: u32) -> u32 {
+        self.first[mesh as usize] + triangle
+    }
+
+    /// The mesh and the triangle in it of a number.
+    pub fn locate(&self, id: u32) -> (u32, u32) {
+        let mesh = self.mesh_of[id as usize];
+        (mesh, id - self.first[mesh as usize])
+    }
+
+    pub(super) fn lights(&self) -> &Lights {
+        &self.lights
+    }
+
+    pub(super) fn albedo_table(&self) -> Option<&AlbedoTable> {
+        self.albedo_table.as_ref()
+    }
+
+    /// The emitter that a triangle is.
+    pub(super) fn emitter_of(&self, id: u32) -> Option<usize> {
+        self.emitter_of.get(id as usize).filter(|&&e| e != NONE).map(|&e| e as usize)
+    }
+
+    /// The nearest hit of a ray that leaves triangle `from`; `seed` decides whether it meets what is only partly there.
+    pub(super) fn closest(&self, ray: &Ray, from: u32, seed: u64) -> Option<Hit> {
+        if !self.any_see_through {
+            return self.accel.closest(ray, |hit| hit.triangle != from);
+        }
+        self.accel.closest(ray, |hit| hit.triangle != from && self.is_there(hit, seed))
+    }
+
+    fn is_there(&self, hit: &Hit, seed: u64) -> bool {
+        let (mesh, material, triangle) = self.described(hit);
+        let opacity = || opacity(self, mesh, material, triangle, Vec2::new(hit.u, hit.v));
+        match material.alpha_mode {
+            AlphaMode::Opaque => true,
+            AlphaMode::Mask(cutoff) => opacity() >= cutoff,
+            AlphaMode::Blend => {
+                let u = (rng::hash(seed, &[u64::from(hit.triangle)]) >> 40) as f32 / (1 << 24) as f32;
+                u < opacity()
+            }
+        }
+    }
+
+    /// Share of light, per channel, that goes straight from the start of a ray to its end, neither of the two triangles
+    /// counted. Partly transparent surfaces and clear panes let their share through.
+    pub(super) fn transmittance(&self, ray: &Ray, ends: [u32; 2]) -> Vec3 {
+        if !self.any_see_through {
+            let blocked = self.accel.occluded(ray, |hit| !ends.contains(&hit.triangle));
+            return if blocked { Vec3::ZERO } else { Vec3::ONE };
+        }
+        // In f64, so that the order in which surfaces are met does not show after rounding.
+        let mut share = glam::DVec3::ONE;
+        let blocked = self.accel.occluded(ray, |hit| {
+            if ends.contains(&hit.triangle) {
+                return false;
+            }
+            share *= self.passing(hit, ray.direction).as_dvec3();
+            share == glam::DVec3::ZERO
+        });
+        if blocked { Vec3::ZERO } else { share.as_vec3() }
+    }
+
+    /// What passes a surface in a straight line.
+    fn passing(&self, hit: &Hit, direction: Vec3) -> Vec3 {
+        let (mesh, material, triangle) = self.described(hit);
+        let at = Vec2::new(hit.u, hit.v);
+        let there = match material.alpha_mode {
+            AlphaMode::Opaque => 1.0,
+            AlphaMode::Mask(cutoff) => f32::from(u8::from(opacity(self, mesh, material, triangle, at) >= cutoff)),
+            AlphaMode::Blend => opacity(self, mesh, material, triangle, at).clamp(0.0, 1.0),
+        };
+        let pane = if material.transmission > 0.0 && there > 0.0 {
+            let normal = geometric_normal(mesh.corners(triangle as usize));
+            substance(self, mesh, material, triangle, at).through(normal.dot(direction.normalize_or_zero()))
+        } else {
+            Vec3::ZERO
+        };
+        Vec3::splat(1.0 - there) + pane * there
+    }
+
+    fn described(&self, hit: &Hit) -> (&Mesh, &Material, u32) {
+        let (mesh, triangle) = self.locate(hit.triangle);
+        let mesh = &self.scene.meshes[mesh as usize];
+        (mesh, &self.scene.materials[mesh.material], triangle)
+    }
+}
+
+/// Checks everything that tracing takes for granted.
+fn check(scene: &Scene) -> Result<()> {
+    for (i, mesh) in scene.meshes.iter().enumerate() {
+        check_mesh(scene, mesh).map_err(|e| e.within(format!("mesh {i} ({:?})", mesh.name)))?;
+    }
+    for (i, material) in scene.materials.iter().enumerate() {
+        check_material(scene, material).map_err(|e| e.within(format!("material {i} ({:?})", material.name)))?;
+    }
+    for (i, texture) in scene.textures.iter().enumerate() {
+        check_image(&texture.image).map_err(|e| e.within(format!("texture {i} ({:?})", texture.name)))?;
+    }
+    match &scene.environment {
+        Some(Environment::Image(image)) => check_image(image).map_err(|e| e.within("environment")),
+        Some(Environment::Constant(c)) if !c.is_finite() => {
+            Err(Error::argument(format!("environment is {c}; it must be finite")))
+        }
+        _ => Ok(()),
+    }
+}
+
+fn check_mesh(scene: &Scene, mesh: &Mesh) -> Result<()> {
+    let count = mesh.positions.len();
+    if mesh.material >= scene.materials.len() {
+        return Err(Error::argument(format!(
+            "material index is {}; the scene has {} materials",
+            mesh.material,
+            scene.materials.len()
+        )));
+    }
+    if let Some(p) = mesh.positions.iter().find(|p| !p.is_finite()) {
+        return Err(Error::argument(format!("a position is {p}; it must be finite")));
+    }
+    for (name, len) in [("normals", mesh.normals.len()), ("uvs[0]", mesh.uvs[0].len()), ("uvs[1]", mesh.uvs[1].len())] {
+        if len != 0 && len != count {
+            return Err(Error::argument(format!("{name} has {len} entries; it must have none or {count}")));
+        }
+    }
+    if let Some(i) = mesh.triangles.iter().flatten().find(|&&i| i as usize >= count) {
+        return Err(Error::argument(format!("a triangle refers to position {i}; there are {count}")));
+    }
+    Ok(())
+}
+
+fn check_material(scene: &Scene, material: &Material) -> Result<()> {
+    let refs = [
+        &material.base_color_texture,
+        &material.metallic_roughness_texture,
+        &material.normal_texture,
+        &material.emission_texture,
+    ];
+    for TextureRef { texture, uv_set, .. } in refs.into_iter().flatten() {
+        if *texture >= scene.textures.len() || *uv_set > 1 {
+            return Err(Error::argument(format!(
+                "texture {texture} with texture coordinates {uv_set}; there are {} textures and sets 0 and 1",
+                scene.textures.len()
+            )));
+        }
+    }
+    let numbers = [material.alpha, material.metallic, material.roughness, material.transmission, material.ior];
+    let finite = material.base_color.is_finite() && material.emission.is_finite();
+    if !finite || numbers.iter().any(|v| !v.is_finite()) || material.ior < 1.0 {
+        return Err(Error::argument("its numbers must be finite and its index of refraction at least 1"));
+    }
+    Ok(())
+}
+
+fn check_image(image: &crate::image::Image) -> Result<()> {
+    if image.width == 0 || image.height == 0 || image.data.len() != image.width * image.height * image.channels {
+        return Err(Error::argument("the image is empty or its size does not match its data"));
+    }
+    match image.count_non_finite() {
+        0 => Ok(()),
+        n => Err(Error::argument(format!("{n} samples of the image are NaN or infinite; replace them"))),
+    }
+}

@@ -1,0 +1,158 @@
+use super::*;
+use crate::job::Monitor;
+use crate::rng::Rng;
+
+fn build(triangles: &[[Vec3; 3]]) -> Accel {
+    Accel::build(triangles, Monitor::default().job()).unwrap()
+}
+
+fn random_vec(rng: &mut Rng) -> Vec3 {
+    Vec3::new(rng.next_f32(), rng.next_f32(), rng.next_f32()) * 2.0 - 1.0
+}
+
+/// The six walls of a box, each of `n * n` squares of two triangles.
+fn tessellated_box(n: usize, low: Vec3, high: Vec3) -> Vec<[Vec3; 3]> {
+    let mut triangles = Vec::new();
+    for axis in 0..3 {
+        for side in [0.0, 1.0] {
+            let at = |i: usize, j: usize| {
+                let mut p = Vec3::ZERO;
+                p[axis] = side;
+                p[(axis + 1) % 3] = i as f32 / n as f32;
+                p[(axis + 2) % 3] = j as f32 / n as f32;
+                low + (high - low) * p
+            };
+            for i in 0..n {
+                for j in 0..n {
+                    let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+                    triangles.extend([[a, b, c], [a, c, d]]);
+                }
+            }
+        }
+    }
+    triangles
+}
+
+fn brute_force(triangles: &[[Vec3; 3]], ray: &Ray) -> Option<Hit> {
+    let triangle_ray = TriangleRay::new(ray);
+    let mut best: Option<Hit> = None;
+    for id in 0..triangles.len() as u32 {
+        let packet = Packet::new(triangles, &[id]);
+        let (mask, hits) = packet.intersect(&triangle_ray, ray.t_max);
+        if mask & 1 != 0 {
+            let hit = hits.lane(0, &packet);
+            if is_better(&hit, best.as_ref(), ray.t_max) {
+                best = Some(hit);
+            }
+        }
+    }
+    best
+}
+
+#[test]
+fn hits_are_those_of_testing_every_triangle_on_every_kind_of_vector_unit() {
+    let mut rng = Rng::new(1, &[]);
+    for (scale, offset) in [(1.0, 0.0), (1e-4, 0.0), (1e6, 0.0), (1.0, 1e3), (1e-4, 1.0)] {
+        let mut triangles = tessellated_box(4, Vec3::splat(-1.0), Vec3::ONE);
+        for _ in 0..200 {
+            let centre = random_vec(&mut rng);
+            let size = 0.3 * rng.next_f32() * rng.next_f32();
+            triangles.push(std::array::from_fn(|_| centre + random_vec(&mut rng) * size));
+        }
+        triangles.iter_mut().flatten().for_each(|p| *p = *p * scale + Vec3::splat(offset));
+        let mut accel = build(&triangles);
+        for i in 0..3000 {
+            let mut origin = random_vec(&mut rng) * 1.5;
+            let mut direction = random_vec(&mut rng);
+            if i % 3 == 0 {
+                // Along an axis, from points of the grid: everything that can be degenerate is.
+                origin = (origin * 4.0).round() / 4.0;
+                direction = Vec3::AXES[i % 9 / 3] * if i % 2 == 0 { 1.0 } else { -1.0 };
+            }
+            let ray = Ray::new(origin * scale + Vec3::splat(offset), direction);
+            let expected = brute_force(&triangles, &ray);
+            for wide in [has_wide(), false] {
+                accel.wide_vectors = wide;
+                assert_eq!(accel.closest(&ray, |_| true), expected, "scale {scale}, offset {offset}, ray {i}");
+                assert_eq!(accel.occluded(&ray, |_| true), expected.is_some());
+            }
+            if let Some(hit) = expected {
+                let short = Ray { t_max: hit.t, ..ray };
+                assert!(accel.closest(&short, |_| true).is_none(), "hits lie before t_max");
+            }
+        }
+    }
+}
+
+fn has_wide() -> bool {
+    build(&[]).wide_vectors
+}
+
+#[test]
+fn no_ray_escapes_a_closed_box_through_its_edges_and_vertices() {
+    let mut rng = Rng::new(2, &[]);
+    let mut escaped = 0;
+    for (scale, offset) in
+        [(1.0, Vec3::ZERO), (1e-4, Vec3::ZERO), (1e6, Vec3::ZERO), (1.0, Vec3::new(900.0, -70.0, 3.0))]
+    {
+        let n = 24;
+        let triangles = tessellated_box(n, offset - Vec3::ONE * scale, offset + Vec3::new(1.0, 0.7, 1.3) * scale);
+        let accel = build(&triangles);
+        for _ in 0..250_000 {
+            let [a, b, c] = triangles[rng.below(triangles.len())];
+            // A vertex, a point of an edge, or a point of the diagonal two triangles share.
+            let target = match rng.below(3) {
+                0 => a,
+                1 => a.lerp(b, rng.next_f32()),
+                _ => a.lerp(c, rng.next_f32()),
+            };
+            let origin = offset + random_vec(&mut rng) * 0.6 * scale;
+            let ray = Ray::new(origin, target - origin);
+            escaped += usize::from(accel.closest(&ray, |_| true).is_none());
+        }
+    }
+    assert_eq!(escaped, 0);
+}
+
+#[test]
+fn coincident_triangles_give_the_lowest_index_and_refused_hits_are_passed_over() {
+    let triangle = [Vec3::ZERO, Vec3::X, Vec3::Y];
+    let accel = build(&[triangle; 37]);
+    let ray = Ray::new(Vec3::new(0.25, 0.25, 1.0), Vec3::NEG_Z);
+    assert_eq!(accel.closest(&ray, |_| true).unwrap().triangle, 0);
+    assert_eq!(accel.closest(&ray, |hit| hit.triangle >= 20).unwrap().triangle, 20);
+    assert!(accel.closest(&ray, |_| false).is_none());
+    assert!(accel.occluded(&ray, |hit| hit.triangle == 36));
+    let hit = accel.closest(&ray, |_| true).unwrap();
+    assert_eq!((hit.t, hit.u, hit.v), (1.0, 0.25, 0.25));
+}
+
+#[test]
+fn nothing_needles_and_nonsense_are_survived() {
+    let ray = Ray::new(Vec3::ZERO, Vec3::Z);
+    assert!(build(&[]).closest(&ray, |_| true).is_none());
+    let nan = [Vec3::NAN, Vec3::X, Vec3::Y];
+    let line = [Vec3::ZERO, Vec3::X, Vec3::X * 2.0];
+    let needle = [Vec3::Z, Vec3::new(1e-30, 0.0, 1.0), Vec3::new(0.0, 1e-30, 1.0)];
+    let accel = build(&[nan, line, [Vec3::ONE; 3], needle]);
+    assert_eq!(accel.dropped(), 3);
+    for direction in [Vec3::ZERO, Vec3::NAN, Vec3::INFINITY, Vec3::X] {
+        assert!(accel.closest(&Ray::new(Vec3::ZERO, direction), |_| true).is_none());
+    }
+    assert!(accel.closest(&Ray::new(Vec3::NAN, Vec3::Z), |_| true).is_none());
+}
+
+#[test]
+fn a_long_chain_of_nested_triangles_needs_no_deep_stack() {
+    // Sizes from 1e-12 to 1e12: the tree cannot be balanced.
+    let triangles: Vec<[Vec3; 3]> = (0..2000)
+        .map(|i| {
+            let size = 10f32.powf(-12.0 + i as f32 * 0.012);
+            [Vec3::new(-size, -size, size), Vec3::new(size, -size, size), Vec3::new(0.0, size, size)]
+        })
+        .collect();
+    let accel = build(&triangles);
+    let ray = Ray::new(Vec3::ZERO, Vec3::Z);
+    assert_eq!(accel.closest(&ray, |_| true), brute_force(&triangles, &ray));
+    assert_eq!(accel.closest(&ray, |_| true).unwrap().triangle, 0);
+}
