@@ -14,7 +14,7 @@ use super::scene::missing;
 use super::stage::{Stage, need};
 use super::status::luxfer_status;
 use crate::emission::{self, Emission};
-use crate::error::{Error, Result};
+use crate::error::Error;
 use crate::geometry::Homography;
 use crate::image::Image;
 use glam::DMat3;
