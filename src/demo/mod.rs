@@ -13,9 +13,11 @@ mod pattern;
 pub mod photo;
 mod room;
 mod shapes;
+mod strokes;
 
 pub use office::{Exemplar, LuminaireGrid, exemplar_room};
 pub use room::target_room;
+pub use strokes::strokes;
 
 use crate::error::Result;
 use crate::image::Image;
