@@ -20,7 +20,7 @@ pub const NONE: u32 = u32::MAX;
 
 /// Candidates per patch where any shift is allowed, and the most where the lattice allows too many.
 const FREE_CANDIDATES: usize = 192;
-const LATTICE_CANDIDATES: usize = 384;
+const LATTICE_CANDIDATES: usize = 128;
 /// Patches within this factor of the best (0.1 in the original), or this close to it, are equally good.
 const TOLERANCE: (f32, f32) = (1.1, 1e-6);
 /// Patches that cover at least this share of what the best would cover compete by their error.
