@@ -252,7 +252,9 @@ pub unsafe extern "C" fn luxfer_segment_add_strokes_image(
     })
 }
 
-/// Adds the strokes that a text in UTF-8 describes, those that concern phase (a LUXFER_PHASE_ value). Any thread.
+/// Adds the strokes that a text in UTF-8 describes, those that concern phase (a LUXFER_PHASE_ value). Each line is a class,
+/// a radius and the points' x and y in pixels, as "light 3 310.5 30 320 31"; classes are plane, not-plane, light and
+/// not-light; from # on a line is a comment. Any thread.
 /// LUXFER_INVALID_OPERATION before the features are set; LUXFER_FORMAT, naming the line, if the text is malformed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_segment_add_strokes_text(

@@ -1,0 +1,363 @@
+//! Emission
+//!
+//! From the unwarped lights of a photo to an emissive texture of any size that carries their pattern on, and the list of
+//! its luminaires.
+
+use super::context::luxfer_context;
+use super::guard::{enter, guard};
+use super::handle::{self, Handle, Owned, tag};
+use super::image::{Pixels, luxfer_image};
+use super::job::luxfer_job;
+use super::params::{self, Report, Versioned};
+use super::pointer::{Out, bytes};
+use super::scene::missing;
+use super::stage::{Stage, need};
+use super::status::luxfer_status;
+use crate::emission::{self, Emission};
+use crate::error::{Error, Result};
+use crate::geometry::Homography;
+use crate::image::Image;
+use glam::DMat3;
+use std::sync::Arc;
+
+/// An emissive texture in the making. See luxfer_emission_create.
+pub struct luxfer_emission {
+    _opaque: [u8; 0],
+}
+
+/// An image of the emission: a LUXFER_EMISSION_ value.
+pub type luxfer_emission_image = i32;
+/// The texture: linear RGB relative to the photo's white, 0 where there is no lamp.
+pub const LUXFER_EMISSION_TEXTURE: luxfer_emission_image = 0;
+/// 1 on lamps, else 0; 1 channel.
+pub const LUXFER_EMISSION_MASK: luxfer_emission_image = 1;
+/// What synthesis started from, at working size: confidence, signed x and y distance to the nearest light; 3 channels.
+pub const LUXFER_EMISSION_EXEMPLAR_METADATA: luxfer_emission_image = 2;
+/// The same of its result.
+pub const LUXFER_EMISSION_METADATA: luxfer_emission_image = 3;
+
+/// Settings of the emission. Fill them with luxfer_emission_params_init.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_emission_params {
+    /// sizeof(luxfer_emission_params), set by luxfer_emission_params_init.
+    pub struct_size: u32,
+    /// Width of the texture in texels, in [1, 65536]; default 1024.
+    pub width: u32,
+    /// Height of the texture in texels, in [1, 65536]; default 1024.
+    pub height: u32,
+    /// Side of a patch in working pixels; 0, the default, chooses it from the spacing of the lights.
+    pub block: u32,
+    /// Unwarped pixels per texel, in [1e-3, 1e3]; default 1.
+    pub scale: f64,
+    /// Longest side of the exemplar during synthesis, in pixels, in [16, 2048]; default 256.
+    pub working_side: u32,
+    /// Weight of the metadata channels against colour, in [0, 1e3]; default 1; 0 is plain quilting.
+    pub metadata_weight: f32,
+    /// Seed of the synthesis; default 1.
+    pub seed: u64,
+}
+
+// SAFETY: plain numbers.
+unsafe impl Versioned for luxfer_emission_params {
+    const NAME: &'static str = "luxfer_emission_params";
+    const SIZES: &'static [usize] = &[40];
+    fn defaults() -> Self {
+        let d = emission::Params::default();
+        Self {
+            struct_size: 40,
+            width: d.width as u32,
+            height: d.height as u32,
+            block: d.block as u32,
+            scale: d.scale,
+            working_side: d.working_side as u32,
+            metadata_weight: d.metadata_weight,
+            seed: d.seed,
+        }
+    }
+}
+
+impl luxfer_emission_params {
+    pub(super) fn params(&self) -> emission::Params {
+        emission::Params {
+            width: self.width as usize,
+            height: self.height as usize,
+            scale: self.scale,
+            block: self.block as usize,
+            working_side: self.working_side as usize,
+            metadata_weight: self.metadata_weight,
+            seed: self.seed,
+        }
+    }
+}
+
+/// How good the texture is. Set struct_size before the call.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_emission_report {
+    /// sizeof(luxfer_emission_report), set by the caller.
+    pub struct_size: u32,
+    /// Number of luminaires; see luxfer_emission_get_luminaire.
+    pub luminaires: u32,
+    /// Relative difference between texture and exemplar in the share of lit area.
+    pub error: f64,
+    /// How regular the lights are, in [0, 1]: correlation with themselves shifted by the lattice that was found, 0 without.
+    pub regularity: f64,
+}
+
+// SAFETY: plain numbers.
+unsafe impl Versioned for luxfer_emission_report {
+    const NAME: &'static str = "luxfer_emission_report";
+    const SIZES: &'static [usize] = &[24];
+    fn defaults() -> Self {
+        Self { struct_size: 24, luminaires: 0, error: 0.0, regularity: 0.0 }
+    }
+}
+
+/// One lamp of the texture. Set struct_size before the call.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_luminaire {
+    /// sizeof(luxfer_luminaire), set by the caller.
+    pub struct_size: u32,
+    /// Number of corners of its outline.
+    pub corners: u32,
+    /// Centre in texels, x and y.
+    pub centre: [f64; 2],
+    /// Lengths of the principal axes in texels, the long one first.
+    pub size: [f64; 2],
+    /// Angle of the long axis from x towards y, in radians, in (-pi/2, pi/2].
+    pub orientation: f64,
+    /// Area in texels.
+    pub area: f64,
+    /// Share of the light of the whole texture, in [0, 1].
+    pub flux_share: f64,
+    /// Mean linear colour, relative to the photo's white.
+    pub colour: [f32; 3],
+    /// 0.
+    pub reserved: u32,
+}
+
+// SAFETY: plain numbers.
+unsafe impl Versioned for luxfer_luminaire {
+    const NAME: &'static str = "luxfer_luminaire";
+    const SIZES: &'static [usize] = &[80];
+    fn defaults() -> Self {
+        Self {
+            struct_size: 80,
+            corners: 0,
+            centre: [0.0; 2],
+            size: [0.0; 2],
+            orientation: 0.0,
+            area: 0.0,
+            flux_share: 0.0,
+            colour: [0.0; 3],
+            reserved: 0,
+        }
+    }
+}
+
+#[derive(Clone, Default)]
+pub(super) struct Inputs {
+    unwarped: Option<[Arc<Pixels>; 3]>,
+    photo: Option<(Arc<Pixels>, Homography)>,
+}
+
+impl Handle for luxfer_emission {
+    type Object = Stage<Inputs, Emission>;
+    const TAG: u64 = tag(b"lux.emis");
+    const NAME: &'static str = "luxfer_emission";
+}
+
+/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_emission_params_init(params: *mut luxfer_emission_params, size: usize) -> luxfer_status {
+    guard(|| params::init(params, size))
+}
+
+/// Creates the stage. The caller releases *emission. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_emission_create(
+    context: *mut luxfer_context,
+    emission: *mut *mut luxfer_emission,
+) -> luxfer_status {
+    enter(context, |object| {
+        Out::new(emission, "emission")?.set(handle::give(Stage::new(object.context(), Inputs::default())));
+        Ok(())
+    })
+}
+
+/// Sets the exemplar, three images of one size: the unwarped photo (linear RGB), the unwarped confidence of the lights (1
+/// channel, in [0, 1]) and where both are valid (1 channel, 1 or 0). Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_emission_set_exemplar(
+    emission: *mut luxfer_emission,
+    unwarped: *mut luxfer_image,
+    light: *mut luxfer_image,
+    valid: *mut luxfer_image,
+) -> luxfer_status {
+    enter(emission, |stage| {
+        let context = stage.context();
+        let exemplar = [
+            handle::borrow_in(context, unwarped, "unwarped")?,
+            handle::borrow_in(context, light, "light")?,
+            handle::borrow_in(context, valid, "valid")?,
+        ];
+        stage.change(|inputs| {
+            inputs.unwarped = Some(exemplar);
+            Ok(())
+        })
+    })
+}
+
+/// Sets the photo from which full detail is recovered, and the map from unwarped to photo pixels, 9 doubles row by row
+/// (luxfer_rectify_report.to_photo). photo may be NULL: the unwarped image is the finest there is. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_emission_set_photo(
+    emission: *mut luxfer_emission,
+    photo: *mut luxfer_image,
+    to_photo: *const f64,
+) -> luxfer_status {
+    enter(emission, |stage| {
+        let photo = match Pixels::optional(stage.context(), photo, "photo")? {
+            Some(photo) => {
+                let raw = bytes(to_photo.cast(), 9 * size_of::<f64>(), "to_photo")?;
+                let value = |i: usize| f64::from_ne_bytes(std::array::from_fn(|b| raw[8 * i + b]));
+                Some((photo, Homography(DMat3::from_cols_array(&std::array::from_fn(value)).transpose())))
+            }
+            None => None,
+        };
+        stage.change(|inputs| {
+            inputs.photo = photo;
+            Ok(())
+        })
+    })
+}
+
+/// Starts a job that makes the texture. params may be NULL for the defaults. The caller releases *job. Any thread.
+/// LUXFER_INVALID_OPERATION if the exemplar is missing or a job runs already. The job may end with LUXFER_DEGENERATE if
+/// there are no lights in the exemplar, LUXFER_INVALID_ARGUMENT if sizes differ or a setting is out of range.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_emission_start(
+    emission: *mut luxfer_emission,
+    params: *const luxfer_emission_params,
+    job: *mut *mut luxfer_job,
+) -> luxfer_status {
+    enter(emission, |stage| {
+        let params = params::read(params)?.params();
+        need(&stage.inputs().unwarped, "luxfer_emission_set_exemplar")?;
+        stage.start(job, move |inputs, _, job| {
+            let [unwarped, light, valid] = need(&inputs.unwarped, "luxfer_emission_set_exemplar")?;
+            let input = emission::Input {
+                unwarped: unwarped.image(),
+                light: light.image(),
+                valid: valid.image(),
+                photo: inputs.photo.as_ref().map(|(photo, to_photo)| (photo.image(), *to_photo)),
+            };
+            emission::run(&input, &params, job)
+        })
+    })
+}
+
+/// Gets an image of the result; which is a LUXFER_EMISSION_ value. The caller releases *image. Any thread.
+/// LUXFER_NOT_READY before a job has succeeded.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_emission_get_image(
+    emission: *mut luxfer_emission,
+    which: luxfer_emission_image,
+    image: *mut *mut luxfer_image,
+) -> luxfer_status {
+    enter(emission, |stage| {
+        let out = Out::new(image, "image")?;
+        let pick: fn(&Emission) -> &Image = match which {
+            LUXFER_EMISSION_TEXTURE => |e| &e.texture,
+            LUXFER_EMISSION_MASK => |e| &e.mask,
+            LUXFER_EMISSION_EXEMPLAR_METADATA => |e| &e.exemplar_metadata,
+            LUXFER_EMISSION_METADATA => |e| &e.metadata,
+            _ => return Err(Error::argument(format!("which is {which}; it must be a LUXFER_EMISSION_ value"))),
+        };
+        out.set(handle::give(Pixels::part(stage.context(), stage.output()?, pick)));
+        Ok(())
+    })
+}
+
+/// Tells how good the texture is. Any thread.
+/// LUXFER_NOT_READY before a job has succeeded.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_emission_get_report(
+    emission: *mut luxfer_emission,
+    report: *mut luxfer_emission_report,
+) -> luxfer_status {
+    enter(emission, |stage| {
+        let out = Report::new(report)?;
+        let output = stage.output()?;
+        out.set(luxfer_emission_report {
+            luminaires: u32::try_from(output.luminaires.len()).unwrap_or(u32::MAX),
+            error: output.error,
+            regularity: output.regularity,
+            ..luxfer_emission_report::defaults()
+        });
+        Ok(())
+    })
+}
+
+/// Describes a luminaire of the texture. Any thread.
+/// LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such luminaire.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_emission_get_luminaire(
+    emission: *mut luxfer_emission,
+    index: u32,
+    luminaire: *mut luxfer_luminaire,
+) -> luxfer_status {
+    enter(emission, |stage| {
+        let out = Report::new(luminaire)?;
+        let output = stage.output()?;
+        let count = output.luminaires.len();
+        let lamp = output.luminaires.get(index as usize).ok_or_else(|| missing("luminaire", index, count))?;
+        out.set(luxfer_luminaire {
+            corners: lamp.outline.len() as u32,
+            centre: lamp.centre.to_array(),
+            size: lamp.size.to_array(),
+            orientation: lamp.orientation,
+            area: lamp.area,
+            flux_share: lamp.flux_share,
+            colour: lamp.colour.to_array(),
+            ..luxfer_luminaire::defaults()
+        });
+        Ok(())
+    })
+}
+
+/// Tells a corner of a luminaire's outline, in texels. Any thread.
+/// LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such luminaire or corner.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_emission_get_corner(
+    emission: *mut luxfer_emission,
+    index: u32,
+    corner: u32,
+    x: *mut f64,
+    y: *mut f64,
+) -> luxfer_status {
+    enter(emission, |stage| {
+        let (out_x, out_y) = (Out::new(x, "x")?, Out::new(y, "y")?);
+        let output = stage.output()?;
+        let count = output.luminaires.len();
+        let lamp = output.luminaires.get(index as usize).ok_or_else(|| missing("luminaire", index, count))?;
+        let point = lamp.outline.get(corner as usize).ok_or_else(|| missing("corner", corner, lamp.outline.len()))?;
+        out_x.set(point.x);
+        out_y.set(point.y);
+        Ok(())
+    })
+}
+
+/// Adds a reference. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_emission_retain(emission: *mut luxfer_emission) -> luxfer_status {
+    handle::retain(emission)
+}
+
+/// Gives a reference back; a job that runs goes on. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_emission_release(emission: *mut luxfer_emission) -> luxfer_status {
+    handle::release(emission)
+}

@@ -1,0 +1,415 @@
+//! Rectification
+//!
+//! From the straight lines of a photo to vanishing points and the camera, and, where a mask marks a plane, to that plane
+//! seen straight on. Image points are in pixels, x right, y down, the top-left pixel's centre at (0.5, 0.5). Room axes 0 and
+//! 2 are horizontal, axis 1 is vertical; camera space is x right, y down, z forward.
+
+use super::context::luxfer_context;
+use super::guard::{enter, guard};
+use super::handle::{self, Handle, Owned, tag};
+use super::image::{Pixels, luxfer_image};
+use super::job::luxfer_job;
+use super::params::{self, Report, Versioned};
+use super::pointer::Out;
+use super::stage::{Stage, need};
+use super::status::luxfer_status;
+use crate::error::{Error, ErrorKind, Result};
+use crate::geometry::FocalSource;
+use crate::image::Image;
+use crate::job::Monitor;
+use crate::rectify::{self, Metric, UnwarpParams, Unwarped, View};
+use glam::DVec2;
+use std::sync::Arc;
+
+/// Lines, vanishing points and the unwarped plane of a photo. See luxfer_rectify_create.
+pub struct luxfer_rectify {
+    _opaque: [u8; 0],
+}
+
+/// How far a vanishing point is from a line: a LUXFER_METRIC_ value.
+pub type luxfer_metric = i32;
+/// The paper's measure on the segment that was detected, finite for vanishing points at infinity.
+pub const LUXFER_METRIC_SEGMENT: luxfer_metric = 0;
+/// As printed in the paper (Eq. 2), on the whole visible line.
+pub const LUXFER_METRIC_VISIBLE_LINE: luxfer_metric = 1;
+
+/// Where a focal length came from: a LUXFER_FOCAL_ value.
+pub type luxfer_focal_source = i32;
+/// The caller gave it.
+pub const LUXFER_FOCAL_GIVEN: luxfer_focal_source = 0;
+/// From vanishing points of orthogonal directions.
+pub const LUXFER_FOCAL_FROM_VANISHING_POINTS: luxfer_focal_source = 1;
+/// A guess, 0.85 of the image's width.
+pub const LUXFER_FOCAL_ASSUMED: luxfer_focal_source = 2;
+
+/// An image of a rectification: a LUXFER_RECTIFY_ value.
+pub type luxfer_rectify_image = i32;
+/// The plane seen straight on, linear RGB.
+pub const LUXFER_RECTIFY_UNWARPED: luxfer_rectify_image = 0;
+/// 1 where the photo shows the plane, else 0; 1 channel.
+pub const LUXFER_RECTIFY_VALID: luxfer_rectify_image = 1;
+
+/// Settings of a rectification. Fill them with luxfer_rectify_params_init.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_rectify_params {
+    /// sizeof(luxfer_rectify_params), set by luxfer_rectify_params_init.
+    pub struct_size: u32,
+    /// LUXFER_METRIC_ value; default LUXFER_METRIC_SEGMENT.
+    pub metric: luxfer_metric,
+    /// Half-width in radians of the band around the gradient's direction that votes for a line, in (0, pi/2]; default 2.5
+    /// degrees.
+    pub hough_band: f64,
+    /// Focal length in pixels, > 0, or 0, the default: unknown.
+    pub focal: f64,
+    /// Principal point in pixels; NaN, the default: the image's centre.
+    pub principal: [f64; 2],
+    /// The two room axes that the plane spans, each 0, 1 or 2; -1, the default: found from the lines in it.
+    pub plane_axes: [i32; 2],
+    /// Longest side of the unwarped image in pixels, in [16, 16384]; default 2048. The photo's own density decides below.
+    pub max_side: u32,
+    /// Must be 0.
+    pub reserved: u32,
+    /// Largest magnification of the photo, > 0; default 6. What is further away is cut off.
+    pub max_magnification: f64,
+    /// Seed of the search; default 1.
+    pub seed: u64,
+}
+
+// SAFETY: plain numbers.
+unsafe impl Versioned for luxfer_rectify_params {
+    const NAME: &'static str = "luxfer_rectify_params";
+    const SIZES: &'static [usize] = &[72];
+    fn defaults() -> Self {
+        let (view, unwarp) = (rectify::Params::default(), UnwarpParams::default());
+        Self {
+            struct_size: 72,
+            metric: LUXFER_METRIC_SEGMENT,
+            hough_band: view.hough_band,
+            focal: 0.0,
+            principal: [f64::NAN; 2],
+            plane_axes: [-1; 2],
+            max_side: unwarp.max_side as u32,
+            reserved: 0,
+            max_magnification: unwarp.max_magnification,
+            seed: view.seed,
+        }
+    }
+}
+
+impl luxfer_rectify_params {
+    pub(super) fn params(&self) -> Result<(rectify::Params, UnwarpParams)> {
+        let metric = match self.metric {
+            LUXFER_METRIC_SEGMENT => Metric::Segment,
+            LUXFER_METRIC_VISIBLE_LINE => Metric::VisibleLine,
+            other => return Err(Error::argument(format!("metric is {other}; it must be a LUXFER_METRIC_ value"))),
+        };
+        let axes = match self.plane_axes {
+            [-1, -1] => None,
+            [a @ 0..=2, b @ 0..=2] if a != b => Some([a as usize, b as usize]),
+            [a, b] => {
+                return Err(Error::argument(format!(
+                    "plane_axes is ({a}, {b}); it must be two different axes of 0, 1 and 2, or -1 twice"
+                )));
+            }
+        };
+        let [x, y] = self.principal;
+        let view = rectify::Params {
+            metric,
+            hough_band: self.hough_band,
+            focal: (self.focal != 0.0).then_some(self.focal),
+            principal: (!x.is_nan() || !y.is_nan()).then_some(DVec2::new(x, y)),
+            seed: self.seed,
+            ..rectify::Params::default()
+        };
+        let unwarp = UnwarpParams {
+            axes,
+            max_side: self.max_side as usize,
+            max_magnification: self.max_magnification,
+            ..UnwarpParams::default()
+        };
+        Ok((view, unwarp))
+    }
+}
+
+/// What the lines of a photo say about its camera, and how the plane was unwarped. Set struct_size before the call.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_rectify_report {
+    /// sizeof(luxfer_rectify_report), set by the caller.
+    pub struct_size: u32,
+    /// Number of line segments found.
+    pub segments: u32,
+    /// Vanishing points of the room axes, homogeneous pixels of unit length; the third coordinate is 0 at infinity.
+    pub vanishing_points: [[f64; 3]; 3],
+    /// Standard deviation of their directions in camera space, in radians.
+    pub vanishing_errors: [f64; 3],
+    /// Number of segments that agree with each; 0 = derived from the other two.
+    pub vanishing_support: [u32; 3],
+    /// LUXFER_FOCAL_ value.
+    pub focal_source: luxfer_focal_source,
+    /// Focal length in pixels.
+    pub focal: f64,
+    /// Principal point in pixels.
+    pub principal: [f64; 2],
+    /// Room axes as unit vectors in camera space.
+    pub axes: [[f64; 3]; 3],
+    /// 1 if the plane has been unwarped, else 0, and what follows is 0.
+    pub is_unwarped: u32,
+    /// Must be 0.
+    pub reserved: u32,
+    /// The map from unwarped pixels to photo pixels, row by row.
+    pub to_photo: [f64; 9],
+    /// Corners of the unwarped rectangle in the photo, x and y.
+    pub corners: [[f64; 2]; 4],
+    /// Expected error of each corner, in unwarped pixels.
+    pub corner_errors: [f64; 4],
+    /// Size of an unwarped pixel as a share of the camera's distance from the plane.
+    pub pixel_size: f64,
+    /// Trust in the aspect ratio, in [0, 1]: low where the focal length had to be assumed.
+    pub aspect_confidence: f64,
+}
+
+const REPORT_SIZE: usize = 8 + 72 + 24 + 16 + 24 + 72 + 8 + 72 + 64 + 32 + 16;
+
+// SAFETY: plain numbers.
+unsafe impl Versioned for luxfer_rectify_report {
+    const NAME: &'static str = "luxfer_rectify_report";
+    const SIZES: &'static [usize] = &[REPORT_SIZE];
+    fn defaults() -> Self {
+        Self {
+            struct_size: REPORT_SIZE as u32,
+            segments: 0,
+            vanishing_points: [[0.0; 3]; 3],
+            vanishing_errors: [0.0; 3],
+            vanishing_support: [0; 3],
+            focal_source: 0,
+            focal: 0.0,
+            principal: [0.0; 2],
+            axes: [[0.0; 3]; 3],
+            is_unwarped: 0,
+            reserved: 0,
+            to_photo: [0.0; 9],
+            corners: [[0.0; 2]; 4],
+            corner_errors: [0.0; 4],
+            pixel_size: 0.0,
+            aspect_confidence: 0.0,
+        }
+    }
+}
+
+impl luxfer_rectify_report {
+    fn new(output: &Output) -> Self {
+        let view = &output.view;
+        let camera = &view.perspective;
+        let point = |i: usize| &view.vanishing_points[i];
+        let report = Self {
+            segments: u32::try_from(view.segments.len()).unwrap_or(u32::MAX),
+            vanishing_points: [0, 1, 2].map(|i| point(i).point.to_array()),
+            vanishing_errors: [0, 1, 2].map(|i| point(i).error),
+            vanishing_support: [0, 1, 2].map(|i| u32::try_from(point(i).support).unwrap_or(u32::MAX)),
+            focal_source: match camera.focal_source {
+                FocalSource::Given => LUXFER_FOCAL_GIVEN,
+                FocalSource::VanishingPoints => LUXFER_FOCAL_FROM_VANISHING_POINTS,
+                FocalSource::Assumed => LUXFER_FOCAL_ASSUMED,
+            },
+            focal: camera.focal,
+            principal: camera.principal.to_array(),
+            axes: camera.axes.to_cols_array_2d(),
+            ..Self::defaults()
+        };
+        let Some(unwarped) = &output.unwarped else { return report };
+        Self {
+            is_unwarped: 1,
+            to_photo: unwarped.to_photo.0.transpose().to_cols_array(),
+            corners: unwarped.corners.map(|c| c.to_array()),
+            corner_errors: unwarped.corner_error,
+            pixel_size: unwarped.pixel_size,
+            aspect_confidence: unwarped.aspect_confidence,
+            ..report
+        }
+    }
+}
+
+#[derive(Clone, Default)]
+pub(super) struct Inputs {
+    photo: Option<Arc<Pixels>>,
+    mask: Option<Arc<Pixels>>,
+}
+
+pub(super) struct Output {
+    pub(super) view: Arc<View>,
+    pub(super) unwarped: Option<Arc<Unwarped>>,
+    /// What the view was found in and with: it is kept while they stay the same.
+    found_in: Arc<Pixels>,
+    found_with: rectify::Params,
+}
+
+impl Handle for luxfer_rectify {
+    type Object = Stage<Inputs, Output>;
+    const TAG: u64 = tag(b"lux.rect");
+    const NAME: &'static str = "luxfer_rectify";
+}
+
+fn unwarped(output: &Output) -> Result<&Arc<Unwarped>> {
+    output.unwarped.as_ref().ok_or_else(|| {
+        Error::new(ErrorKind::NotReady, "no plane has been unwarped yet; set its mask and start the stage again")
+    })
+}
+
+/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_rectify_params_init(params: *mut luxfer_rectify_params, size: usize) -> luxfer_status {
+    guard(|| params::init(params, size))
+}
+
+/// Creates the stage. The caller releases *rectify. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_rectify_create(
+    context: *mut luxfer_context,
+    rectify: *mut *mut luxfer_rectify,
+) -> luxfer_status {
+    enter(context, |object| {
+        Out::new(rectify, "rectify")?.set(handle::give(Stage::new(object.context(), Inputs::default())));
+        Ok(())
+    })
+}
+
+/// Sets the photo: linear RGB. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_rectify_set_photo(
+    rectify: *mut luxfer_rectify,
+    photo: *mut luxfer_image,
+) -> luxfer_status {
+    enter(rectify, |stage| {
+        let photo = handle::borrow_in(stage.context(), photo, "photo")?;
+        stage.change(|inputs| {
+            inputs.photo = Some(photo);
+            Ok(())
+        })
+    })
+}
+
+/// Sets the mask of the plane to unwarp, 1 on it and 0 elsewhere; 1 channel, the photo's size. mask may be NULL: then only
+/// lines and vanishing points are found. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_rectify_set_mask(
+    rectify: *mut luxfer_rectify,
+    mask: *mut luxfer_image,
+) -> luxfer_status {
+    enter(rectify, |stage| {
+        let mask = Pixels::optional(stage.context(), mask, "mask")?;
+        stage.change(|inputs| {
+            inputs.mask = mask;
+            Ok(())
+        })
+    })
+}
+
+/// Starts a job that finds lines, vanishing points and the camera, unless the same photo's are known from before, and
+/// unwarps the plane if its mask is set. params may be NULL for the defaults. The caller releases *job. Any thread.
+/// LUXFER_INVALID_OPERATION if the photo is missing or a job runs already. The job may end with LUXFER_DEGENERATE if there
+/// are no lines or the plane is seen edge-on, LUXFER_INVALID_ARGUMENT if sizes differ or a setting is out of range.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_rectify_start(
+    rectify: *mut luxfer_rectify,
+    params: *const luxfer_rectify_params,
+    job: *mut *mut luxfer_job,
+) -> luxfer_status {
+    enter(rectify, |stage| {
+        let (params, unwarp_params) = params::read(params)?.params()?;
+        need(&stage.inputs().photo, "luxfer_rectify_set_photo")?;
+        stage.start(job, move |inputs, stage, job| {
+            let photo = need(&inputs.photo, "luxfer_rectify_set_photo")?;
+            let known = stage.output().ok().filter(|o| Arc::ptr_eq(&o.found_in, photo) && o.found_with == params);
+            let view = match known {
+                Some(output) => output.view.clone(),
+                None => Arc::new(rectify::find_view(photo.image(), &params, job.part(0.0, 0.5))?),
+            };
+            let unwarped = match &inputs.mask {
+                Some(mask) => Some(Arc::new(rectify::unwarp(
+                    photo.image(),
+                    &view,
+                    mask.image(),
+                    &unwarp_params,
+                    job.part(0.5, 1.0),
+                )?)),
+                None => None,
+            };
+            Ok(Output { view, unwarped, found_in: photo.clone(), found_with: params })
+        })
+    })
+}
+
+/// Gets an image of the result; which is a LUXFER_RECTIFY_ value. The caller releases *image. Any thread.
+/// LUXFER_NOT_READY before a job with a mask has succeeded.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_rectify_get_image(
+    rectify: *mut luxfer_rectify,
+    which: luxfer_rectify_image,
+    image: *mut *mut luxfer_image,
+) -> luxfer_status {
+    enter(rectify, |stage| {
+        let out = Out::new(image, "image")?;
+        let pick: fn(&Unwarped) -> &Image = match which {
+            LUXFER_RECTIFY_UNWARPED => |u| &u.image,
+            LUXFER_RECTIFY_VALID => |u| &u.valid,
+            _ => return Err(Error::argument(format!("which is {which}; it must be a LUXFER_RECTIFY_ value"))),
+        };
+        let output = stage.output()?;
+        out.set(handle::give(Pixels::part(stage.context(), unwarped(&output)?.clone(), pick)));
+        Ok(())
+    })
+}
+
+/// Unwarps another image of the photo's size, such as the confidence of the lights, as the plane was; outside the photo it
+/// becomes 0. Returns when it is done, which takes some milliseconds for each megapixel. The caller releases *warped. Any
+/// thread.
+/// LUXFER_NOT_READY before a job with a mask has succeeded; LUXFER_INVALID_ARGUMENT if the size differs.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_rectify_warp(
+    rectify: *mut luxfer_rectify,
+    source: *mut luxfer_image,
+    warped: *mut *mut luxfer_image,
+) -> luxfer_status {
+    enter(rectify, |stage| {
+        let out = Out::new(warped, "warped")?;
+        let source = handle::borrow_in(stage.context(), source, "source")?;
+        let output = stage.output()?;
+        let unwarped = unwarped(&output)?;
+        output.found_in.image().check_same_size("the photo", source.image(), "source")?;
+        let (width, height) = (unwarped.image.width, unwarped.image.height);
+        let monitor = Monitor::default();
+        let pool = &stage.context().pool;
+        let image =
+            pool.run(|| rectify::warp(source.image(), &unwarped.to_photo, width, height, monitor.job()))?;
+        out.set(handle::give(Pixels::part(stage.context(), Arc::new(image), |image| image)));
+        Ok(())
+    })
+}
+
+/// Tells what was found and how sure it is. Any thread.
+/// LUXFER_NOT_READY before a job has succeeded.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_rectify_get_report(
+    rectify: *mut luxfer_rectify,
+    report: *mut luxfer_rectify_report,
+) -> luxfer_status {
+    enter(rectify, |stage| {
+        let out = Report::new(report)?;
+        out.set(luxfer_rectify_report::new(&*stage.output()?));
+        Ok(())
+    })
+}
+
+/// Adds a reference. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_rectify_retain(rectify: *mut luxfer_rectify) -> luxfer_status {
+    handle::retain(rectify)
+}
+
+/// Gives a reference back; a job that runs goes on. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_rectify_release(rectify: *mut luxfer_rectify) -> luxfer_status {
+    handle::release(rectify)
+}

@@ -1,0 +1,302 @@
+//! Relighting
+//!
+//! Solves for the colour and intensity of an emission, so that a surface of the scene gets the colour it has in the photo:
+//! what to multiply the emission with, per channel, with a confidence interval.
+
+use super::context::luxfer_context;
+use super::guard::{enter, guard};
+use super::handle::{self, Handle, Owned, tag};
+use super::job::luxfer_job;
+use super::params::{self, Report, Versioned};
+use super::pointer::Out;
+use super::scene::{SceneObject, colour, luxfer_scene, missing};
+use super::stage::{Stage, need};
+use super::status::luxfer_status;
+use crate::error::{Error, Result};
+use crate::relight::{self, Quantity, Reach, Solution};
+use crate::scene::Scene;
+use glam::Vec3;
+use std::sync::Arc;
+
+/// A relighting of a scene. See luxfer_relight_create.
+pub struct luxfer_relight {
+    _opaque: [u8; 0],
+}
+
+/// What should match the photo: a LUXFER_QUANTITY_ value.
+pub type luxfer_quantity = i32;
+/// The light the target surface sends back, its albedo included: what a photo shows of it.
+pub const LUXFER_QUANTITY_OUTGOING: luxfer_quantity = 0;
+/// The light that arrives at it, as if it were white.
+pub const LUXFER_QUANTITY_INCIDENT: luxfer_quantity = 1;
+
+/// How far the answer goes to meet the target in one colour channel: a LUXFER_REACH_ value.
+pub type luxfer_reach = i32;
+/// The target is met.
+pub const LUXFER_REACH_MET: luxfer_reach = 0;
+/// Other lights alone exceed the target: the emission is off in this channel.
+pub const LUXFER_REACH_TOO_BRIGHT: luxfer_reach = 1;
+/// No light of this channel reaches the target: the emission keeps the mean scale of the other channels.
+pub const LUXFER_REACH_DARK: luxfer_reach = 2;
+
+/// Settings of a relighting. Fill them with luxfer_relight_params_init.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_relight_params {
+    /// sizeof(luxfer_relight_params), set by luxfer_relight_params_init.
+    pub struct_size: u32,
+    /// LUXFER_QUANTITY_ value; default LUXFER_QUANTITY_OUTGOING.
+    pub quantity: luxfer_quantity,
+    /// Most paths to trace, in [1024, 2^30]; default 2^22.
+    pub paths: u32,
+    /// Stop when the half-width of the widest 95 % interval is below this share of its answer, in [0, 1]; default 0.01; 0 =
+    /// never.
+    pub target_error: f32,
+    /// Stop after this many milliseconds; default 0: never.
+    pub time_budget_ms: u32,
+    /// Must be 0.
+    pub reserved: u32,
+    /// Seed of the paths; default 1.
+    pub seed: u64,
+}
+
+// SAFETY: plain numbers.
+unsafe impl Versioned for luxfer_relight_params {
+    const NAME: &'static str = "luxfer_relight_params";
+    const SIZES: &'static [usize] = &[32];
+    fn defaults() -> Self {
+        let d = relight::Params::default();
+        Self {
+            struct_size: 32,
+            quantity: LUXFER_QUANTITY_OUTGOING,
+            paths: d.paths,
+            target_error: d.target_error,
+            time_budget_ms: d.time_budget_ms,
+            reserved: 0,
+            seed: d.seed,
+        }
+    }
+}
+
+impl luxfer_relight_params {
+    pub(super) fn params(&self) -> Result<relight::Params> {
+        let quantity = match self.quantity {
+            LUXFER_QUANTITY_OUTGOING => Quantity::Outgoing,
+            LUXFER_QUANTITY_INCIDENT => Quantity::Incident,
+            other => return Err(Error::argument(format!("quantity is {other}; it must be a LUXFER_QUANTITY_ value"))),
+        };
+        Ok(relight::Params {
+            quantity,
+            paths: self.paths,
+            target_error: self.target_error,
+            time_budget_ms: self.time_budget_ms,
+            seed: self.seed,
+        })
+    }
+}
+
+/// The solution and how sure it is. Set struct_size before the call.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_relight_report {
+    /// sizeof(luxfer_relight_report), set by the caller.
+    pub struct_size: u32,
+    /// Paths traced.
+    pub paths: u32,
+    /// What to multiply the emission with, per channel, >= 0.
+    pub scale: [f64; 3],
+    /// Half-widths of the 95 % confidence intervals of scale.
+    pub half_width: [f64; 3],
+    /// Mean radiance of the target under the emission at scale 1, in cd/m².
+    pub response: [f64; 3],
+    /// Mean radiance of the target under all other light, in cd/m².
+    pub background: [f64; 3],
+    /// LUXFER_REACH_ value of each channel.
+    pub reach: [luxfer_reach; 3],
+    /// 0.
+    pub reserved: u32,
+    /// The widest relative half-width among the channels that met their target.
+    pub error: f64,
+}
+
+// SAFETY: plain numbers.
+unsafe impl Versioned for luxfer_relight_report {
+    const NAME: &'static str = "luxfer_relight_report";
+    const SIZES: &'static [usize] = &[128];
+    fn defaults() -> Self {
+        Self {
+            struct_size: 128,
+            paths: 0,
+            scale: [0.0; 3],
+            half_width: [0.0; 3],
+            response: [0.0; 3],
+            background: [0.0; 3],
+            reach: [0; 3],
+            reserved: 0,
+            error: 0.0,
+        }
+    }
+}
+
+impl luxfer_relight_report {
+    pub(super) fn new(solution: &Solution) -> Self {
+        Self {
+            paths: solution.paths,
+            scale: solution.scale.to_array(),
+            half_width: solution.half_width.to_array(),
+            response: solution.response.to_array(),
+            background: solution.background.to_array(),
+            reach: solution.reach.map(|reach| match reach {
+                Reach::Met => LUXFER_REACH_MET,
+                Reach::TooBright => LUXFER_REACH_TOO_BRIGHT,
+                Reach::Dark => LUXFER_REACH_DARK,
+            }),
+            error: solution.error(),
+            ..Self::defaults()
+        }
+    }
+}
+
+#[derive(Clone, Default)]
+pub(super) struct Inputs {
+    emitter: Option<Emitter>,
+    target: Option<Vec3>,
+}
+
+#[derive(Clone)]
+struct Emitter {
+    scene: Arc<SceneObject>,
+    material: u32,
+    mesh: u32,
+}
+
+impl Handle for luxfer_relight {
+    type Object = Stage<Inputs, Solution>;
+    const TAG: u64 = tag(b"lux.reli");
+    const NAME: &'static str = "luxfer_relight";
+}
+
+/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_relight_params_init(params: *mut luxfer_relight_params, size: usize) -> luxfer_status {
+    guard(|| params::init(params, size))
+}
+
+/// Creates the stage. The caller releases *relight. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_relight_create(
+    context: *mut luxfer_context,
+    relight: *mut *mut luxfer_relight,
+) -> luxfer_status {
+    enter(context, |object| {
+        Out::new(relight, "relight")?.set(handle::give(Stage::new(object.context(), Inputs::default())));
+        Ok(())
+    })
+}
+
+/// Sets the scene, the emitting material to solve for, and the mesh whose mean colour is to match: both as
+/// luxfer_scene_place_emission has told them. The emission has the strength that the solution will multiply. Any thread.
+/// LUXFER_NOT_FOUND if the scene has no such material or mesh.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_relight_set_scene(
+    relight: *mut luxfer_relight,
+    scene: *mut luxfer_scene,
+    material: u32,
+    mesh: u32,
+) -> luxfer_status {
+    enter(relight, |stage| {
+        let scene = handle::borrow_in(stage.context(), scene, "scene")?;
+        let emitter = Emitter { scene, material, mesh };
+        emitter.triangles(&emitter.scene.snapshot())?;
+        stage.change(|inputs| {
+            inputs.emitter = Some(emitter);
+            Ok(())
+        })
+    })
+}
+
+/// Sets the mean radiance the mesh should have, in cd/m² per channel, each finite and >= 0; for LUXFER_QUANTITY_INCIDENT
+/// that of a white surface in the same light, illuminance / pi. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_relight_set_target(
+    relight: *mut luxfer_relight,
+    red: f32,
+    green: f32,
+    blue: f32,
+) -> luxfer_status {
+    enter(relight, |stage| {
+        let target = colour("target", red, green, blue)?;
+        stage.change(|inputs| {
+            inputs.target = Some(target);
+            Ok(())
+        })
+    })
+}
+
+impl Emitter {
+    /// The target's triangles.
+    fn triangles(&self, scene: &Scene) -> Result<Vec<(usize, usize)>> {
+        if self.material as usize >= scene.materials.len() {
+            return Err(missing("material", self.material, scene.materials.len()));
+        }
+        let mesh = scene.meshes.get(self.mesh as usize);
+        let mesh = mesh.ok_or_else(|| missing("mesh", self.mesh, scene.meshes.len()))?;
+        Ok((0..mesh.triangles.len()).map(|t| (self.mesh as usize, t)).collect())
+    }
+}
+
+/// Starts a job that solves. params may be NULL for the defaults. The caller releases *job. Any thread.
+/// LUXFER_INVALID_OPERATION if the scene or the target is missing or a job runs already. The job may end with
+/// LUXFER_UNREACHABLE if no light of the emission can reach the target, LUXFER_INVALID_ARGUMENT if the scene is not valid or
+/// a setting is out of range.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_relight_start(
+    relight: *mut luxfer_relight,
+    params: *const luxfer_relight_params,
+    job: *mut *mut luxfer_job,
+) -> luxfer_status {
+    enter(relight, |stage| {
+        let params = params::read(params)?.params()?;
+        let inputs = stage.inputs();
+        let emitter = need(&inputs.emitter, "luxfer_relight_set_scene")?.clone();
+        let target = *need(&inputs.target, "luxfer_relight_set_target")?;
+        let scene = emitter.scene.snapshot();
+        let triangles = emitter.triangles(&scene)?;
+        stage.start(job, move |_, _, job| {
+            let world = emitter.scene.world(&scene, job.part(0.0, 0.1))?;
+            let input = relight::Input {
+                world: &world,
+                emitter: emitter.material as usize,
+                target_triangles: &triangles,
+                target,
+            };
+            relight::run(&input, &params, job.part(0.1, 1.0))
+        })
+    })
+}
+
+/// Tells the solution and how sure it is. Any thread.
+/// LUXFER_NOT_READY before a job has succeeded.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_relight_get_report(
+    relight: *mut luxfer_relight,
+    report: *mut luxfer_relight_report,
+) -> luxfer_status {
+    enter(relight, |stage| {
+        let out = Report::new(report)?;
+        out.set(luxfer_relight_report::new(&*stage.output()?));
+        Ok(())
+    })
+}
+
+/// Adds a reference. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_relight_retain(relight: *mut luxfer_relight) -> luxfer_status {
+    handle::retain(relight)
+}
+
+/// Gives a reference back; a job that runs goes on. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_relight_release(relight: *mut luxfer_relight) -> luxfer_status {
+    handle::release(relight)
+}

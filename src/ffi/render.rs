@@ -1,0 +1,268 @@
+//! Rendering
+//!
+//! A path tracer of a scene's light, in cd/m². It gets better pass by pass: while its job runs, and after a cancel, the
+//! image so far can be read with its own error estimate.
+
+use super::context::luxfer_context;
+use super::guard::{enter, guard};
+use super::handle::{self, Handle, Owned, tag};
+use super::image::{Pixels, luxfer_image};
+use super::job::luxfer_job;
+use super::params::{self, Report, Versioned};
+use super::pointer::Out;
+use super::scene::{SceneObject, luxfer_scene, missing};
+use super::scene_parts::luxfer_camera_params;
+use super::stage::{Stage, need};
+use super::status::luxfer_status;
+use crate::error::{Error, Result};
+use crate::image::Image;
+use crate::render::{self, Film};
+use crate::scene::Camera;
+use std::sync::Arc;
+
+/// A rendering of a scene. See luxfer_render_create.
+pub struct luxfer_render {
+    _opaque: [u8; 0],
+}
+
+/// An image of a rendering: a LUXFER_RENDER_ value.
+pub type luxfer_render_image = i32;
+/// Mean radiance of each pixel, linear RGB in cd/m².
+pub const LUXFER_RENDER_BEAUTY: luxfer_render_image = 0;
+/// Variance of that mean; 3 channels.
+pub const LUXFER_RENDER_VARIANCE: luxfer_render_image = 1;
+
+/// Settings of a rendering. Fill them with luxfer_render_params_init.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_render_params {
+    /// sizeof(luxfer_render_params), set by luxfer_render_params_init.
+    pub struct_size: u32,
+    /// Width of the image in pixels, in [1, 65536]; default 1280.
+    pub width: u32,
+    /// Height of the image in pixels, in [1, 65536]; default 720.
+    pub height: u32,
+    /// Paths per pixel, in [1, 1048576]; default 64.
+    pub samples: u32,
+    /// Stop when the mean relative standard error falls below this, >= 0; default 0: never.
+    pub target_error: f32,
+    /// Stop after this many milliseconds; default 0: never.
+    pub time_budget_ms: u32,
+    /// Seed of the paths; default 1.
+    pub seed: u64,
+}
+
+// SAFETY: plain numbers.
+unsafe impl Versioned for luxfer_render_params {
+    const NAME: &'static str = "luxfer_render_params";
+    const SIZES: &'static [usize] = &[32];
+    fn defaults() -> Self {
+        let d = render::Params::default();
+        Self {
+            struct_size: 32,
+            width: d.width as u32,
+            height: d.height as u32,
+            samples: d.samples,
+            target_error: d.target_error,
+            time_budget_ms: d.time_budget_ms,
+            seed: d.seed,
+        }
+    }
+}
+
+impl luxfer_render_params {
+    pub(super) fn params(&self) -> render::Params {
+        render::Params {
+            width: self.width as usize,
+            height: self.height as usize,
+            samples: self.samples,
+            target_error: self.target_error,
+            time_budget_ms: self.time_budget_ms,
+            seed: self.seed,
+        }
+    }
+}
+
+/// How good a rendering is. Set struct_size before the call.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_render_report {
+    /// sizeof(luxfer_render_report), set by the caller.
+    pub struct_size: u32,
+    /// Paths per pixel so far.
+    pub samples: u32,
+    /// Mean over the pixels of the standard error, relative to the image's mean.
+    pub error: f64,
+}
+
+// SAFETY: plain numbers.
+unsafe impl Versioned for luxfer_render_report {
+    const NAME: &'static str = "luxfer_render_report";
+    const SIZES: &'static [usize] = &[16];
+    fn defaults() -> Self {
+        Self { struct_size: 16, samples: 0, error: 0.0 }
+    }
+}
+
+#[derive(Clone, Default)]
+pub(super) struct Inputs {
+    scene: Option<Arc<SceneObject>>,
+    camera: Viewpoint,
+}
+
+#[derive(Clone)]
+enum Viewpoint {
+    OfScene(u32),
+    Own(Camera),
+}
+
+impl Default for Viewpoint {
+    fn default() -> Self {
+        Self::OfScene(0)
+    }
+}
+
+impl Handle for luxfer_render {
+    type Object = Stage<Inputs, Film>;
+    const TAG: u64 = tag(b"lux.rend");
+    const NAME: &'static str = "luxfer_render";
+}
+
+/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_render_params_init(params: *mut luxfer_render_params, size: usize) -> luxfer_status {
+    guard(|| params::init(params, size))
+}
+
+/// Creates the stage. The caller releases *render. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_render_create(
+    context: *mut luxfer_context,
+    render: *mut *mut luxfer_render,
+) -> luxfer_status {
+    enter(context, |object| {
+        Out::new(render, "render")?.set(handle::give(Stage::new(object.context(), Inputs::default())));
+        Ok(())
+    })
+}
+
+/// Sets the scene; each start renders it as it is then. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_render_set_scene(
+    render: *mut luxfer_render,
+    scene: *mut luxfer_scene,
+) -> luxfer_status {
+    enter(render, |stage| {
+        let scene = handle::borrow_in(stage.context(), scene, "scene")?;
+        stage.change(|inputs| {
+            inputs.scene = Some(scene);
+            Ok(())
+        })
+    })
+}
+
+/// Renders from a camera of the scene; the default is camera 0. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_render_set_camera_index(render: *mut luxfer_render, camera: u32) -> luxfer_status {
+    enter(render, |stage| {
+        stage.change(|inputs| {
+            inputs.camera = Viewpoint::OfScene(camera);
+            Ok(())
+        })
+    })
+}
+
+/// Renders from a camera of its own. camera may be NULL for the defaults of luxfer_camera_params. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_render_set_camera(
+    render: *mut luxfer_render,
+    camera: *const luxfer_camera_params,
+) -> luxfer_status {
+    enter(render, |stage| {
+        let camera = params::read(camera)?.camera()?;
+        stage.change(|inputs| {
+            inputs.camera = Viewpoint::Own(camera);
+            Ok(())
+        })
+    })
+}
+
+/// Starts a job that renders. params may be NULL for the defaults. The caller releases *job. Any thread.
+/// LUXFER_INVALID_OPERATION if the scene is missing or a job runs already; LUXFER_NOT_FOUND if the scene has no such
+/// camera. The job may end with LUXFER_INVALID_ARGUMENT if the scene is not valid or a setting is out of range.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_render_start(
+    render: *mut luxfer_render,
+    params: *const luxfer_render_params,
+    job: *mut *mut luxfer_job,
+) -> luxfer_status {
+    enter(render, |stage| {
+        let params = params::read(params)?.params();
+        let inputs = stage.inputs();
+        let object = need(&inputs.scene, "luxfer_render_set_scene")?.clone();
+        let scene = object.snapshot();
+        let camera = match inputs.camera {
+            Viewpoint::Own(camera) => camera,
+            Viewpoint::OfScene(index) => {
+                let found = scene.cameras.get(index as usize).cloned();
+                found.ok_or_else(|| missing("camera", index, scene.cameras.len()))?
+            }
+        };
+        stage.start(job, move |_, stage, job| {
+            let world = object.world(&scene, job.part(0.0, 0.05))?;
+            render::run(&world, &camera, &params, job.part(0.05, 1.0), &mut |film| stage.publish(film.clone()))
+        })
+    })
+}
+
+/// Gets an image of the rendering, as far as it is; which is a LUXFER_RENDER_ value. The caller releases *image. Any
+/// thread.
+/// LUXFER_NOT_READY before the first pass of a job.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_render_get_image(
+    render: *mut luxfer_render,
+    which: luxfer_render_image,
+    image: *mut *mut luxfer_image,
+) -> luxfer_status {
+    enter(render, |stage| {
+        let out = Out::new(image, "image")?;
+        let pick: fn(&Film) -> &Image = match which {
+            LUXFER_RENDER_BEAUTY => |f| &f.beauty,
+            LUXFER_RENDER_VARIANCE => |f| &f.variance,
+            _ => return Err(Error::argument(format!("which is {which}; it must be a LUXFER_RENDER_ value"))),
+        };
+        out.set(handle::give(Pixels::part(stage.context(), stage.output()?, pick)));
+        Ok(())
+    })
+}
+
+/// Tells how good the rendering is so far. Any thread.
+/// LUXFER_NOT_READY before the first pass of a job.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_render_get_report(
+    render: *mut luxfer_render,
+    report: *mut luxfer_render_report,
+) -> luxfer_status {
+    enter(render, |stage| {
+        let out = Report::new(report)?;
+        let output = stage.output()?;
+        out.set(luxfer_render_report {
+            samples: output.samples,
+            error: output.error,
+            ..luxfer_render_report::defaults()
+        });
+        Ok(())
+    })
+}
+
+/// Adds a reference. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_render_retain(render: *mut luxfer_render) -> luxfer_status {
+    handle::retain(render)
+}
+
+/// Gives a reference back; a job that runs goes on. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_render_release(render: *mut luxfer_render) -> luxfer_status {
+    handle::release(render)
+}
