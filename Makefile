@@ -1,0 +1,45 @@
+# make demo   builds the library and a C program, and runs the lighting transfer on generated input, into out/
+# make test   sets up what is missing (Debian packages) and runs every test
+# make clean  removes what was built
+
+CARGO   ?= cargo
+CC      ?= cc
+PROFILE := target/release
+LIB     := $(PROFILE)/libluxfer.so
+SONAME  := $(PROFILE)/libluxfer.so.0.1
+PACKAGES := cmake g++ binutils libopencv-dev libembree-dev
+
+.PHONY: all lib demo test setup clean
+
+all: lib
+
+lib:
+	$(CARGO) build --release --lib
+	@ln -sf libluxfer.so $(SONAME)
+
+out/lighting_transfer: examples_c/lighting_transfer.c include/luxfer.h lib
+	@mkdir -p out
+	$(CC) -std=c99 -O2 -Wall -Wextra -Wpedantic -Iinclude $< -o $@ -L$(PROFILE) -lluxfer -lm -Wl,-rpath,'$$ORIGIN/../$(PROFILE)'
+
+demo: out/lighting_transfer
+	./out/lighting_transfer --out out
+	@echo "look at out/overview.png"
+
+# Installs Debian packages only when one is missing.
+setup:
+	@missing=""; for p in $(PACKAGES); do dpkg -s $$p >/dev/null 2>&1 || missing="$$missing $$p"; done; \
+	if [ -n "$$missing" ]; then \
+	  root=""; [ "$$(id -u)" = 0 ] || root=sudo; \
+	  command -v apt-get >/dev/null || { echo "install these first:$$missing"; exit 1; }; \
+	  $$root apt-get update -qq && DEBIAN_FRONTEND=noninteractive $$root apt-get install -y -qq --no-install-recommends $$missing; \
+	fi
+
+test: setup lib
+	$(CARGO) test
+	cmake -S . -B build -DCMAKE_BUILD_TYPE=Release
+	cmake --build build -j 2
+	ctest --test-dir build --output-on-failure
+
+clean:
+	$(CARGO) clean
+	rm -rf build out
