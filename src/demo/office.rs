@@ -148,7 +148,7 @@ fn windows() -> [[Vec2; 2]; 4] {
 
 fn shell(b: &mut Builder) -> Result<()> {
     let Vec3 { x, y, z } = SIZE;
-    let carpet = b.pattern("Carpet", pattern::carpet(Vec3::new(0.13, 0.15, 0.18))?, Vec2::splat(1.0), 1.0);
+    let carpet = b.pattern("Carpet", pattern::carpet(Vec3::new(0.24, 0.25, 0.28))?, Vec2::splat(1.0), 1.0);
     let mut floor = Mesh::default();
     sheet(&mut floor, Vec3::Z * z, Vec3::X * x, Vec3::NEG_Z * z, [18, 30]);
     b.add("Floor", carpet, floor);

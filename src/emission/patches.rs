@@ -20,7 +20,7 @@ pub const NONE: u32 = u32::MAX;
 
 /// Candidates per patch where any shift is allowed, and the most where the lattice allows too many.
 const FREE_CANDIDATES: usize = 192;
-const LATTICE_CANDIDATES: usize = 384;
+const LATTICE_CANDIDATES: usize = 128;
 /// Patches within this factor of the best (0.1 in the original), or this close to it, are equally good.
 const TOLERANCE: (f32, f32) = (1.1, 1e-6);
 /// Patches that cover at least this share of what the best would cover compete by their error.
@@ -146,15 +146,18 @@ impl Quilt<'_> {
         let mut first = true;
         loop {
             let known = self.known(rect);
-            let empty: Vec<u32> = (0..known.len() as u32).filter(|&i| known[i as usize].is_none()).collect();
+            let position = |i: usize| [(rect.x + i % rect.w) as i32, (rect.y + i / rect.w) as i32];
+            let pixels = || known.iter().enumerate().map(|(i, k)| (position(i), *k));
+            let empty: Vec<[i32; 2]> = pixels().filter(|(_, k)| k.is_none()).map(|(p, _)| p).collect();
+            let filled: Vec<([i32; 2], u32)> = pixels().filter_map(|(p, k)| k.map(|k| (p, k))).collect();
             if empty.is_empty() {
                 return Ok(());
             }
             let candidates = self.candidates(rect);
-            let mut scored = self.score(rect, &known, &empty, candidates, job)?;
+            let scored = self.score(&filled, &empty, candidates, job)?;
             let Some(mut chosen) = self.choose(rect, &scored) else { return Ok(()) };
             if !self.admissible.is_empty() {
-                chosen = self.improve(rect, &known, &empty, chosen, &mut scored, job)?;
+                chosen = self.improve(&filled, &empty, chosen, job)?;
             }
             self.paste(rect, &known, chosen, first.then_some(overlap));
             first = false;
@@ -230,32 +233,25 @@ impl Quilt<'_> {
     /// For each shift: how many empty pixels it would fill, and its mean squared difference from the known ones.
     fn score(
         &self,
-        rect: &Rect,
-        known: &[Option<u32>],
-        empty: &[u32],
+        filled: &[([i32; 2], u32)],
+        empty: &[[i32; 2]],
         shifts: Vec<Shift>,
         job: Job,
     ) -> Result<Vec<(Shift, usize, f32)>> {
         let working = self.guide.working;
-        let scores = exec::map(shifts.len(), job, |n| {
-            let shift = shifts[n].working;
-            let source = |i: usize| {
-                let (x, y) = ((rect.x + i % rect.w) as i32, (rect.y + i / rect.w) as i32);
-                index(working, x - shift[0], y - shift[1]).filter(|&s| working.usable[s])
-            };
-            let filled = empty.iter().filter(|&&i| source(i as usize).is_some()).count();
+        exec::map(shifts.len(), job, |n| {
+            let [dx, dy] = shifts[n].working;
+            let source = |[x, y]: [i32; 2]| index(working, x - dx, y - dy).filter(|&s| working.usable[s]);
+            let fills = empty.iter().filter(|&&p| source(p).is_some()).count();
             let (mut sum, mut count) = (0f64, 0u32);
-            for (i, old) in known.iter().enumerate() {
-                if let Some(old) = old
-                    && let Some(new) = source(i)
-                {
-                    sum += f64::from(self.guide.difference(&self.features[*old as usize], &self.features[new]));
+            for &(p, old) in filled {
+                if let Some(new) = source(p) {
+                    sum += f64::from(self.guide.difference(&self.features[old as usize], &self.features[new]));
                     count += 1;
                 }
             }
-            (filled, if count > 0 { (sum / f64::from(count)) as f32 } else { 0.0 })
-        })?;
-        Ok(shifts.into_iter().zip(scores).map(|(s, (filled, error))| (s, filled, error)).collect())
+            (shifts[n], fills, if count > 0 { (sum / f64::from(count)) as f32 } else { 0.0 })
+        })
     }
 
     /// Draws one of the shifts that are as good as the best.
@@ -271,11 +267,9 @@ impl Quilt<'_> {
     /// Moves a free patch to the best place in its neighbourhood, by ever smaller steps.
     fn improve(
         &self,
-        rect: &Rect,
-        known: &[Option<u32>],
-        empty: &[u32],
+        filled: &[([i32; 2], u32)],
+        empty: &[[i32; 2]],
         start: (Shift, usize, f32),
-        scored: &mut Vec<(Shift, usize, f32)>,
         job: Job,
     ) -> Result<(Shift, usize, f32)> {
         let mut best = start;
@@ -283,10 +277,9 @@ impl Quilt<'_> {
             let ring = [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)];
             let near = ring.map(|(dx, dy)| [best.0.working[0] + dx * step, best.0.working[1] + dy * step]);
             let shifts = near.iter().map(|&w| free_shift(w, self.guide.working.pitch)).collect();
-            *scored = self.score(rect, known, empty, shifts, job)?;
-            for s in scored.iter().filter(|s| s.1 >= start.1) {
-                if s.2 < best.2 {
-                    best = *s;
+            for near in self.score(filled, empty, shifts, job)? {
+                if near.1 >= start.1 && near.2 < best.2 {
+                    best = near;
                 }
             }
         }

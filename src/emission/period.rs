@@ -74,13 +74,10 @@ pub fn find(exemplar: &Exemplar, job: Job) -> Result<(Continuation, f64)> {
     let to_unwarped = DVec2::new(exemplar.width as f64 / width as f64, exemplar.height as f64 / height as f64);
 
     // Shifts at which the lights fall onto themselves, shortest first.
-    let mut periods: Vec<(DVec2, f64)> = Vec::new();
-    for axis in [DVec2::X, DVec2::Y] {
-        if is_unchanging(&correlation, axis, least) {
-            periods.push((axis, 1.0));
-        }
-    }
-    let mut repeats = peaks(&correlation, width, height, least);
+    let unchanging: Vec<DVec2> =
+        [DVec2::X, DVec2::Y].into_iter().filter(|&axis| is_unchanging(&correlation, axis, least)).collect();
+    let mut periods: Vec<(DVec2, f64)> = unchanging.iter().map(|&axis| (axis, 1.0)).collect();
+    let mut repeats = peaks(&correlation, width, height, least, unchanging.first().copied());
     sharpen(&mut repeats);
     repeats.iter_mut().for_each(|(shift, _)| *shift *= to_unwarped);
     let best = repeats.iter().map(|r| r.1).fold(0.0, f32::max);
@@ -114,17 +111,28 @@ fn is_unchanging(correlation: &Autocorrelation, axis: DVec2, least: f32) -> bool
     !values.is_empty() && values.iter().all(|&v| v >= UNCHANGING)
 }
 
-/// Local maxima of the correlation in the half-plane of shifts, to a fraction of a pixel.
-fn peaks(correlation: &Autocorrelation, width: usize, height: usize, least: f32) -> Vec<(DVec2, f32)> {
+/// Local maxima of the correlation in the half-plane of shifts, to a fraction of a pixel. Along a direction in which nothing
+/// changes they are ridges: there only the shifts across it are looked at.
+fn peaks(
+    correlation: &Autocorrelation,
+    width: usize,
+    height: usize,
+    least: f32,
+    unchanging: Option<DVec2>,
+) -> Vec<(DVec2, f32)> {
     let (w, h) = (width as isize, height as isize);
     let mut found = Vec::new();
     for y in 0..h {
         for x in (1 - w)..w {
-            if y == 0 && x <= 0 {
+            let off_axis = unchanging.is_some_and(|u| u.dot(DVec2::new(x as f64, y as f64)) != 0.0);
+            if (y == 0 && x <= 0) || off_axis {
                 continue;
             }
             let Some(value) = correlation.at(x, y, least).filter(|&v| v >= LEAST_CORRELATION) else { continue };
-            let at = |dx: isize, dy: isize| correlation.at(x + dx, y + dy, 1.0).unwrap_or(-1.0);
+            let at = |dx: isize, dy: isize| match unchanging {
+                Some(u) if u.dot(DVec2::new(dx as f64, dy as f64)) != 0.0 => -1.0,
+                _ => correlation.at(x + dx, y + dy, 1.0).unwrap_or(-1.0),
+            };
             let ring = [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)];
             // Of equal neighbours the first in reading order is the peak.
             let is_peak = ring.iter().enumerate().all(|(i, &(dx, dy))| {

@@ -334,7 +334,7 @@ fn lights_that_touch_every_border_go_on() {
 fn odd_sizes_give_finite_results() {
     let exemplar = Design::new(100, 80, grid(25.0, 20.0, 9.0, 7.0));
     for (width, height) in [(1, 1), (1, 300), (300, 1), (3, 5), (101, 80)] {
-        for scale in [0.01, 0.7, 1.0, 30.0] {
+        for scale in [0.01, 0.7, 1.0, 9.0] {
             let params = Params { width, height, scale, ..Params::default() };
             let result = exemplar.run(&params).unwrap();
             assert_eq!((result.texture.width, result.mask.height), (width, height));

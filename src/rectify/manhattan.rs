@@ -128,6 +128,9 @@ fn hypotheses(lines: &[Evidence], candidates: &[DVec3], focal: Option<f64>) -> V
                 }
             }
         }
+        // A candidate by itself: all lines may run one way.
+        let alone = unproject(p, focals[focals.len() / 2]);
+        push(alone, alone.any_orthonormal_vector(), focals[focals.len() / 2]);
         // A candidate and a long line that does not run towards it.
         for partner in lines.iter().filter(|e| e.agreement(p) == 0.0).take(PARTNERS) {
             for &f in focals {

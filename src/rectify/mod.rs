@@ -28,6 +28,8 @@ mod resample;
 pub mod segments;
 mod sphere;
 mod successive;
+#[cfg(test)]
+mod tests;
 mod unwarp;
 pub mod vanishing;
 

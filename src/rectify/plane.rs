@@ -16,8 +16,6 @@ const LEAST_INCIDENCE: f64 = 0.02;
 /// A plane at distance 1 from the camera, parallel to two room axes.
 #[derive(Clone, Debug)]
 pub struct Plane {
-    /// Indices of the room axes along the plane's first and second coordinate.
-    pub axes: [usize; 2],
     /// Camera-space directions of the coordinates: rightwards and downwards as the photo shows them.
     pub right: DVec3,
     pub down: DVec3,
@@ -103,7 +101,7 @@ fn facing(perspective: &Perspective, [i, j]: [usize; 2], pixels: &[DVec2]) -> Pl
     let right = perspective.axes.col(i) * if runs(i).x < 0.0 { -1.0 } else { 1.0 };
     // Not mirrored: as the camera sees it, right, down and away are right-handed.
     let down = normal.cross(right);
-    Plane { axes: [i, j], right, down, normal, perspective: *perspective }
+    Plane { right, down, normal, perspective: *perspective }
 }
 
 /// The two axes whose plane suits the mask: it lies on one side of the plane's horizon, and the lines in it run along

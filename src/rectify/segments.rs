@@ -14,6 +14,9 @@ const WEAKEST: f32 = 0.01;
 /// Half-angle within which a pixel joins a region, as in LSD: π / 8.
 const TOLERANCE: f64 = std::f64::consts::FRAC_PI_8;
 
+/// Length in pixels of each end of a region that the fit leaves out.
+const END: f64 = 2.0;
+
 /// Least share of a region's rectangle that its pixels cover.
 const DENSITY: f64 = 0.7;
 
@@ -160,33 +163,54 @@ impl Grower<'_> {
     }
 
     /// Total least squares through the region, each pixel weighing its gradient: that finds an edge to a fraction of a
-    /// pixel. Regions of a few pixels have no direction.
+    /// pixel. The ends, where corners bend the gradient, have no say. Regions of a few pixels have no direction.
     fn fit(&self) -> Option<Found> {
         if self.region.len() < 8 {
             return None;
         }
-        let weighted = |i: u32| (self.position(i), f64::from(self.gradients.magnitude[i as usize]));
-        let (sum, mass) = self.region.iter().fold((DVec2::ZERO, 0.0), |(sum, mass), &i| {
-            let (p, w) = weighted(i);
-            (sum + p * w, mass + w)
-        });
-        let centre = sum / mass;
-        let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
-        for &i in &self.region {
-            let (p, w) = weighted(i);
-            let d = p - centre;
-            (xx, xy, yy) = (xx + w * d.x * d.x, xy + w * d.x * d.y, yy + w * d.y * d.y);
-        }
-        let direction = DVec2::from_angle(0.5 * (2.0 * xy).atan2(xx - yy));
-        let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
-        for &i in &self.region {
-            let d = self.position(i) - centre;
-            let along = DVec2::new(direction.dot(d), direction.perp_dot(d));
-            (low, high) = (low.min(along), high.max(along));
-        }
+        let (centre, direction) = self.axis(|_| true)?;
+        let (low, high) = self.extent(centre, direction);
+        let trim = END.min((high.x - low.x) / 4.0);
+        let inner = |p: DVec2| {
+            let along = direction.dot(p - centre);
+            along >= low.x + trim && along <= high.x - trim
+        };
+        let (centre, direction) = self.axis(inner).unwrap_or((centre, direction));
+        let (low, high) = self.extent(centre, direction);
         let segment = Segment { a: centre + direction * low.x, b: centre + direction * high.x };
         let found = Found { segment, pixels: self.region.len(), width: high.y - low.y + 1.0 };
         (segment.length() > found.width).then_some(found)
+    }
+
+    /// Centroid and principal direction of the pixels that a condition admits.
+    fn axis(&self, admits: impl Fn(DVec2) -> bool) -> Option<(DVec2, DVec2)> {
+        let origin = self.position(*self.region.first()?);
+        let (mut mass, mut sum, mut squares) = (0.0, DVec2::ZERO, [0.0; 3]);
+        for &i in &self.region {
+            let p = self.position(i);
+            if admits(p) {
+                let (d, w) = (p - origin, f64::from(self.gradients.magnitude[i as usize]));
+                mass += w;
+                sum += d * w;
+                squares = [squares[0] + w * d.x * d.x, squares[1] + w * d.x * d.y, squares[2] + w * d.y * d.y];
+            }
+        }
+        let mean = sum / mass;
+        let [xx, xy, yy] = [
+            squares[0] / mass - mean.x * mean.x,
+            squares[1] / mass - mean.x * mean.y,
+            squares[2] / mass - mean.y * mean.y,
+        ];
+        (mass > 0.0).then(|| (origin + mean, DVec2::from_angle(0.5 * (2.0 * xy).atan2(xx - yy))))
+    }
+
+    /// Least and greatest coordinates of the region along a direction and across it.
+    fn extent(&self, centre: DVec2, direction: DVec2) -> (DVec2, DVec2) {
+        self.region.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), &i| {
+            let d = self.position(i) - centre;
+            let at = DVec2::new(direction.dot(d), direction.perp_dot(d));
+            (low.min(at), high.max(at))
+        })
     }
 }
 

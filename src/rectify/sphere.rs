@@ -113,19 +113,37 @@ pub fn refine(lines: &[Evidence], start: DVec3, focal: f64) -> Option<Refined> {
     Some(Refined { direction, error })
 }
 
-/// Row of the least-squares problem: the derivative of a line's sine by the direction, and the weight of its square.
-fn row(evidence: &Evidence, direction: DVec3, focal: f64) -> Option<(DVec3, f64)> {
+/// Row of the least-squares problem.
+struct Row {
+    /// Derivative of the line's sine by the direction.
+    gradient: DVec3,
+    weight: f64,
+    /// Variance of the sine under unit noise of the endpoints: of the segment's direction, and of its midpoint as the
+    /// point sees it, which matters for segments near their vanishing point.
+    variance: f64,
+    sine: f64,
+}
+
+fn row(evidence: &Evidence, direction: DVec3, focal: f64) -> Option<Row> {
     let p = project(direction, focal);
     let bisquare = evidence.agreement(p).powi(2);
     let distance = (p.truncate() - evidence.line.centre * p.z).length();
-    let l = evidence.line.line;
-    (bisquare > 0.0 && distance > 1e-9)
-        .then(|| (DVec3::new(l.x, l.y, l.z / focal) / distance, bisquare * evidence.weight * evidence.stiffness))
+    if !(bisquare > 0.0 && distance > 1e-9) {
+        return None;
+    }
+    let (l, half) = (evidence.line.line, evidence.line.half);
+    let nearness = (half * p.z / distance).powi(2);
+    Some(Row {
+        gradient: DVec3::new(l.x, l.y, l.z / focal) / distance,
+        weight: bisquare * evidence.weight * evidence.stiffness / (1.0 + nearness),
+        variance: (1.0 + nearness) / (half * half),
+        sine: evidence.line.sine(p),
+    })
 }
 
 fn smallest_eigenvector(lines: &[Evidence], direction: DVec3, focal: f64) -> Option<DVec3> {
     let mut normal = [[0.0; 3]; 3];
-    for (gradient, weight) in lines.iter().filter_map(|e| row(e, direction, focal)) {
+    for Row { gradient, weight, .. } in lines.iter().filter_map(|e| row(e, direction, focal)) {
         let g = gradient.to_array();
         for r in 0..3 {
             for c in 0..3 {
@@ -142,20 +160,16 @@ fn smallest_eigenvector(lines: &[Evidence], direction: DVec3, focal: f64) -> Opt
 /// presume, `M` what endpoint noise of the size of the residuals does to them.
 fn deviation(lines: &[Evidence], direction: DVec3, focal: f64) -> Option<f64> {
     let (e1, e2) = direction.any_orthonormal_pair();
-    let p = project(direction, focal);
     let (mut count, mut squares) = (0.0, 0.0);
     let (mut n, mut m) = ([0.0; 3], [0.0; 3]);
-    for evidence in lines {
-        let Some((gradient, weight)) = row(evidence, direction, focal) else { continue };
+    for Row { gradient, weight, variance, sine } in lines.iter().filter_map(|e| row(e, direction, focal)) {
         let (u, v) = (gradient.dot(e1), gradient.dot(e2));
-        let half = evidence.line.half;
-        let noise = weight * weight / (half * half);
         for (i, product) in [u * u, u * v, v * v].into_iter().enumerate() {
             n[i] += weight * product;
-            m[i] += noise * product;
+            m[i] += weight * weight * variance * product;
         }
         count += 1.0;
-        squares += evidence.line.endpoint_distance(p).powi(2);
+        squares += sine * sine / variance;
     }
     let variance = (squares + PRIOR_COUNT * PRIOR_NOISE * PRIOR_NOISE) / ((count - 2.0f64).max(0.0) + PRIOR_COUNT);
     let determinant = n[0] * n[2] - n[1] * n[1];

@@ -26,8 +26,9 @@ pub fn unwarp(photo: &Image, view: &View, mask: &Image, params: &UnwarpParams, j
     let pixel_size = rectangle.densest.max(size.max_element() / params.max_side as f64);
     let side = |length: f64| ((length / pixel_size).round() as usize).clamp(1, params.max_side);
     let (width, height) = (side(size.x), side(size.y));
-    let scale = size / DVec2::new(width as f64, height as f64);
-    let to_plane = DMat3::from_translation(rectangle.low) * DMat3::from_scale(scale);
+    // Square pixels; what rounding adds or takes is shared by both ends.
+    let spare = size - DVec2::new(width as f64, height as f64) * pixel_size;
+    let to_plane = DMat3::from_translation(rectangle.low + spare / 2.0) * DMat3::from_scale(DVec2::splat(pixel_size));
     let to_photo = Homography(plane.to_photo().0 * to_plane).rescaled();
 
     let mut image = resample::warp(&photo.to_rgb()?, &to_photo, width, height, job.part(0.1, 0.8))?;

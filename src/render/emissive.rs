@@ -424,3 +424,110 @@ fn barycentric_in(corners: &[DVec2; 3], p: DVec2) -> Vec2 {
     let b = Vec2::new((d.perp_dot(f) / determinant) as f32, (e.perp_dot(d) / determinant) as f32);
     b.clamp(Vec2::ZERO, Vec2::ONE)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::image::Image;
+    use crate::rng::Rng;
+    use crate::scene::{Material, Mesh, TextureRef};
+
+    /// A slanted triangle with a patchy texture, and one without any.
+    fn scene(side: usize, uvs: [Vec2; 3], wrap: Wrap) -> Scene {
+        let image = Image::from_fn(side, side / 2 + 1, |x, y| {
+            let lit = if (x * 5 + y * 3) % 7 < 3 { (x + 2 * y + 1) as f32 } else { 0.0 };
+            [lit, 0.5 * lit, 0.0]
+        });
+        let mut texture = Texture::new("patches", image.unwrap());
+        texture.wrap = [wrap; 2];
+        let mesh = |material, offset: Vec3| Mesh {
+            material,
+            positions: vec![offset, offset + Vec3::new(2.0, 0.3, 0.0), offset + Vec3::new(0.4, 1.0, 0.7)],
+            uvs: [uvs.to_vec(), Vec::new()],
+            triangles: vec![[0, 1, 2]],
+            ..Mesh::default()
+        };
+        let plain = Material { emission: Vec3::new(0.0, 0.0, 3.0), ..Material::default() };
+        let lit = Material { emission_texture: Some(TextureRef::new(0)), emission: Vec3::splat(2.0), ..plain.clone() };
+        Scene {
+            meshes: vec![mesh(0, Vec3::ZERO), mesh(1, Vec3::Z)],
+            materials: vec![lit, plain],
+            textures: vec![texture],
+            ..Scene::default()
+        }
+    }
+
+    fn emitters(scene: &Scene) -> Emitters {
+        Emitters::build(scene, [(0, 0, 0), (1, 0, 1)].into_iter()).unwrap()
+    }
+
+    fn coordinates() -> Vec<[Vec2; 3]> {
+        vec![
+            [Vec2::ZERO, Vec2::X, Vec2::Y],
+            [Vec2::new(-1.7, 0.2), Vec2::new(2.3, 1.9), Vec2::new(0.4, -2.2)],
+            [Vec2::new(0.31, 0.4), Vec2::new(0.33, 0.41), Vec2::new(0.32, 0.45)],
+        ]
+    }
+
+    #[test]
+    fn points_are_as_dense_as_the_light_they_emit() {
+        let mut rng = Rng::new(21, &[]);
+        for wrap in [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror] {
+            for uvs in coordinates() {
+                let scene = scene(9, uvs, wrap);
+                let emitters = emitters(&scene);
+                let mut disagreed = 0;
+                for _ in 0..5000 {
+                    let v = Vec2::new(rng.next_f32(), rng.next_f32());
+                    let point = emitters.sample(&scene, rng.next_f64(), v).unwrap();
+                    let b = point.barycentric;
+                    assert!(b.min_element() >= 0.0 && b.element_sum() < 1.0 + 1e-5);
+                    // Emission over density is the flux over pi: with one texel to a cell sampling is perfect.
+                    let emission = emitters.emitters[point.emitter].emission(&scene, b).0;
+                    let estimate = f64::from(mean_channel(emission) / point.density) * std::f64::consts::PI;
+                    let stated = emitters.density(&scene, point.emitter, b);
+                    let agrees = (estimate / emitters.power - 1.0).abs() < 1e-3 && stated == point.density;
+                    disagreed += usize::from(!agrees);
+                }
+                // Only points within rounding of a texel's border may be looked up as its neighbour.
+                assert!(disagreed <= 5, "{disagreed} of 5000, {wrap:?}, {uvs:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_flux_is_the_integral_of_the_texture_and_large_textures_share_cells() {
+        for (side, tolerance) in [(9, 0.01), (2200, 0.02)] {
+            let scene = scene(side, [Vec2::ZERO, Vec2::X, Vec2::Y], Wrap::Clamp);
+            let emitters = emitters(&scene);
+            assert!(emitters.density.len() <= MAX_CELLS);
+            let n = 200_000;
+            let mut rng = Rng::new(22, &[]);
+            let mut sum = 0.0;
+            for emitter in &emitters.emitters {
+                for _ in 0..n {
+                    let b = uniform_in_triangle(Vec2::new(rng.next_f32(), rng.next_f32()));
+                    sum += f64::from(mean_channel(emitter.emission(&scene, b).0) * emitter.area) / f64::from(n);
+                }
+            }
+            let ratio = emitters.power / (sum * std::f64::consts::PI);
+            assert!((ratio - 1.0).abs() < tolerance, "{ratio}");
+        }
+    }
+
+    #[test]
+    fn densities_integrate_to_one() {
+        let scene = scene(2200, coordinates()[1], Wrap::Repeat);
+        let emitters = emitters(&scene);
+        let n = 400_000;
+        let mut rng = Rng::new(23, &[]);
+        let mut sum = 0.0;
+        for (index, emitter) in emitters.emitters.iter().enumerate() {
+            for _ in 0..n {
+                let b = uniform_in_triangle(Vec2::new(rng.next_f32(), rng.next_f32()));
+                sum += f64::from(emitters.density(&scene, index, b) * emitter.area) / f64::from(n);
+            }
+        }
+        assert!((sum - 1.0).abs() < 0.01, "{sum}");
+    }
+}

@@ -131,3 +131,60 @@ fn neighbourhood(image: &Image, x: usize, y: usize) -> f32 {
     }
     sum / 9.0
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rng::Rng;
+    use glam::DVec3;
+
+    fn images() -> Vec<Image> {
+        let smooth = Image::from_fn(32, 16, |x, y| [(x + y) as f32 + 0.1, 1.0, (x * y) as f32]);
+        let mut spot = Image::new(40, 20, 3).unwrap();
+        spot.pixel_mut(0, 0).fill(5.0);
+        spot.pixel_mut(39, 12).fill(50.0);
+        vec![smooth.unwrap(), spot, Image::from_fn(1, 1, |_, _| [2.0]).unwrap()]
+    }
+
+    #[test]
+    fn directions_come_with_the_density_that_is_stated() {
+        for image in images() {
+            let environment = Environment::Image(image);
+            let (sampler, _) = EnvironmentSampler::build(&environment).unwrap().unwrap();
+            let mut rng = Rng::new(31, &[]);
+            let mut disagreed = 0;
+            for _ in 0..20_000 {
+                let (direction, density) = sampler.sample(rng.next_f64(), rng.next_f32());
+                assert!((direction.length() - 1.0).abs() < 1e-5);
+                disagreed += usize::from((sampler.density(direction) / density - 1.0).abs() > 1e-4);
+            }
+            // Only directions within rounding of a pixel's border.
+            assert!(disagreed < 20, "{disagreed}");
+        }
+    }
+
+    #[test]
+    fn densities_integrate_to_one_and_estimates_to_the_light() {
+        for image in images() {
+            let environment = Environment::Image(image);
+            let (sampler, mean) = EnvironmentSampler::build(&environment).unwrap().unwrap();
+            let mut rng = Rng::new(32, &[]);
+            let n = 400_000;
+            let (mut density, mut light, mut sampled) = (0.0, 0.0, 0.0);
+            for _ in 0..n {
+                let cosine = 1.0 - 2.0 * rng.next_f64();
+                let (sine, angle) = ((1.0 - cosine * cosine).sqrt(), f64::from(TAU) * rng.next_f64());
+                let d = DVec3::new(sine * angle.cos(), cosine, sine * angle.sin()).as_vec3();
+                let sphere = f64::from(4.0 * PI) / f64::from(n);
+                density += f64::from(sampler.density(d)) * sphere;
+                light += f64::from(mean_channel(radiance(&environment, d))) * sphere;
+                let (d, density) = sampler.sample(rng.next_f64(), rng.next_f32());
+                sampled += f64::from(mean_channel(radiance(&environment, d)) / density) / f64::from(n);
+            }
+            assert!((density - 1.0).abs() < 0.03, "{density}");
+            assert!((sampled / light - 1.0).abs() < 0.05, "{sampled} and {light}");
+            assert!((mean * f64::from(4.0 * PI) / light - 1.0).abs() < 0.05);
+        }
+        assert!(EnvironmentSampler::build(&Environment::Constant(Vec3::ZERO)).unwrap().is_none());
+    }
+}

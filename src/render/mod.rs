@@ -66,12 +66,14 @@ pub struct SurfacePoint {
 
 /// Adds one sample of the irradiance (lux) at a point to a sink; `sample` counts up, `seed` separates estimates. Samples of
 /// one seed are stratified among each other: their mean converges faster than independent ones, best at powers of two.
-/// A point that is not on the scene's surfaces adds nothing.
+/// A point that is not on the scene's surfaces, or on a triangle of no area, adds nothing.
 pub fn irradiance<S: PathSink>(world: &World, point: &SurfacePoint, seed: u64, sample: u32, sink: &mut S) {
     let mesh = world.scene().meshes.get(point.mesh as usize);
     if mesh.is_some_and(|m| (point.triangle as usize) < m.triangles.len()) {
         let vertex = Vertex::new(world, point.mesh, point.triangle, point.barycentric);
-        path::gather(world, &vertex, point.front, &mut Sampler::new(seed, sample), sink);
+        if vertex.normal != Vec3::ZERO {
+            path::gather(world, &vertex, point.front, &mut Sampler::new(seed, sample), sink);
+        }
     }
 }
 

@@ -39,7 +39,7 @@ fn inward_sphere(radius: f32, material: usize) -> Mesh {
         for j in 0..columns {
             let a = i * (columns + 1) + j;
             let b = a + columns + 1;
-            mesh.triangles.extend([[a, a + 1, b], [a + 1, b + 1, b]]);
+            mesh.triangles.extend([[a, b, a + 1], [a + 1, b, b + 1]]);
         }
     }
     mesh
@@ -128,9 +128,9 @@ fn irradiance_under_a_rectangle_is_its_form_factor() {
     };
     let expected = 100.0 * std::f64::consts::PI * 4.0 * parallel_form_factor(0.5, 0.75, 1.5);
     assert_close(&world(scene.clone()), &centre_of(0), expected);
-    // The lamp's back is dark.
+    // The lamp's back is dark, but for the rounding of its two triangles' common plane.
     let above = SurfacePoint { front: false, ..centre_of(1) };
-    assert_eq!(measure(&world(scene.clone()), &above).0, 0.0);
+    assert!(measure(&world(scene.clone()), &above).0 < 1e-6);
     // A window beside it: 0.8 to each side, 1.2 high, standing 0.7 away on the floor's plane.
     let window = quad(Vec3::new(0.7, 0.0, -0.8), Vec3::Z * 1.6, Vec3::Y * 1.2, 1);
     let scene = Scene { meshes: vec![floor, window], ..scene };
@@ -274,6 +274,47 @@ fn scale_changes_nothing() {
     }
 }
 
+#[test]
+fn scattering_alone_finds_the_same_light_as_the_weighed_strategies() {
+    let floor = quad(Vec3::new(-1.0, 0.0, -1.0), Vec3::Z * 2.0, Vec3::X * 2.0, 0);
+    let lamp = quad(Vec3::new(-0.7, 0.8, -0.5), Vec3::X, Vec3::new(0.0, 0.3, 1.5), 1);
+    let shade = quad(Vec3::new(-0.2, 0.4, -0.3), Vec3::X * 0.5, Vec3::Z * 0.5, 2);
+    let image = Image::from_fn(5, 3, |x, y| [((x * 7 + y * 5) % 4) as f32]).unwrap();
+    let shining = Material { emission_texture: Some(TextureRef::new(0)), ..matt(0.0, 10.0) };
+    let scene = Scene {
+        meshes: vec![floor, lamp, shade],
+        materials: vec![matt(0.0, 0.0), shining, matt(0.0, 0.0)],
+        textures: vec![Texture::new("lamp", image)],
+        environment: Some(Environment::Constant(Vec3::splat(0.3))),
+        ..Scene::default()
+    };
+    let world = world(scene);
+    // Surfaces are black: all light is direct. Directions by their cosine, and whatever they meet.
+    let n = 400_000;
+    let (mut sum, mut square) = (0.0, 0.0);
+    let mut rng = crate::rng::Rng::new(5, &[]);
+    for _ in 0..n {
+        let (u, angle) = (rng.next_f32(), std::f32::consts::TAU * rng.next_f32());
+        let direction = Vec3::new(u.sqrt() * angle.cos(), (1.0 - u).sqrt(), u.sqrt() * angle.sin());
+        let ray = crate::scene::accel::Ray::new(Vec3::ZERO, direction);
+        let floor = world.id(0, 0)..world.id(0, 0) + 2;
+        let radiance = match world.accel().closest(&ray, |hit| !floor.contains(&hit.triangle)) {
+            None => 0.3,
+            Some(hit) => world.emitter_of(hit.triangle).map_or(0.0, |e| {
+                let emitter = &world.lights().emitters.emitters[e];
+                emitter.emission(world.scene(), Vec2::new(hit.u, hit.v)).0.x
+            }),
+        };
+        let value = f64::from(radiance) * std::f64::consts::PI;
+        sum += value;
+        square += value * value;
+    }
+    let expected = sum / f64::from(n);
+    let error = ((square / f64::from(n) - expected * expected) / f64::from(n)).sqrt();
+    let (mean, own) = measure(&world, &centre_of(0));
+    assert!((mean - expected).abs() < 4.0 * error.hypot(own), "{mean} ± {own} and {expected} ± {error}");
+}
+
 /// A small room with everything in it: textures, mirror, glass, gloss, alpha, a lamp and a sky.
 fn everything() -> Scene {
     let image = Image::from_fn(16, 16, |x, y| {
@@ -360,8 +401,15 @@ fn energy_is_never_made() {
                 let error = film.variance.data.iter().map(|&v| f64::from(v)).sum::<f64>().sqrt() / 48.0 * 3f64.sqrt();
                 let what = format!("metallic {metallic}, ior {ior}, roughness {roughness}, height {height}: {mean}");
                 assert!(mean < 1.0 + 4.0 * error + 0.003, "{what} ± {error}");
-                let least = if roughness <= 0.2 { 0.95 } else { 0.4 };
+                // Light scattered twice between facets is not modelled: rough and grazing views lose it.
+                let least = if roughness <= 0.2 && height >= 1.0 { 0.95 } else { 0.3 };
                 assert!(mean > least, "{what}");
+                if metallic == 1.0 && roughness == 1.0 {
+                    // The integral of the lobe has a closed form where the facets are spread evenly.
+                    let cosine = f64::from(height) / f64::from(height).hypot(3.0);
+                    let expected = 1.0 - cosine * ((1.0 + cosine) / cosine).ln();
+                    assert!((mean - expected).abs() < 4.0 * error + 0.01 * expected, "{what}, expected {expected}");
+                }
             }
         }
     }
@@ -472,7 +520,7 @@ fn every_contribution_names_the_light_it_came_from() {
     }
     let world = world(everything());
     let mut sink = Sources(Vec::new(), Vec4::ZERO);
-    let point = SurfacePoint { mesh: 0, triangle: 40, barycentric: Vec2::splat(0.3), front: true };
+    let point = SurfacePoint { mesh: 0, triangle: 241, barycentric: Vec2::splat(0.3), front: true };
     (0..2000).for_each(|i| irradiance(&world, &point, 9, i, &mut sink));
     let has = |f: &dyn Fn(&LightSource) -> bool| sink.0.iter().any(f);
     assert!(has(&|s| matches!(s, LightSource::Surface { mesh: 1, triangle: 0 | 1, .. })));

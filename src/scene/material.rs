@@ -52,7 +52,7 @@ pub struct Material {
     pub double_sided: bool,
     /// Share of light that passes through instead of being reflected diffusely, in `[0, 1]`.
     pub transmission: f32,
-    /// Index of refraction of the dielectric, at least 1.
+    /// Index of refraction of the dielectric, at least 1; at 1 it does not reflect at all.
     pub ior: f32,
 }
 
@@ -79,8 +79,8 @@ impl Default for Material {
 }
 
 impl Material {
-    /// A matt material of one colour.
+    /// A perfectly matt material of one colour: an index of refraction of 1 leaves no reflecting layer on top.
     pub fn diffuse(name: &str, base_color: Vec3) -> Self {
-        Self { name: name.into(), base_color, metallic: 0.0, double_sided: true, ..Self::default() }
+        Self { name: name.into(), base_color, metallic: 0.0, ior: 1.0, double_sided: true, ..Self::default() }
     }
 }

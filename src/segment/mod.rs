@@ -26,7 +26,7 @@ pub mod strokes;
 #[cfg(test)]
 mod tests;
 
-pub use distance::{dilate, erode};
+pub use distance::dilate;
 pub use strokes::{Stroke, StrokeSet};
 
 use crate::error::{Error, Result, check_range};

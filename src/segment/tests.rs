@@ -76,7 +76,11 @@ fn the_ceiling_then_its_lamps() {
     let plane = segment(&features, &plane_strokes(), None, &Params::default()).unwrap();
     let agreement = iou(&plane.mask, |i| faces[i] == 0 || faces[i] == 5);
     assert!(agreement >= 0.97, "{agreement} {:?}", plane.model);
-    assert!(plane.error < 0.05, "{}", plane.error);
+    // The error that is claimed covers the true one. It is larger: with one stroke to a surface, each stroke held out
+    // takes a whole surface away, which is what is then feared for every pixel unlike those painted.
+    let is_wrong = |(i, m): (usize, &f32)| (*m > 0.5) != (faces[i] == 0 || faces[i] == 5);
+    let wrong = plane.mask.data.iter().enumerate().filter(|&p| is_wrong(p)).count() as f64 / faces.len() as f64;
+    assert!(wrong <= plane.error && plane.error < 0.1, "{wrong} {}", plane.error);
 
     // The lamps of the first row are painted; those of all rows are found, and nothing off the ceiling.
     let lamp_pixels: Vec<u32> =

@@ -23,7 +23,7 @@ use crate::relight::{self, Solution};
 use crate::render::{self, Film};
 use crate::scene::surface::{Placed, Surface};
 use crate::scene::{Camera, Scene};
-use crate::segment::{self, Segmentation, Stroke};
+use crate::segment::{self, Segmentation, StrokeSet};
 use glam::Vec3;
 use std::sync::Arc;
 use std::time::Instant;
@@ -70,8 +70,7 @@ pub struct Input {
     pub photo: Option<Arc<Image>>,
     /// Depth of the photo, if the caller has it.
     pub depth: Option<(Arc<Image>, DepthKind)>,
-    pub plane_strokes: Vec<Stroke>,
-    pub light_strokes: Vec<Stroke>,
+    pub strokes: StrokeSet,
     pub scene: Option<Arc<Scene>>,
     /// Name of the object or material of the scene that receives the lights.
     pub surface: String,
@@ -84,7 +83,10 @@ pub struct Params {
     pub rectify: rectify::Params,
     pub unwarp: rectify::UnwarpParams,
     pub features: features::Params,
-    pub segment: segment::Params,
+    /// First phase: the plane.
+    pub plane: segment::Params,
+    /// Second phase: the lights in it.
+    pub lights: segment::Params,
     /// `width`, `height` and `scale` are set by the transfer, from the surface's size and the two below.
     pub emission: emission::Params,
     /// Distance of the photo's camera from the lit plane in metres, in `[0.01, 1e4]`: it sets the scale of the pattern.
@@ -104,7 +106,8 @@ impl Default for Params {
             rectify: rectify::Params::default(),
             unwarp: rectify::UnwarpParams::default(),
             features: features::Params::default(),
-            segment: segment::Params::default(),
+            plane: segment::Params::default(),
+            lights: segment::Params::for_lights(),
             emission: emission::Params::default(),
             plane_distance: 1.2,
             max_texels: 2048,

@@ -28,8 +28,9 @@ impl Transfer {
 
     pub(super) fn segment_plane(&mut self, job: Job) -> Result<()> {
         let features = need(&self.results.features, "run stage Features")?;
-        let input = segment::Input { features: &features.image, strokes: &self.input.plane_strokes, within: None };
-        let plane = segment::run(&input, &self.params.segment, job).map_err(|e| e.within("strokes of the plane"))?;
+        let strokes = self.input.strokes.plane_examples();
+        let input = segment::Input { features: &features.image, strokes: &strokes, within: None };
+        let plane = segment::run(&input, &self.params.plane, job).map_err(|e| e.within("strokes of the plane"))?;
         self.results.plane = Some(Arc::new(plane));
         Ok(())
     }
@@ -37,9 +38,9 @@ impl Transfer {
     pub(super) fn segment_lights(&mut self, job: Job) -> Result<()> {
         let features = need(&self.results.features, "run stage Features")?;
         let plane = need(&self.results.plane, "run stage Plane")?;
-        let input =
-            segment::Input { features: &features.image, strokes: &self.input.light_strokes, within: Some(&plane.mask) };
-        let lights = segment::run(&input, &self.params.segment, job).map_err(|e| e.within("strokes of the lights"))?;
+        let strokes = &self.input.strokes.lights;
+        let input = segment::Input { features: &features.image, strokes, within: Some(&plane.mask) };
+        let lights = segment::run(&input, &self.params.lights, job).map_err(|e| e.within("strokes of the lights"))?;
         self.results.lights = Some(Arc::new(lights));
         Ok(())
     }

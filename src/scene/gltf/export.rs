@@ -278,11 +278,12 @@ impl Writer {
         }
         let mut root = Map::new();
         root.insert("asset".into(), json!({ "version": "2.0", "generator": "luxfer" }));
-        let nodes: Vec<usize> = (0..self.nodes.len()).collect();
-        root.insert("scene".into(), 0.into());
-        // An empty list is not valid glTF; an absent one is.
-        let scene = if nodes.is_empty() { json!({}) } else { json!({ "nodes": nodes }) };
-        root.insert("scenes".into(), json!([scene]));
+        // A scene without nodes is not valid glTF; a file without scenes is.
+        if !self.nodes.is_empty() {
+            let nodes: Vec<usize> = (0..self.nodes.len()).collect();
+            root.insert("scene".into(), 0.into());
+            root.insert("scenes".into(), json!([{ "nodes": nodes }]));
+        }
         let lists = [
             ("nodes", self.nodes),
             ("meshes", self.meshes),

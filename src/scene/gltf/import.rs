@@ -239,7 +239,11 @@ fn roots(file: &File) -> Result<Vec<usize>> {
                     *flag = true;
                 }
             }
-            Ok((0..root.nodes.len()).filter(|&i| !is_child[i]).collect())
+            let roots: Vec<usize> = (0..root.nodes.len()).filter(|&i| !is_child[i]).collect();
+            if roots.is_empty() && !root.nodes.is_empty() {
+                return Err(Error::format("every node is the child of another: the nodes form a circle"));
+            }
+            Ok(roots)
         }
     }
 }

@@ -11,7 +11,7 @@ const PROBES: usize = 128;
 /// Triangles that share a bounding box.
 const CHUNK: usize = 64;
 /// How much more a side counts that all cameras are on.
-const CAMERA_WEIGHT: f64 = 1.0;
+const CAMERA_WEIGHT: f64 = 4.0;
 
 /// The plane that faces the room, and its unit normal into the room.
 ///

@@ -1,0 +1,344 @@
+//! The whole stage on rooms and planes whose cameras are known.
+
+use super::vanishing::from_segments;
+use super::*;
+use crate::error::ErrorKind;
+use crate::exec::Pool;
+use crate::geometry::FocalSource;
+use crate::job::Monitor;
+use crate::rng::Rng;
+use glam::{DMat3, DQuat};
+
+const SIZE: (usize, usize) = (800, 600);
+
+fn camera(yaw: f64, pitch: f64, roll: f64, focal: f64) -> Perspective {
+    let turn = DQuat::from_rotation_z(roll) * DQuat::from_rotation_x(pitch) * DQuat::from_rotation_y(yaw);
+    Perspective {
+        focal,
+        focal_source: FocalSource::Given,
+        principal: DVec2::new(SIZE.0 as f64, SIZE.1 as f64) / 2.0,
+        axes: DMat3::from_quat(turn),
+    }
+}
+
+/// Segments along the three axes of a room, their end points moved by Gaussian noise.
+fn room(camera: &Perspective, per_axis: [usize; 3], noise: f64, seed: u64) -> Vec<Segment> {
+    let mut rng = Rng::new(seed, &[]);
+    let mut out = Vec::new();
+    for (axis, count) in per_axis.into_iter().enumerate() {
+        let vanishing = camera.vanishing_point(axis);
+        while out.len() < per_axis[..axis].iter().sum::<usize>() + count {
+            let a = DVec2::new(rng.next_f64() * SIZE.0 as f64, rng.next_f64() * SIZE.1 as f64);
+            let towards = (vanishing.truncate() - a * vanishing.z).normalize();
+            let b = a + towards * (30.0 + 150.0 * rng.next_f64());
+            let moved = |p: DVec2, rng: &mut Rng| p + DVec2::new(rng.normal(), rng.normal()) * noise;
+            out.push(Segment { a: moved(a, &mut rng), b: moved(b, &mut rng) });
+        }
+    }
+    out
+}
+
+fn angle(a: DVec3, b: DVec3) -> f64 {
+    a.cross(b).length().atan2(a.dot(b).abs())
+}
+
+fn direction_of(camera: &Perspective, point: DVec3) -> DVec3 {
+    (camera.intrinsics().inverse() * point).normalize()
+}
+
+fn view_of(segments: &[Segment], params: &Params) -> Result<View> {
+    view_from_segments(segments, SIZE.0, SIZE.1, params, Monitor::default().job())
+}
+
+#[test]
+fn exact_segments_give_exact_vanishing_points_and_the_camera() {
+    for (i, (yaw, pitch, roll, focal)) in
+        [(0.5, 0.3, 0.05, 700.0), (-0.7, -0.2, 0.0, 500.0), (0.3, 0.6, -0.1, 1200.0)].into_iter().enumerate()
+    {
+        let truth = camera(yaw, pitch, roll, focal);
+        let view = view_of(&room(&truth, [30, 30, 30], 0.0, i as u64), &Params::default()).unwrap();
+        for axis in 0..3 {
+            let found = direction_of(&truth, view.vanishing_points[axis].point);
+            let nearest = (0..3).map(|k| angle(found, truth.axes.col(k))).fold(9.0, f64::min);
+            assert!(nearest < 1e-6, "{nearest}");
+        }
+        assert!((view.perspective.focal / focal - 1.0).abs() < 1e-3, "{}", view.perspective.focal);
+        let axes = view.perspective.axes;
+        assert!((axes.determinant() - 1.0).abs() < 1e-12 && axes.y_axis.y > 0.0 && axes.z_axis.z > 0.0);
+        assert!((axes.transpose() * axes - DMat3::IDENTITY).to_cols_array().iter().all(|v| v.abs() < 1e-12));
+    }
+}
+
+#[test]
+fn errors_under_noise_are_as_stated() {
+    let (mut sum, mut count) = (0.0, 0.0);
+    for seed in 0..40 {
+        let truth = camera(0.5, 0.3, 0.05, 700.0);
+        let params = Params { focal: Some(700.0), seed, ..Params::default() };
+        let view = view_of(&room(&truth, [40, 40, 40], 0.5, seed), &params).unwrap();
+        for v in &view.vanishing_points {
+            let found = direction_of(&truth, v.point);
+            let error = (0..3).map(|k| angle(found, truth.axes.col(k))).fold(9.0, f64::min);
+            sum += (error / v.error).powi(2);
+            count += 1.0;
+        }
+    }
+    // The mean of 120 squared ratios, each with 2 degrees of freedom: standard deviation 0.09, six of them.
+    let ratio = sum / count;
+    assert!((0.45..1.55).contains(&ratio), "{ratio}");
+}
+
+#[test]
+fn points_at_the_centre_and_at_infinity_are_exact() {
+    let truth = camera(0.0, 0.0, 0.0, 680.0);
+    let view = view_of(&room(&truth, [20, 20, 20], 0.0, 3), &Params::default()).unwrap();
+    for (axis, want) in [DVec3::X, DVec3::Y, truth.principal.extend(1.0)].into_iter().enumerate() {
+        assert!(angle(direction_of(&truth, view.vanishing_points[axis].point), direction_of(&truth, want)) < 1e-9);
+    }
+    assert_eq!(view.vanishing_points[0].point.z, 0.0);
+    assert_eq!(view.perspective.focal_source, FocalSource::Assumed);
+    assert!((view.perspective.focal - 0.85 * 800.0).abs() < 1e-6);
+}
+
+#[test]
+fn one_family_gives_its_point_wherever_it_is() {
+    for far in [300.0, 5e3, 1e6, 1e12, f64::INFINITY] {
+        let along = DVec2::from_angle(0.4);
+        let centre = DVec2::new(400.0, 300.0);
+        let point = if far.is_finite() { (centre + along * far).extend(1.0) } else { along.extend(0.0) };
+        let segments: Vec<Segment> = (0..24)
+            .map(|i| {
+                let a = DVec2::new(50.0 + 31.0 * i as f64, (i * i * 37 % 500) as f64);
+                let towards = (point.truncate() - a * point.z).normalize();
+                Segment { a, b: a + towards * 60.0 }
+            })
+            .collect();
+        let found = from_segments(&segments, 800, 600, 3, &Params::default(), Monitor::default().job()).unwrap();
+        let ray = |p: DVec3| (p.truncate() - centre * p.z).extend(p.z * 680.0).normalize();
+        let error = angle(ray(found.points[0].point), ray(point));
+        assert!(error < 1e-6 && found.points[0].support == 24, "{far}: {error}");
+    }
+}
+
+#[test]
+fn two_families_give_the_third() {
+    let truth = camera(0.5, 0.3, 0.05, 700.0);
+    let view = view_of(&room(&truth, [40, 0, 40], 0.1, 8), &Params::default()).unwrap();
+    assert_eq!(view.vanishing_points[1].support, 0);
+    assert!(angle(view.perspective.axes.y_axis, truth.axes.y_axis) < 0.01);
+    assert!((view.perspective.focal / 700.0 - 1.0).abs() < 0.02);
+    assert_eq!(view.perspective.focal_source, FocalSource::VanishingPoints);
+}
+
+#[test]
+fn sets_without_a_vanishing_point_are_refused() {
+    let s = |ax: f64, ay: f64, bx: f64, by: f64| Segment { a: DVec2::new(ax, ay), b: DVec2::new(bx, by) };
+    let one = s(10.0, 10.0, 200.0, 50.0);
+    for bad in [
+        vec![],
+        vec![one],
+        vec![one; 50],
+        vec![s(5.0, 5.0, 5.0, 5.0); 10],
+        vec![s(f64::NAN, 0.0, 1.0, 1.0), s(0.0, f64::INFINITY, 1.0, 1.0)],
+    ] {
+        let error = view_of(&bad, &Params::default()).unwrap_err();
+        assert_eq!(error.kind, ErrorKind::Degenerate);
+        assert!(error.message.contains("no lines found"));
+    }
+    let two = [one, s(10.0, 500.0, 300.0, 400.0)];
+    assert!(view_of(&two, &Params::default()).is_ok());
+    for bad in [Params { focal: Some(-1.0), ..Params::default() }, Params { hough_band: f64::NAN, ..Params::default() }]
+    {
+        assert_eq!(view_of(&two, &bad).unwrap_err().kind, ErrorKind::InvalidArgument);
+    }
+}
+
+#[test]
+fn a_hundred_thousand_segments_take_their_time_but_not_more() {
+    let truth = camera(0.5, 0.3, 0.05, 700.0);
+    let segments = room(&truth, [40_000, 30_000, 30_000], 0.3, 2);
+    let start = std::time::Instant::now();
+    let view = view_of(&segments, &Params::default()).unwrap();
+    assert!(start.elapsed().as_secs_f64() < 10.0);
+    assert!((view.perspective.focal / 700.0 - 1.0).abs() < 0.02);
+}
+
+/// A linear photo of a ceiling in the plane `y = -1` that ends 6 units from the camera's axes, with lamps of 0.3 × 0.15 every 0.6 × 0.4 units.
+fn ceiling(camera: &Perspective) -> Image {
+    const SUB: usize = 3;
+    let lamp = |p: DVec2| {
+        let q = DVec2::new(p.x.rem_euclid(0.6), p.y.rem_euclid(0.4));
+        if q.x < 0.3 && q.y < 0.15 { 0.9f32 } else { 0.2 }
+    };
+    Image::from_fn(SIZE.0, SIZE.1, |x, y| {
+        let mut sum = 0.0;
+        for i in 0..SUB * SUB {
+            let sub = DVec2::new((i % SUB) as f64 + 0.5, (i / SUB) as f64 + 0.5) / SUB as f64;
+            let ray = camera.axes.transpose() * camera.ray(DVec2::new(x as f64, y as f64) + sub);
+            sum += {
+                let at = DVec2::new(ray.x, ray.z) / -ray.y;
+                let wall = ray.y >= 0.0 || at.abs().max_element() > 6.0;
+                if wall { 0.1 } else { lamp(at) }
+            };
+        }
+        [sum / (SUB * SUB) as f32; 3]
+    })
+    .unwrap()
+}
+
+/// True coordinates on that ceiling of a photo point.
+fn on_ceiling(camera: &Perspective, p: DVec2) -> DVec2 {
+    let ray = camera.axes.transpose() * camera.ray(p);
+    DVec2::new(ray.x, ray.z) / -ray.y
+}
+
+#[test]
+fn a_lamp_grid_unwarps_to_right_angles_true_aspect_and_nothing_mirrored() {
+    let truth = camera(0.4, -0.55, 0.03, 560.0);
+    let photo = ceiling(&truth);
+    let mask = Image::from_fn(SIZE.0, SIZE.1, |_, _| [1.0f32]).unwrap();
+    let monitor = Monitor::default();
+    let view = find_view(&photo, &Params::default(), monitor.job()).unwrap();
+    assert!((view.perspective.focal / 560.0 - 1.0).abs() < 0.02, "{}", view.perspective.focal);
+    let flat = unwarp(&photo, &view, &mask, &UnwarpParams::default(), monitor.job()).unwrap();
+    // Sides of the rectangle in true units: the plane's distance is 1, so a pixel's size is known too.
+    let corner = flat.corners.map(|c| on_ceiling(&truth, c));
+    let (across, down) = (corner[1] - corner[0], corner[3] - corner[0]);
+    let (w, h) = (flat.image.width as f64, flat.image.height as f64);
+    assert!((across.length() / (w * flat.pixel_size) - 1.0).abs() < 0.01);
+    assert!((down.length() / (h * flat.pixel_size) - 1.0).abs() < 0.01);
+    assert!((across.length() / down.length() * h / w - 1.0).abs() < 0.01);
+    assert!(across.normalize().dot(down.normalize()).abs() < 0.01);
+    assert!(flat.aspect_confidence > 0.8);
+    // Valid texels lie on the camera's side, and show the lamps where they are.
+    let mut agree = (0, 0);
+    for y in 0..flat.image.height {
+        for x in 0..flat.image.width {
+            let p = flat.to_photo.apply(DVec2::new(x as f64 + 0.5, y as f64 + 0.5));
+            let ray = truth.axes.transpose() * truth.ray(p);
+            if flat.valid.pixel(x, y)[0] > 0.0 {
+                assert!(ray.y < 0.0);
+                let q = on_ceiling(&truth, p);
+                let lamp = q.x.rem_euclid(0.6) < 0.3 && q.y.rem_euclid(0.4) < 0.15;
+                agree.0 += usize::from((flat.image.pixel(x, y)[0] > 0.55) == lamp);
+                agree.1 += 1;
+            }
+        }
+    }
+    assert!(agree.1 > 10_000 && agree.0 as f64 > 0.95 * agree.1 as f64, "{agree:?}");
+    // A homography from the corners, as the paper has it, is the same map.
+    let rectangle = [DVec2::ZERO, DVec2::new(w, 0.0), DVec2::new(w, h), DVec2::new(0.0, h)];
+    let paper = Homography::from_corners(rectangle, flat.corners).unwrap();
+    let p = DVec2::new(0.3 * w, 0.7 * h);
+    assert!(paper.apply(p).distance(flat.to_photo.apply(p)) < 1e-6);
+}
+
+#[test]
+fn the_printed_method_finds_the_same_room() {
+    let truth = camera(0.4, -0.55, 0.03, 560.0);
+    let photo = ceiling(&truth);
+    for params in [
+        Params::printed(),
+        Params { metric: Metric::Segment, ..Params::printed() },
+        Params { detector: LineDetector::Hough, ..Params::default() },
+    ] {
+        let view = find_view(&photo, &params, Monitor::default().job()).unwrap();
+        for axis in [0, 2] {
+            let nearest = view
+                .vanishing_points
+                .iter()
+                .map(|v| angle(direction_of(&truth, v.point), truth.axes.col(axis)))
+                .fold(9.0, f64::min);
+            assert!(nearest < 0.05, "{params:?}: axis {axis} {nearest}");
+        }
+    }
+}
+
+#[test]
+fn results_do_not_depend_on_the_number_of_threads() {
+    let truth = camera(0.4, -0.55, 0.03, 560.0);
+    let photo = ceiling(&truth);
+    let mask = Image::from_fn(SIZE.0, SIZE.1, |_, y| [f32::from(y < 200)]).unwrap();
+    let monitor = Monitor::default();
+    let run = |threads: usize| {
+        Pool::new(threads).unwrap().run(|| {
+            let view = find_view(&photo, &Params::default(), monitor.job()).unwrap();
+            unwarp(&photo, &view, &mask, &UnwarpParams::default(), monitor.job()).unwrap()
+        })
+    };
+    let (a, b) = (run(1), run(3));
+    assert!(a.image == b.image && a.to_photo == b.to_photo && a.corner_error == b.corner_error);
+}
+
+#[test]
+fn images_without_lines_are_refused_and_never_crash() {
+    let noise = |x: usize, y: usize| Rng::new(1, &[x as u64, y as u64]).next_f32();
+    let images = [
+        Image::from_fn(64, 64, |_, _| [0.5f32; 3]).unwrap(),
+        Image::from_fn(1, 1, |_, _| [0.5f32; 3]).unwrap(),
+        Image::from_fn(1, 300, |_, y| [y as f32; 3]).unwrap(),
+        Image::from_fn(300, 2, |x, _| [x as f32; 3]).unwrap(),
+        Image::from_fn(64, 64, |_, _| [f32::NAN; 3]).unwrap(),
+        Image::from_fn(64, 64, |_, _| [f32::INFINITY; 3]).unwrap(),
+        Image::from_fn(64, 64, |_, _| [-1.0f32; 3]).unwrap(),
+    ];
+    for detector in [LineDetector::Regions, LineDetector::Hough] {
+        let params = Params { detector, ..Params::default() };
+        for image in &images {
+            let error = find_view(image, &params, Monitor::default().job()).unwrap_err();
+            assert_eq!(error.kind, ErrorKind::Degenerate);
+        }
+        let noisy = Image::from_fn(200, 150, |x, y| [noise(x, y); 3]).unwrap();
+        let found = find_segments(&noisy, &params, Monitor::default().job()).unwrap();
+        assert!(found.iter().all(|s| s.a.is_finite() && s.b.is_finite()));
+    }
+}
+
+#[test]
+fn planes_that_cannot_be_unwarped_say_why() {
+    let truth = camera(0.0, 0.0, 0.0, 700.0);
+    let view =
+        view_of(&room(&truth, [20, 20, 20], 0.0, 3), &Params { focal: Some(700.0), ..Params::default() }).unwrap();
+    let photo = Image::from_fn(SIZE.0, SIZE.1, |_, _| [0.5f32; 3]).unwrap();
+    let mask = |f: &dyn Fn(usize, usize) -> bool| Image::from_fn(SIZE.0, SIZE.1, |x, y| [f32::from(f(x, y))]).unwrap();
+    let run = |mask: &Image, params: UnwarpParams| unwarp(&photo, &view, mask, &params, Monitor::default().job());
+    let horizontal = UnwarpParams { axes: Some([0, 2]), ..UnwarpParams::default() };
+    let empty = run(&mask(&|_, _| false), UnwarpParams::default()).unwrap_err();
+    assert!(empty.kind == ErrorKind::Degenerate && empty.message.contains("mask is empty"));
+    let edge = run(&mask(&|_, y| (297..303).contains(&y)), horizontal.clone()).unwrap_err();
+    assert!(edge.kind == ErrorKind::Degenerate && edge.message.contains("edge-on"));
+    for bad in [
+        UnwarpParams { axes: Some([0, 0]), ..horizontal.clone() },
+        UnwarpParams { axes: Some([0, 3]), ..horizontal.clone() },
+        UnwarpParams { max_side: 15, ..horizontal.clone() },
+        UnwarpParams { max_magnification: 0.0, ..horizontal.clone() },
+    ] {
+        assert_eq!(run(&mask(&|_, y| y < 200), bad).unwrap_err().kind, ErrorKind::InvalidArgument);
+    }
+    // A single marked pixel, and a ceiling that reaches across the horizon.
+    assert!(run(&mask(&|x, y| x == 400 && y == 10), horizontal.clone()).is_ok());
+    let across = run(&mask(&|_, y| y < 400), horizontal).unwrap();
+    assert!(across.corners.iter().all(|c| c.is_finite() && c.y < 300.0));
+}
+
+#[test]
+fn a_minified_checker_averages_and_the_identity_is_the_identity() {
+    let checker = Image::from_fn(400, 400, |x, y| [f32::from((x + y) % 2 == 0)]).unwrap();
+    let monitor = Monitor::default();
+    let shrink = Homography(DMat3::from_scale(DVec2::splat(8.3)));
+    let small = warp(&checker, &shrink, 48, 48, monitor.job()).unwrap();
+    for y in 1..46 {
+        for x in 1..46 {
+            assert!((small.pixel(x, y)[0] - 0.5).abs() < 0.01, "{}", small.pixel(x, y)[0]);
+        }
+    }
+    let same = warp(&checker, &Homography(DMat3::IDENTITY), 400, 400, monitor.job()).unwrap();
+    assert!(same.data.iter().zip(&checker.data).all(|(a, b)| (a - b).abs() < 1e-6));
+    // What is outside or behind the camera is 0.
+    let away = Homography(DMat3::from_translation(DVec2::new(1e4, 0.0)));
+    assert!(warp(&checker, &away, 8, 8, monitor.job()).unwrap().data.iter().all(|&v| v == 0.0));
+    let white = Image::from_fn(50, 50, |_, _| [1.0f32]).unwrap();
+    let tilted = DMat3::from_cols(DVec3::new(1.0, 0.0, 0.0), DVec3::new(0.0, 1.0, -0.025), DVec3::Z);
+    let seen = warp(&white, &Homography(tilted), 50, 78, monitor.job()).unwrap();
+    assert!((41..78).all(|y| seen.row(y).iter().all(|&v| v == 0.0)));
+}
