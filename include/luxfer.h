@@ -642,6 +642,193 @@ luxfer_status luxfer_scene_get_camera(luxfer_scene *scene,
                                       luxfer_camera_params *params);
 
 /* ====================================================================================================================
+ * Rectification
+ *
+ * From the straight lines of a photo to vanishing points and the camera, and, where a mask marks a plane, to that plane
+ * seen straight on. Image points are in pixels, x right, y down, the top-left pixel's centre at (0.5, 0.5). Room axes 0 and
+ * 2 are horizontal, axis 1 is vertical; camera space is x right, y down, z forward.
+ * ==================================================================================================================== */
+
+/** Lines, vanishing points and the unwarped plane of a photo. See luxfer_rectify_create. */
+typedef struct luxfer_rectify luxfer_rectify;
+
+/** How lines are found: a LUXFER_LINES_ value. */
+typedef int32_t luxfer_lines;
+
+/** How vanishing points are found: a LUXFER_SEARCH_ value. */
+typedef int32_t luxfer_search;
+
+/** How far a vanishing point is from a line, in LUXFER_SEARCH_SUCCESSIVE: a LUXFER_METRIC_ value. */
+typedef int32_t luxfer_metric;
+
+/** Settings of a rectification. Fill them with luxfer_rectify_params_init. */
+typedef struct luxfer_rectify_params {
+    /** sizeof(luxfer_rectify_params), set by luxfer_rectify_params_init. */
+    uint32_t struct_size;
+    /** LUXFER_LINES_ value; default LUXFER_LINES_REGIONS. */
+    luxfer_lines detector;
+    /** LUXFER_SEARCH_ value; default LUXFER_SEARCH_MANHATTAN. */
+    luxfer_search search;
+    /** LUXFER_METRIC_ value; default LUXFER_METRIC_SEGMENT. */
+    luxfer_metric metric;
+    /**
+     * Half-width in radians of the band around the gradient's direction that votes for a line, in (0, pi/2]; default 2.5
+     * degrees.
+     */
+    double hough_band;
+    /** Focal length in pixels, > 0, or 0, the default: unknown. */
+    double focal;
+    /** Principal point in pixels; NaN, the default: the image's centre. */
+    double principal[2];
+    /** The two room axes that the plane spans, each 0, 1 or 2; -1, the default: found from the lines in it. */
+    int32_t plane_axes[2];
+    /**
+     * Longest side of the unwarped image in pixels, in [16, 16384]; default 2048. The photo's own density decides below.
+     */
+    uint32_t max_side;
+    /** Must be 0. */
+    uint32_t reserved;
+    /** Largest magnification of the photo, > 0; default 6. What is further away is cut off. */
+    double max_magnification;
+    /** Seed of the search; default 1. */
+    uint64_t seed;
+} luxfer_rectify_params;
+
+/** An image of a rectification: a LUXFER_RECTIFY_ value. */
+typedef int32_t luxfer_rectify_image;
+
+/** Where a focal length came from: a LUXFER_FOCAL_ value. */
+typedef int32_t luxfer_focal_source;
+
+/** What the lines of a photo say about its camera, and how the plane was unwarped. Set struct_size before the call. */
+typedef struct luxfer_rectify_report {
+    /** sizeof(luxfer_rectify_report), set by the caller. */
+    uint32_t struct_size;
+    /** Number of line segments found. */
+    uint32_t segments;
+    /** Vanishing points of the room axes, homogeneous pixels of unit length; the third coordinate is 0 at infinity. */
+    double vanishing_points[3][3];
+    /** Standard deviation of their directions in camera space, in radians. */
+    double vanishing_errors[3];
+    /** Number of segments that agree with each; 0 = derived from the other two. */
+    uint32_t vanishing_support[3];
+    /** LUXFER_FOCAL_ value. */
+    luxfer_focal_source focal_source;
+    /** Focal length in pixels. */
+    double focal;
+    /** Principal point in pixels. */
+    double principal[2];
+    /** Room axes as unit vectors in camera space. */
+    double axes[3][3];
+    /** 1 if the plane has been unwarped, else 0, and what follows is 0. */
+    uint32_t is_unwarped;
+    /** Must be 0. */
+    uint32_t reserved;
+    /** The map from unwarped pixels to photo pixels, row by row. */
+    double to_photo[9];
+    /** Corners of the unwarped rectangle in the photo, x and y. */
+    double corners[4][2];
+    /** Expected error of each corner, in unwarped pixels. */
+    double corner_errors[4];
+    /** Size of an unwarped pixel as a share of the camera's distance from the plane. */
+    double pixel_size;
+    /** Trust in the aspect ratio, in [0, 1]: low where the focal length had to be assumed. */
+    double aspect_confidence;
+} luxfer_rectify_report;
+
+/** Regions of like gradient direction, with sub-pixel end points. */
+#define LUXFER_LINES_REGIONS 0
+
+/** The paper's: gradient-restricted Hough transform of Canny edges. */
+#define LUXFER_LINES_HOUGH 1
+
+/** Three orthogonal directions and the focal length at once, then each refined freely. */
+#define LUXFER_SEARCH_MANHATTAN 0
+
+/** The paper's: one group of lines after the other. */
+#define LUXFER_SEARCH_SUCCESSIVE 1
+
+/** The paper's measure on the segment that was detected, finite for vanishing points at infinity. */
+#define LUXFER_METRIC_SEGMENT 0
+
+/** As printed in the paper (Eq. 2), on the whole visible line. */
+#define LUXFER_METRIC_VISIBLE_LINE 1
+
+/** The caller gave it. */
+#define LUXFER_FOCAL_GIVEN 0
+
+/** From vanishing points of orthogonal directions. */
+#define LUXFER_FOCAL_FROM_VANISHING_POINTS 1
+
+/** A guess, 0.85 of the image's width. */
+#define LUXFER_FOCAL_ASSUMED 2
+
+/** The plane seen straight on, linear RGB. */
+#define LUXFER_RECTIFY_UNWARPED 0
+
+/** 1 where the photo shows the plane, else 0; 1 channel. */
+#define LUXFER_RECTIFY_VALID 1
+
+/**
+ * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+ */
+luxfer_status luxfer_rectify_params_init(luxfer_rectify_params *params,
+                                         size_t size);
+
+/** Creates the stage. The caller releases *rectify. Any thread. */
+luxfer_status luxfer_rectify_create(luxfer_context *context, luxfer_rectify **rectify);
+
+/** Sets the photo: linear RGB. Any thread. */
+luxfer_status luxfer_rectify_set_photo(luxfer_rectify *rectify, luxfer_image *photo);
+
+/**
+ * Sets the mask of the plane to unwarp, 1 on it and 0 elsewhere; 1 channel, the photo's size. mask may be NULL: then only
+ * lines and vanishing points are found. Any thread.
+ */
+luxfer_status luxfer_rectify_set_mask(luxfer_rectify *rectify,
+                                      luxfer_image *mask);
+
+/**
+ * Starts a job that finds lines, vanishing points and the camera, unless the same photo's are known from before, and
+ * unwarps the plane if its mask is set. params may be NULL for the defaults. The caller releases *job. Any thread.
+ * LUXFER_INVALID_OPERATION if the photo is missing or a job runs already. The job may end with LUXFER_DEGENERATE if there
+ * are no lines or the plane is seen edge-on, LUXFER_INVALID_ARGUMENT if sizes differ or a setting is out of range.
+ */
+luxfer_status luxfer_rectify_start(luxfer_rectify *rectify,
+                                   const luxfer_rectify_params *params,
+                                   luxfer_job **job);
+
+/**
+ * Gets an image of the result; which is a LUXFER_RECTIFY_ value. The caller releases *image. Any thread.
+ * LUXFER_NOT_READY before a job with a mask has succeeded.
+ */
+luxfer_status luxfer_rectify_get_image(luxfer_rectify *rectify,
+                                       luxfer_rectify_image which,
+                                       luxfer_image **image);
+
+/**
+ * Unwarps another image of the photo's size, such as the confidence of the lights, as the plane was; outside the photo it
+ * becomes 0. Returns when it is done, which takes some milliseconds for each megapixel. The caller releases *warped. Any
+ * thread.
+ * LUXFER_NOT_READY before a job with a mask has succeeded; LUXFER_INVALID_ARGUMENT if the size differs.
+ */
+luxfer_status luxfer_rectify_warp(luxfer_rectify *rectify,
+                                  luxfer_image *source,
+                                  luxfer_image **warped);
+
+/**
+ * Tells what was found and how sure it is. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded.
+ */
+luxfer_status luxfer_rectify_get_report(luxfer_rectify *rectify, luxfer_rectify_report *report);
+
+/** Adds a reference. Any thread. */
+luxfer_status luxfer_rectify_retain(luxfer_rectify *rectify);
+
+/** Gives a reference back; a job that runs goes on. Any thread. */
+luxfer_status luxfer_rectify_release(luxfer_rectify *rectify);
+
+/* ====================================================================================================================
  * Features
  *
  * What segmentation knows of each pixel of a photo: ten channels, L*, a*, b* (CIELAB, D65), depth, position x, y, z and
@@ -919,171 +1106,6 @@ luxfer_status luxfer_segment_retain(luxfer_segment *segment);
 
 /** Gives a reference back; a job that runs goes on. Any thread. */
 luxfer_status luxfer_segment_release(luxfer_segment *segment);
-
-/* ====================================================================================================================
- * Rectification
- *
- * From the straight lines of a photo to vanishing points and the camera, and, where a mask marks a plane, to that plane
- * seen straight on. Image points are in pixels, x right, y down, the top-left pixel's centre at (0.5, 0.5). Room axes 0 and
- * 2 are horizontal, axis 1 is vertical; camera space is x right, y down, z forward.
- * ==================================================================================================================== */
-
-/** Lines, vanishing points and the unwarped plane of a photo. See luxfer_rectify_create. */
-typedef struct luxfer_rectify luxfer_rectify;
-
-/** How far a vanishing point is from a line: a LUXFER_METRIC_ value. */
-typedef int32_t luxfer_metric;
-
-/** Settings of a rectification. Fill them with luxfer_rectify_params_init. */
-typedef struct luxfer_rectify_params {
-    /** sizeof(luxfer_rectify_params), set by luxfer_rectify_params_init. */
-    uint32_t struct_size;
-    /** LUXFER_METRIC_ value; default LUXFER_METRIC_SEGMENT. */
-    luxfer_metric metric;
-    /**
-     * Half-width in radians of the band around the gradient's direction that votes for a line, in (0, pi/2]; default 2.5
-     * degrees.
-     */
-    double hough_band;
-    /** Focal length in pixels, > 0, or 0, the default: unknown. */
-    double focal;
-    /** Principal point in pixels; NaN, the default: the image's centre. */
-    double principal[2];
-    /** The two room axes that the plane spans, each 0, 1 or 2; -1, the default: found from the lines in it. */
-    int32_t plane_axes[2];
-    /**
-     * Longest side of the unwarped image in pixels, in [16, 16384]; default 2048. The photo's own density decides below.
-     */
-    uint32_t max_side;
-    /** Must be 0. */
-    uint32_t reserved;
-    /** Largest magnification of the photo, > 0; default 6. What is further away is cut off. */
-    double max_magnification;
-    /** Seed of the search; default 1. */
-    uint64_t seed;
-} luxfer_rectify_params;
-
-/** An image of a rectification: a LUXFER_RECTIFY_ value. */
-typedef int32_t luxfer_rectify_image;
-
-/** Where a focal length came from: a LUXFER_FOCAL_ value. */
-typedef int32_t luxfer_focal_source;
-
-/** What the lines of a photo say about its camera, and how the plane was unwarped. Set struct_size before the call. */
-typedef struct luxfer_rectify_report {
-    /** sizeof(luxfer_rectify_report), set by the caller. */
-    uint32_t struct_size;
-    /** Number of line segments found. */
-    uint32_t segments;
-    /** Vanishing points of the room axes, homogeneous pixels of unit length; the third coordinate is 0 at infinity. */
-    double vanishing_points[3][3];
-    /** Standard deviation of their directions in camera space, in radians. */
-    double vanishing_errors[3];
-    /** Number of segments that agree with each; 0 = derived from the other two. */
-    uint32_t vanishing_support[3];
-    /** LUXFER_FOCAL_ value. */
-    luxfer_focal_source focal_source;
-    /** Focal length in pixels. */
-    double focal;
-    /** Principal point in pixels. */
-    double principal[2];
-    /** Room axes as unit vectors in camera space. */
-    double axes[3][3];
-    /** 1 if the plane has been unwarped, else 0, and what follows is 0. */
-    uint32_t is_unwarped;
-    /** Must be 0. */
-    uint32_t reserved;
-    /** The map from unwarped pixels to photo pixels, row by row. */
-    double to_photo[9];
-    /** Corners of the unwarped rectangle in the photo, x and y. */
-    double corners[4][2];
-    /** Expected error of each corner, in unwarped pixels. */
-    double corner_errors[4];
-    /** Size of an unwarped pixel as a share of the camera's distance from the plane. */
-    double pixel_size;
-    /** Trust in the aspect ratio, in [0, 1]: low where the focal length had to be assumed. */
-    double aspect_confidence;
-} luxfer_rectify_report;
-
-/** The paper's measure on the segment that was detected, finite for vanishing points at infinity. */
-#define LUXFER_METRIC_SEGMENT 0
-
-/** As printed in the paper (Eq. 2), on the whole visible line. */
-#define LUXFER_METRIC_VISIBLE_LINE 1
-
-/** The caller gave it. */
-#define LUXFER_FOCAL_GIVEN 0
-
-/** From vanishing points of orthogonal directions. */
-#define LUXFER_FOCAL_FROM_VANISHING_POINTS 1
-
-/** A guess, 0.85 of the image's width. */
-#define LUXFER_FOCAL_ASSUMED 2
-
-/** The plane seen straight on, linear RGB. */
-#define LUXFER_RECTIFY_UNWARPED 0
-
-/** 1 where the photo shows the plane, else 0; 1 channel. */
-#define LUXFER_RECTIFY_VALID 1
-
-/**
- * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
- */
-luxfer_status luxfer_rectify_params_init(luxfer_rectify_params *params,
-                                         size_t size);
-
-/** Creates the stage. The caller releases *rectify. Any thread. */
-luxfer_status luxfer_rectify_create(luxfer_context *context, luxfer_rectify **rectify);
-
-/** Sets the photo: linear RGB. Any thread. */
-luxfer_status luxfer_rectify_set_photo(luxfer_rectify *rectify, luxfer_image *photo);
-
-/**
- * Sets the mask of the plane to unwarp, 1 on it and 0 elsewhere; 1 channel, the photo's size. mask may be NULL: then only
- * lines and vanishing points are found. Any thread.
- */
-luxfer_status luxfer_rectify_set_mask(luxfer_rectify *rectify,
-                                      luxfer_image *mask);
-
-/**
- * Starts a job that finds lines, vanishing points and the camera, unless the same photo's are known from before, and
- * unwarps the plane if its mask is set. params may be NULL for the defaults. The caller releases *job. Any thread.
- * LUXFER_INVALID_OPERATION if the photo is missing or a job runs already. The job may end with LUXFER_DEGENERATE if there
- * are no lines or the plane is seen edge-on, LUXFER_INVALID_ARGUMENT if sizes differ or a setting is out of range.
- */
-luxfer_status luxfer_rectify_start(luxfer_rectify *rectify,
-                                   const luxfer_rectify_params *params,
-                                   luxfer_job **job);
-
-/**
- * Gets an image of the result; which is a LUXFER_RECTIFY_ value. The caller releases *image. Any thread.
- * LUXFER_NOT_READY before a job with a mask has succeeded.
- */
-luxfer_status luxfer_rectify_get_image(luxfer_rectify *rectify,
-                                       luxfer_rectify_image which,
-                                       luxfer_image **image);
-
-/**
- * Unwarps another image of the photo's size, such as the confidence of the lights, as the plane was; outside the photo it
- * becomes 0. Returns when it is done, which takes some milliseconds for each megapixel. The caller releases *warped. Any
- * thread.
- * LUXFER_NOT_READY before a job with a mask has succeeded; LUXFER_INVALID_ARGUMENT if the size differs.
- */
-luxfer_status luxfer_rectify_warp(luxfer_rectify *rectify,
-                                  luxfer_image *source,
-                                  luxfer_image **warped);
-
-/**
- * Tells what was found and how sure it is. Any thread.
- * LUXFER_NOT_READY before a job has succeeded.
- */
-luxfer_status luxfer_rectify_get_report(luxfer_rectify *rectify, luxfer_rectify_report *report);
-
-/** Adds a reference. Any thread. */
-luxfer_status luxfer_rectify_retain(luxfer_rectify *rectify);
-
-/** Gives a reference back; a job that runs goes on. Any thread. */
-luxfer_status luxfer_rectify_release(luxfer_rectify *rectify);
 
 /* ====================================================================================================================
  * Emission
@@ -1496,8 +1518,10 @@ typedef struct luxfer_transfer_params {
     const luxfer_rectify_params *rectify;
     /** Settings of the stage FEATURES; NULL, the default, for their defaults. */
     const luxfer_features_params *features;
-    /** Settings of the stages PLANE and LIGHTS; NULL, the default, for their defaults. */
-    const luxfer_segment_params *segment;
+    /** Settings of the stage PLANE; NULL, the default, for their defaults. */
+    const luxfer_segment_params *plane;
+    /** Settings of the stage LIGHTS; NULL, the default, for those of luxfer_segment with channels = 7, colour only. */
+    const luxfer_segment_params *lights;
     /**
      * Settings of the stage EMISSION, whose width, height and scale the transfer sets; NULL, the default, for their
      * defaults.

@@ -412,7 +412,10 @@ fn files_that_are_missing_damaged_or_misnamed_say_so() {
         let junk = [7u8; 64];
         let junk = junk.as_ptr().cast();
         assert_eq!(luxfer_image_load_memory(context, junk, 64, LUXFER_COLOUR_SRGB, &mut other), LUXFER_FORMAT);
-        assert_eq!(luxfer_image_load_memory(context, null(), 64, LUXFER_COLOUR_SRGB, &mut other), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(
+            luxfer_image_load_memory(context, null(), 64, LUXFER_COLOUR_SRGB, &mut other),
+            LUXFER_INVALID_ARGUMENT
+        );
         assert_eq!(luxfer_scene_load_memory(context, junk, 64, null(), &mut scene), LUXFER_FORMAT);
         assert_eq!(luxfer_scene_load(context, c"/nonexistent.glb".as_ptr(), &mut scene), LUXFER_IO);
         assert_eq!(luxfer_image_release(image), LUXFER_OK);

@@ -305,7 +305,7 @@ layouts! {
     luxfer_render_report: struct_size samples error;
     luxfer_relight_params: struct_size quantity paths target_error time_budget_ms reserved seed;
     luxfer_relight_report: struct_size paths scale half_width response background reach reserved error;
-    luxfer_transfer_params: struct_size max_texels plane_distance white_luminance target rectify features segment
+    luxfer_transfer_params: struct_size max_texels plane_distance white_luminance target rectify features plane lights
         emission relight render;
     luxfer_transfer_report: struct_size fixtures seconds view_error depth_confidence plane_error lights_error
         unwarp_error emission_error relight_error render_error texel_size target reserved;

@@ -171,7 +171,10 @@ impl Handle for luxfer_emission {
 
 /// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_emission_params_init(params: *mut luxfer_emission_params, size: usize) -> luxfer_status {
+pub unsafe extern "C" fn luxfer_emission_params_init(
+    params: *mut luxfer_emission_params,
+    size: usize,
+) -> luxfer_status {
     guard(|| params::init(params, size))
 }
 

@@ -153,11 +153,7 @@ impl luxfer_rectify_params {
             principal: (!x.is_nan() || !y.is_nan()).then_some(DVec2::new(x, y)),
             seed: self.seed,
         };
-        let unwarp = UnwarpParams {
-            axes,
-            max_side: self.max_side as usize,
-            max_magnification: self.max_magnification,
-        };
+        let unwarp = UnwarpParams { axes, max_side: self.max_side as usize, max_magnification: self.max_magnification };
         Ok((view, unwarp))
     }
 }
@@ -411,8 +407,7 @@ pub unsafe extern "C" fn luxfer_rectify_warp(
         let (width, height) = (unwarped.image.width, unwarped.image.height);
         let monitor = Monitor::default();
         let pool = &stage.context().pool;
-        let image =
-            pool.run(|| rectify::warp(source.image(), &unwarped.to_photo, width, height, monitor.job()))?;
+        let image = pool.run(|| rectify::warp(source.image(), &unwarped.to_photo, width, height, monitor.job()))?;
         out.set(handle::give(Pixels::part(stage.context(), Arc::new(image), |image| image)));
         Ok(())
     })

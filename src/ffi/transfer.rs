@@ -26,7 +26,7 @@ use super::status::luxfer_status;
 use crate::error::{Error, Result};
 use crate::features::DepthKind;
 use crate::scene::Camera;
-use crate::segment::{Segmentation, StrokeSet, strokes};
+use crate::segment::{self, Segmentation, StrokeSet, strokes};
 use crate::transfer::{self, Results, STAGES, Stage, TargetColour, Transfer};
 use std::ffi::c_char;
 use std::sync::Arc;
@@ -81,8 +81,10 @@ pub struct luxfer_transfer_params {
     pub rectify: *const luxfer_rectify_params,
     /// Settings of the stage FEATURES; NULL, the default, for their defaults.
     pub features: *const luxfer_features_params,
-    /// Settings of the stages PLANE and LIGHTS; NULL, the default, for their defaults.
-    pub segment: *const luxfer_segment_params,
+    /// Settings of the stage PLANE; NULL, the default, for their defaults.
+    pub plane: *const luxfer_segment_params,
+    /// Settings of the stage LIGHTS; NULL, the default, for those of luxfer_segment with channels = 7, colour only.
+    pub lights: *const luxfer_segment_params,
     /// Settings of the stage EMISSION, whose width, height and scale the transfer sets; NULL, the default, for their
     /// defaults.
     pub emission: *const luxfer_emission_params,
@@ -92,7 +94,7 @@ pub struct luxfer_transfer_params {
     pub render: *const luxfer_render_params,
 }
 
-const PARAMS_SIZE: usize = 24 + 6 * size_of::<usize>();
+const PARAMS_SIZE: usize = 24 + 7 * size_of::<usize>();
 
 // SAFETY: numbers, and pointers that are checked before use.
 unsafe impl Versioned for luxfer_transfer_params {
@@ -108,7 +110,8 @@ unsafe impl Versioned for luxfer_transfer_params {
             target: LUXFER_TARGET_SURFACE,
             rectify: std::ptr::null(),
             features: std::ptr::null(),
-            segment: std::ptr::null(),
+            plane: std::ptr::null(),
+            lights: std::ptr::null(),
             emission: std::ptr::null(),
             relight: std::ptr::null(),
             render: std::ptr::null(),
@@ -128,7 +131,12 @@ impl luxfer_transfer_params {
             rectify,
             unwarp,
             features: params::read(self.features)?.params(),
-            segment: params::read(self.segment)?.params(),
+            plane: params::read(self.plane)?.params(),
+            lights: if self.lights.is_null() {
+                segment::Params::for_lights()
+            } else {
+                params::read_required(self.lights)?.params()
+            },
             emission: params::read(self.emission)?.params(),
             plane_distance: self.plane_distance,
             max_texels: self.max_texels as usize,
@@ -165,8 +173,7 @@ impl Inputs {
         Ok(transfer::Input {
             photo: self.photo.as_ref().map(|photo| photo.shared()).transpose()?,
             depth,
-            plane_strokes: self.strokes.plane_examples(),
-            light_strokes: self.strokes.lights.clone(),
+            strokes: self.strokes.clone(),
             scene: self.scene.as_ref().map(|scene| scene.snapshot()),
             surface: self.surface.clone(),
             camera: self.camera.clone(),
@@ -191,7 +198,10 @@ fn unknown_phase(phase: luxfer_phase) -> Error {
 
 /// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_transfer_params_init(params: *mut luxfer_transfer_params, size: usize) -> luxfer_status {
+pub unsafe extern "C" fn luxfer_transfer_params_init(
+    params: *mut luxfer_transfer_params,
+    size: usize,
+) -> luxfer_status {
     guard(|| params::init(params, size))
 }
 
