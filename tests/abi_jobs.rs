@@ -1,0 +1,214 @@
+//! What the C boundary promises of jobs: progress, cancellation, waiting, and release at any time in any order.
+
+mod host;
+
+use host::{context, image, made, message, scene};
+use luxfer::ffi::*;
+use std::ffi::c_void;
+use std::ptr::{null, null_mut};
+use std::sync::Mutex;
+use std::time::{Duration, Instant};
+
+/// Tests that count the threads of the process, or start many, take turns.
+static ALONE: Mutex<()> = Mutex::new(());
+
+fn render_params(side: u32, samples: u32) -> luxfer_render_params {
+    let mut params = unsafe { std::mem::zeroed::<luxfer_render_params>() };
+    assert_eq!(unsafe { luxfer_render_params_init(&mut params, size_of_val(&params)) }, LUXFER_OK);
+    luxfer_render_params { width: side, height: side, samples, ..params }
+}
+
+/// A renderer of that box.
+fn renderer(context: *mut luxfer_context) -> *mut luxfer_render {
+    let scene = scene(context);
+    let render = made(|out| unsafe { luxfer_render_create(context, out) });
+    unsafe {
+        assert_eq!(luxfer_render_set_scene(render, scene), LUXFER_OK);
+        assert_eq!(luxfer_scene_release(scene), LUXFER_OK);
+    }
+    render
+}
+
+fn start(render: *mut luxfer_render, params: &luxfer_render_params) -> *mut luxfer_job {
+    made(|out| unsafe { luxfer_render_start(render, params, out) })
+}
+
+/// A job far too long to end by itself.
+const ENDLESS: u32 = 1 << 20;
+
+fn threads() -> usize {
+    std::fs::read_dir("/proc/self/task").unwrap().count()
+}
+
+#[test]
+fn any_release_order_is_fine() {
+    let _alone = ALONE.lock();
+    let release = |objects: [*mut c_void; 4], order: [usize; 4]| {
+        let status = order.map(|i| unsafe {
+            match i {
+                0 => luxfer_context_release(objects[0].cast()),
+                1 => luxfer_image_release(objects[1].cast()),
+                2 => luxfer_render_release(objects[2].cast()),
+                _ => luxfer_job_release(objects[3].cast()),
+            }
+        });
+        assert_eq!(status, [LUXFER_OK; 4], "{order:?}");
+    };
+    for code in 0..256usize {
+        let order = [code & 3, code >> 2 & 3, code >> 4 & 3, code >> 6];
+        let is_permutation = (0..4).all(|i| order.contains(&i));
+        if is_permutation {
+            let context = context(1);
+            let render = renderer(context);
+            let job = start(render, &render_params(64, ENDLESS));
+            release([context.cast(), image(context, 3, 3, 1.0).cast(), render.cast(), job.cast()], order);
+        }
+    }
+}
+
+/// What a progress callback has seen, and when it should cancel.
+struct Watch {
+    seen: Vec<f64>,
+    thread: std::thread::ThreadId,
+    cancel_at: f64,
+    cancelled: Option<Instant>,
+}
+
+impl Watch {
+    fn new(cancel_at: f64) -> Self {
+        Self { seen: Vec::new(), thread: std::thread::current().id(), cancel_at, cancelled: None }
+    }
+}
+
+unsafe extern "C" fn watch(user: *mut c_void, fraction: f64) -> i32 {
+    let watch = unsafe { &mut *user.cast::<Watch>() };
+    watch.seen.push(fraction);
+    // A panic would not come through C: anything wrong shows as a fraction that cannot be.
+    if std::thread::current().id() != watch.thread || watch.cancelled.is_some() {
+        watch.seen.push(-1.0);
+    }
+    if fraction >= watch.cancel_at {
+        watch.cancelled = Some(Instant::now());
+    }
+    i32::from(watch.cancelled.is_some())
+}
+
+#[test]
+fn progress_rises_and_ends_at_one() {
+    let context = context(2);
+    let render = renderer(context);
+    let job = start(render, &render_params(96, 64));
+    let mut seen = Watch::new(f64::INFINITY);
+    unsafe {
+        assert_eq!(luxfer_job_wait(job, -1, Some(watch), (&raw mut seen).cast()), LUXFER_OK, "{}", message(context));
+        let (last, before) = seen.seen.split_last().unwrap();
+        assert_eq!(*last, 1.0);
+        assert!(before.iter().all(|f| (0.0..1.0).contains(f)) && before.is_sorted(), "{before:?}");
+        let (mut fraction, mut finished) = (0.0, 0);
+        assert_eq!(luxfer_job_poll(job, &mut fraction, &mut finished), LUXFER_OK);
+        assert_eq!((fraction, finished), (1.0, 1));
+        assert_eq!(luxfer_job_status(job), LUXFER_OK);
+        assert_eq!(luxfer_job_cancel(job), LUXFER_OK);
+        assert_eq!(luxfer_job_wait(job, 0, None, null_mut()), LUXFER_OK);
+        let mut report = luxfer_render_report { struct_size: 16, samples: 0, error: 0.0 };
+        assert_eq!(luxfer_render_get_report(render, &mut report), LUXFER_OK);
+        assert_eq!(report.samples, 64);
+        assert_eq!(luxfer_job_release(job), LUXFER_OK);
+        assert_eq!(luxfer_render_release(render), LUXFER_OK);
+        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+    }
+}
+
+#[test]
+fn a_cancel_is_answered_at_any_point() {
+    let _alone = ALONE.lock();
+    let context = context(2);
+    let render = renderer(context);
+    for cancel_at in [0.0, 0.1, 0.5] {
+        let job = start(render, &render_params(48, 512));
+        let mut seen = Watch::new(cancel_at);
+        let status = unsafe { luxfer_job_wait(job, -1, Some(watch), (&raw mut seen).cast()) };
+        assert_eq!(status, LUXFER_CANCELLED, "at {cancel_at}: {:?}", seen.seen.last());
+        // 100 ms are promised; a crowded machine gets more before this is called a failure.
+        let late = seen.cancelled.unwrap().elapsed();
+        assert!(late < Duration::from_millis(500), "{late:?} after {cancel_at}");
+        assert!(seen.seen.iter().all(|f| (0.0..1.0).contains(f)), "no call after the cancel, none from elsewhere");
+        assert_eq!(unsafe { luxfer_job_status(job) }, LUXFER_CANCELLED);
+        assert_eq!(unsafe { luxfer_job_release(job) }, LUXFER_OK);
+    }
+    // From another thread while this one waits.
+    let job = start(render, &render_params(64, ENDLESS));
+    let shared = job as usize;
+    let other = std::thread::spawn(move || {
+        std::thread::sleep(Duration::from_millis(30));
+        unsafe { luxfer_job_cancel(shared as *mut luxfer_job) }
+    });
+    unsafe {
+        assert_eq!(luxfer_job_wait(job, -1, None, null_mut()), LUXFER_CANCELLED);
+        assert_eq!(other.join().unwrap(), LUXFER_OK);
+        assert_eq!(luxfer_job_release(job), LUXFER_OK);
+        assert_eq!(luxfer_render_release(render), LUXFER_OK);
+        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+    }
+}
+
+#[test]
+fn waits_time_out_and_a_busy_object_refuses_changes() {
+    let context = context(1);
+    let render = renderer(context);
+    let scene = scene(context);
+    let job = start(render, &render_params(64, ENDLESS));
+    let mut second = null_mut();
+    unsafe {
+        for timeout in [0, 1, 60] {
+            let clock = Instant::now();
+            assert_eq!(luxfer_job_wait(job, timeout, None, null_mut()), LUXFER_NOT_READY);
+            assert!(clock.elapsed() >= Duration::from_millis(timeout as u64));
+        }
+        assert_eq!(luxfer_job_status(job), LUXFER_NOT_READY);
+        assert_eq!(luxfer_render_start(render, null(), &mut second), LUXFER_INVALID_OPERATION);
+        assert!(second.is_null());
+        assert_eq!(luxfer_render_set_scene(render, scene), LUXFER_INVALID_OPERATION);
+        // Another object is free, and so is the scene.
+        let other = renderer(context);
+        let small = start(other, &render_params(8, 1));
+        assert_eq!(luxfer_scene_set_environment(scene, 1.0, 1.0, 1.0), LUXFER_OK);
+        assert_eq!(luxfer_job_cancel(job), LUXFER_OK);
+        assert_eq!(luxfer_job_wait(job, -1, None, null_mut()), LUXFER_CANCELLED);
+        assert_eq!(luxfer_job_wait(small, -1, None, null_mut()), LUXFER_OK);
+        // Idle again as soon as the wait is over.
+        assert_eq!(luxfer_render_set_scene(render, scene), LUXFER_OK);
+        for job in [job, small] {
+            assert_eq!(luxfer_job_release(job), LUXFER_OK);
+        }
+        assert_eq!(luxfer_render_release(other), LUXFER_OK);
+        assert_eq!(luxfer_scene_release(scene), LUXFER_OK);
+        assert_eq!(luxfer_render_release(render), LUXFER_OK);
+        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+    }
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_thousand_contexts_and_jobs_leave_no_thread_behind() {
+    let _alone = ALONE.lock();
+    // Other tests come and go meanwhile; a thousand leaked threads would still show.
+    let before = threads();
+    for i in 0..1000 {
+        let context = context(1);
+        let image = image(context, 1, 1, 0.0);
+        if i % 20 == 0 {
+            let render = renderer(context);
+            let job = start(render, &render_params(16, ENDLESS));
+            unsafe {
+                assert_eq!(luxfer_render_release(render), LUXFER_OK);
+                assert_eq!(luxfer_job_release(job), LUXFER_OK);
+            }
+        }
+        unsafe {
+            assert_eq!(luxfer_context_release(context), LUXFER_OK);
+            assert_eq!(luxfer_image_release(image), LUXFER_OK);
+        }
+    }
+    assert!(threads() < before + 50, "{before} threads before, {} after", threads());
+}
