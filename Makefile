@@ -29,9 +29,11 @@ demo: out/lighting_transfer
 setup:
 	@missing=""; for p in $(PACKAGES); do dpkg -s $$p >/dev/null 2>&1 || missing="$$missing $$p"; done; \
 	if [ -n "$$missing" ]; then \
-	  root=""; [ "$$(id -u)" = 0 ] || root=sudo; \
-	  command -v apt-get >/dev/null || { echo "install these first:$$missing"; exit 1; }; \
-	  $$root apt-get update -qq && DEBIAN_FRONTEND=noninteractive $$root apt-get install -y -qq --no-install-recommends $$missing; \
+	  root=""; [ "$$(id -u)" = 0 ] || root="sudo -n"; \
+	  command -v apt-get >/dev/null || { echo "there is no apt-get here; install these first:$$missing" >&2; exit 1; }; \
+	  $$root true </dev/null || { echo "run as root: apt-get install$$missing" >&2; exit 1; }; \
+	  $$root apt-get update -qq </dev/null && \
+	  $$root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $$missing </dev/null; \
 	fi
 
 test: setup lib

@@ -148,7 +148,7 @@ typedef struct luxfer_context_params {
  * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is not that
  * of any version of the struct.
  */
-luxfer_status luxfer_context_params_init(struct luxfer_context_params *params,
+luxfer_status luxfer_context_params_init(luxfer_context_params *params,
                                          size_t size);
 
 /**
@@ -156,17 +156,17 @@ luxfer_status luxfer_context_params_init(struct luxfer_context_params *params,
  * LUXFER_INVALID_ARGUMENT if context is NULL, struct_size is wrong or num_threads exceeds 1024; LUXFER_OUT_OF_MEMORY if
  * the threads cannot be started.
  */
-luxfer_status luxfer_context_create(const struct luxfer_context_params *params,
-                                    struct luxfer_context **context);
+luxfer_status luxfer_context_create(const luxfer_context_params *params,
+                                    luxfer_context **context);
 
 /** Adds a reference. Any thread. */
-luxfer_status luxfer_context_retain(struct luxfer_context *context);
+luxfer_status luxfer_context_retain(luxfer_context *context);
 
 /**
  * Gives a reference back. The threads end, and are waited for, when the context and everything made in it are released.
  * Any thread.
  */
-luxfer_status luxfer_context_release(struct luxfer_context *context);
+luxfer_status luxfer_context_release(luxfer_context *context);
 
 /**
  * Copies the message of the calling thread's latest failure in this context into buffer, as UTF-8 that ends with a zero,
@@ -174,7 +174,7 @@ luxfer_status luxfer_context_release(struct luxfer_context *context);
  * the message is empty. Messages stay until the thread's next failure; those of the last 256 threads are kept. buffer may
  * be NULL if capacity is 0. A call that fails because its first handle is no handle leaves no message. Any thread.
  */
-luxfer_status luxfer_context_last_error(struct luxfer_context *context,
+luxfer_status luxfer_context_last_error(luxfer_context *context,
                                         char *buffer,
                                         size_t capacity,
                                         size_t *needed);
@@ -249,7 +249,7 @@ typedef struct luxfer_image_view {
  * Fills *view with the defaults; size is sizeof *view. LUXFER_INVALID_ARGUMENT if view is NULL or size is not that of any
  * version of the struct.
  */
-luxfer_status luxfer_image_view_init(struct luxfer_image_view *view,
+luxfer_status luxfer_image_view_init(luxfer_image_view *view,
                                      size_t size);
 
 /**
@@ -258,8 +258,8 @@ luxfer_status luxfer_image_view_init(struct luxfer_image_view *view,
  * LUXFER_INVALID_ARGUMENT if the view contradicts itself; LUXFER_OUT_OF_MEMORY beyond the context's memory budget.
  */
 luxfer_status luxfer_image_create(luxfer_context *context,
-                                  const struct luxfer_image_view *view,
-                                  struct luxfer_image **image);
+                                  const luxfer_image_view *view,
+                                  luxfer_image **image);
 
 /**
  * Loads a PNG, JPEG, Radiance HDR or OpenEXR file; path is UTF-8. colour_space says how integer samples are encoded:
@@ -271,14 +271,14 @@ luxfer_status luxfer_image_create(luxfer_context *context,
 luxfer_status luxfer_image_load(luxfer_context *context,
                                 const char *path,
                                 luxfer_colour_space colour_space,
-                                struct luxfer_image **image);
+                                luxfer_image **image);
 
 /** Loads an image from the size bytes of a file held in memory, otherwise as luxfer_image_load. */
 luxfer_status luxfer_image_load_memory(luxfer_context *context,
                                        const void *data,
                                        size_t size,
                                        luxfer_colour_space colour_space,
-                                       struct luxfer_image **image);
+                                       luxfer_image **image);
 
 /**
  * Saves an image; path is UTF-8 and its extension chooses the format. .png: 1, 3 or 4 channels, multiplied by exposure
@@ -287,12 +287,12 @@ luxfer_status luxfer_image_load_memory(luxfer_context *context,
  * thread.
  * LUXFER_INVALID_ARGUMENT for another extension or number of channels; LUXFER_IO if the file cannot be written.
  */
-luxfer_status luxfer_image_save(struct luxfer_image *image,
+luxfer_status luxfer_image_save(luxfer_image *image,
                                 const char *path,
                                 float exposure);
 
 /** Tells width and height in pixels and the number of channels; any of the three may be NULL. Any thread. */
-luxfer_status luxfer_image_size(struct luxfer_image *image,
+luxfer_status luxfer_image_size(luxfer_image *image,
                                 uint32_t *width,
                                 uint32_t *height,
                                 uint32_t *channels);
@@ -303,15 +303,15 @@ luxfer_status luxfer_image_size(struct luxfer_image *image,
  * Any thread.
  * LUXFER_INVALID_ARGUMENT if the view contradicts itself or the image.
  */
-luxfer_status luxfer_image_read(struct luxfer_image *image,
+luxfer_status luxfer_image_read(luxfer_image *image,
                                 uint32_t first_channel,
-                                const struct luxfer_image_view *view);
+                                const luxfer_image_view *view);
 
 /** Adds a reference. Any thread. */
-luxfer_status luxfer_image_retain(struct luxfer_image *image);
+luxfer_status luxfer_image_retain(luxfer_image *image);
 
 /** Gives a reference back. Any thread. */
-luxfer_status luxfer_image_release(struct luxfer_image *image);
+luxfer_status luxfer_image_release(luxfer_image *image);
 
 /* ====================================================================================================================
  * Job
@@ -339,7 +339,7 @@ typedef int32_t (*luxfer_progress_fn)(void *user, double fraction);
  * Returns LUXFER_OK if the job has succeeded, else why it has not, with its message: LUXFER_CANCELLED after a cancel
  * request that came in time, LUXFER_NOT_READY if it still runs (it goes on running).
  */
-luxfer_status luxfer_job_wait(struct luxfer_job *job,
+luxfer_status luxfer_job_wait(luxfer_job *job,
                               int32_t timeout_ms,
                               luxfer_progress_fn progress,
                               void *user);
@@ -348,24 +348,24 @@ luxfer_status luxfer_job_wait(struct luxfer_job *job,
  * Asks how far a job is, without waiting. *fraction becomes its progress in [0, 1], *finished 1 if it has ended, well or
  * not, else 0; either may be NULL. Any thread.
  */
-luxfer_status luxfer_job_poll(struct luxfer_job *job,
+luxfer_status luxfer_job_poll(luxfer_job *job,
                               double *fraction,
                               int32_t *finished);
 
 /** How a job has ended, as luxfer_job_wait returns it; LUXFER_NOT_READY while it runs. Any thread. */
-luxfer_status luxfer_job_status(struct luxfer_job *job);
+luxfer_status luxfer_job_status(luxfer_job *job);
 
 /**
  * Asks a job to end early, and returns at once; the work ends within about 100 ms. A request cannot be taken back; one
  * that comes after the end has no effect. Any thread.
  */
-luxfer_status luxfer_job_cancel(struct luxfer_job *job);
+luxfer_status luxfer_job_cancel(luxfer_job *job);
 
 /** Adds a reference. Any thread. */
-luxfer_status luxfer_job_retain(struct luxfer_job *job);
+luxfer_status luxfer_job_retain(luxfer_job *job);
 
 /** Gives a reference back; the last one cancels a running job and waits for it to end. Any thread. */
-luxfer_status luxfer_job_release(struct luxfer_job *job);
+luxfer_status luxfer_job_release(luxfer_job *job);
 
 /* ====================================================================================================================
  * Scene
@@ -420,7 +420,7 @@ typedef struct luxfer_surface {
 } luxfer_surface;
 
 /** Creates an empty scene. The caller releases *scene. Any thread. */
-luxfer_status luxfer_scene_create(luxfer_context *context, struct luxfer_scene **scene);
+luxfer_status luxfer_scene_create(luxfer_context *context, luxfer_scene **scene);
 
 /**
  * Loads a glTF 2.0 file, .glb or .gltf with the files it names; path is UTF-8. The caller releases *scene. Any thread.
@@ -429,7 +429,7 @@ luxfer_status luxfer_scene_create(luxfer_context *context, struct luxfer_scene *
  */
 luxfer_status luxfer_scene_load(luxfer_context *context,
                                 const char *path,
-                                struct luxfer_scene **scene);
+                                luxfer_scene **scene);
 
 /**
  * Loads a scene from the size bytes of a GLB or glTF file held in memory. Other files that it names are looked up in the
@@ -439,30 +439,30 @@ luxfer_status luxfer_scene_load_memory(luxfer_context *context,
                                        const void *data,
                                        size_t size,
                                        const char *base_path,
-                                       struct luxfer_scene **scene);
+                                       luxfer_scene **scene);
 
 /**
  * Saves a scene as a GLB file with all of its textures inside; path is UTF-8. An existing file is replaced only by a
  * complete one. Any thread.
  * LUXFER_IO if the file cannot be written.
  */
-luxfer_status luxfer_scene_export(struct luxfer_scene *scene,
+luxfer_status luxfer_scene_export(luxfer_scene *scene,
                                   const char *path);
 
 /**
  * Writes a scene as GLB through the caller's function, which gets user. Any thread.
  * LUXFER_IO if the function gives up.
  */
-luxfer_status luxfer_scene_export_memory(struct luxfer_scene *scene, luxfer_write_fn write, void *user);
+luxfer_status luxfer_scene_export_memory(luxfer_scene *scene, luxfer_write_fn write, void *user);
 
 /** Tells how much there is in a scene. Any thread. */
-luxfer_status luxfer_scene_get_counts(struct luxfer_scene *scene, struct luxfer_scene_counts *counts);
+luxfer_status luxfer_scene_get_counts(luxfer_scene *scene, luxfer_scene_counts *counts);
 
 /**
  * Surrounds a scene with light of one colour from all directions, red, green and blue in cd/m², each finite and >= 0;
  * replaces any environment it had. Any thread.
  */
-luxfer_status luxfer_scene_set_environment(struct luxfer_scene *scene,
+luxfer_status luxfer_scene_set_environment(luxfer_scene *scene,
                                            float red,
                                            float green,
                                            float blue);
@@ -472,7 +472,7 @@ luxfer_status luxfer_scene_set_environment(struct luxfer_scene *scene,
  * finite and >= 0. Any thread.
  * LUXFER_NOT_FOUND if there is no such material.
  */
-luxfer_status luxfer_scene_set_emission(struct luxfer_scene *scene,
+luxfer_status luxfer_scene_set_emission(luxfer_scene *scene,
                                         uint32_t material,
                                         float red,
                                         float green,
@@ -482,9 +482,9 @@ luxfer_status luxfer_scene_set_emission(struct luxfer_scene *scene,
  * Finds the planar surface, of the object or material of that name, that faces the room; name is UTF-8. Any thread.
  * LUXFER_NOT_FOUND if nothing has that name, the message lists names that exist; LUXFER_DEGENERATE if it has no plane.
  */
-luxfer_status luxfer_scene_find_surface(struct luxfer_scene *scene,
+luxfer_status luxfer_scene_find_surface(luxfer_scene *scene,
                                         const char *name,
-                                        struct luxfer_surface *found);
+                                        luxfer_surface *found);
 
 /**
  * Lays an emissive texture (linear, 3 channels) over the bounding rectangle of the surface that luxfer_scene_find_surface
@@ -492,7 +492,7 @@ luxfer_status luxfer_scene_find_surface(struct luxfer_scene *scene,
  * texture * (red, green, blue) in cd/m², each finite and >= 0. mesh and material may be NULL. Any thread.
  * As luxfer_scene_find_surface; LUXFER_OUT_OF_MEMORY beyond the memory budget.
  */
-luxfer_status luxfer_scene_place_emission(struct luxfer_scene *scene,
+luxfer_status luxfer_scene_place_emission(luxfer_scene *scene,
                                           const char *name,
                                           luxfer_image *texture,
                                           float red,
@@ -502,10 +502,10 @@ luxfer_status luxfer_scene_place_emission(struct luxfer_scene *scene,
                                           uint32_t *material);
 
 /** Adds a reference. Any thread. */
-luxfer_status luxfer_scene_retain(struct luxfer_scene *scene);
+luxfer_status luxfer_scene_retain(luxfer_scene *scene);
 
 /** Gives a reference back. Any thread. */
-luxfer_status luxfer_scene_release(struct luxfer_scene *scene);
+luxfer_status luxfer_scene_release(luxfer_scene *scene);
 
 /* ====================================================================================================================
  * Scene description
@@ -585,19 +585,19 @@ typedef struct luxfer_camera_params {
 /**
  * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
  */
-luxfer_status luxfer_material_params_init(struct luxfer_material_params *params,
+luxfer_status luxfer_material_params_init(luxfer_material_params *params,
                                           size_t size);
 
 /**
  * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
  */
-luxfer_status luxfer_mesh_params_init(struct luxfer_mesh_params *params,
+luxfer_status luxfer_mesh_params_init(luxfer_mesh_params *params,
                                       size_t size);
 
 /**
  * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
  */
-luxfer_status luxfer_camera_params_init(struct luxfer_camera_params *params,
+luxfer_status luxfer_camera_params_init(luxfer_camera_params *params,
                                         size_t size);
 
 /**
@@ -605,7 +605,7 @@ luxfer_status luxfer_camera_params_init(struct luxfer_camera_params *params,
  * LUXFER_INVALID_ARGUMENT if a value is out of range.
  */
 luxfer_status luxfer_scene_add_material(luxfer_scene *scene,
-                                        const struct luxfer_material_params *params,
+                                        const luxfer_material_params *params,
                                         uint32_t *index);
 
 /**
@@ -614,7 +614,7 @@ luxfer_status luxfer_scene_add_material(luxfer_scene *scene,
  * LUXFER_NOT_FOUND if the scene has no such material; LUXFER_OUT_OF_MEMORY beyond the memory budget.
  */
 luxfer_status luxfer_scene_add_mesh(luxfer_scene *scene,
-                                    const struct luxfer_mesh_params *params,
+                                    const luxfer_mesh_params *params,
                                     uint32_t *index);
 
 /**
@@ -622,7 +622,7 @@ luxfer_status luxfer_scene_add_mesh(luxfer_scene *scene,
  * LUXFER_INVALID_ARGUMENT if a value is out of range.
  */
 luxfer_status luxfer_scene_add_camera(luxfer_scene *scene,
-                                      const struct luxfer_camera_params *params,
+                                      const luxfer_camera_params *params,
                                       uint32_t *index);
 
 /**
@@ -631,7 +631,7 @@ luxfer_status luxfer_scene_add_camera(luxfer_scene *scene,
  */
 luxfer_status luxfer_scene_set_camera(luxfer_scene *scene,
                                       uint32_t index,
-                                      const struct luxfer_camera_params *params);
+                                      const luxfer_camera_params *params);
 
 /**
  * Reads a camera; set params->struct_size before the call. Any thread.
@@ -639,7 +639,1187 @@ luxfer_status luxfer_scene_set_camera(luxfer_scene *scene,
  */
 luxfer_status luxfer_scene_get_camera(luxfer_scene *scene,
                                       uint32_t index,
-                                      struct luxfer_camera_params *params);
+                                      luxfer_camera_params *params);
+
+/* ====================================================================================================================
+ * Rectification
+ *
+ * From the straight lines of a photo to vanishing points and the camera, and, where a mask marks a plane, to that plane
+ * seen straight on. Image points are in pixels, x right, y down, the top-left pixel's centre at (0.5, 0.5). Room axes 0 and
+ * 2 are horizontal, axis 1 is vertical; camera space is x right, y down, z forward.
+ * ==================================================================================================================== */
+
+/** Lines, vanishing points and the unwarped plane of a photo. See luxfer_rectify_create. */
+typedef struct luxfer_rectify luxfer_rectify;
+
+/** How lines are found: a LUXFER_LINES_ value. */
+typedef int32_t luxfer_lines;
+
+/** How vanishing points are found: a LUXFER_SEARCH_ value. */
+typedef int32_t luxfer_search;
+
+/** How far a vanishing point is from a line, in LUXFER_SEARCH_SUCCESSIVE: a LUXFER_METRIC_ value. */
+typedef int32_t luxfer_metric;
+
+/** Settings of a rectification. Fill them with luxfer_rectify_params_init. */
+typedef struct luxfer_rectify_params {
+    /** sizeof(luxfer_rectify_params), set by luxfer_rectify_params_init. */
+    uint32_t struct_size;
+    /** LUXFER_LINES_ value; default LUXFER_LINES_REGIONS. */
+    luxfer_lines detector;
+    /** LUXFER_SEARCH_ value; default LUXFER_SEARCH_MANHATTAN. */
+    luxfer_search search;
+    /** LUXFER_METRIC_ value; default LUXFER_METRIC_SEGMENT. */
+    luxfer_metric metric;
+    /**
+     * Half-width in radians of the band around the gradient's direction that votes for a line, in (0, pi/2]; default 2.5
+     * degrees.
+     */
+    double hough_band;
+    /** Focal length in pixels, > 0, or 0, the default: unknown. */
+    double focal;
+    /** Principal point in pixels; NaN, the default: the image's centre. */
+    double principal[2];
+    /** The two room axes that the plane spans, each 0, 1 or 2; -1, the default: found from the lines in it. */
+    int32_t plane_axes[2];
+    /**
+     * Longest side of the unwarped image in pixels, in [16, 16384]; default 2048. The photo's own density decides below.
+     */
+    uint32_t max_side;
+    /** Must be 0. */
+    uint32_t reserved;
+    /** Largest magnification of the photo, > 0; default 6. What is further away is cut off. */
+    double max_magnification;
+    /** Seed of the search; default 1. */
+    uint64_t seed;
+} luxfer_rectify_params;
+
+/** An image of a rectification: a LUXFER_RECTIFY_ value. */
+typedef int32_t luxfer_rectify_image;
+
+/** Where a focal length came from: a LUXFER_FOCAL_ value. */
+typedef int32_t luxfer_focal_source;
+
+/** What the lines of a photo say about its camera, and how the plane was unwarped. Set struct_size before the call. */
+typedef struct luxfer_rectify_report {
+    /** sizeof(luxfer_rectify_report), set by the caller. */
+    uint32_t struct_size;
+    /** Number of line segments found. */
+    uint32_t segments;
+    /** Vanishing points of the room axes, homogeneous pixels of unit length; the third coordinate is 0 at infinity. */
+    double vanishing_points[3][3];
+    /** Standard deviation of their directions in camera space, in radians. */
+    double vanishing_errors[3];
+    /** Number of segments that agree with each; 0 = derived from the other two. */
+    uint32_t vanishing_support[3];
+    /** LUXFER_FOCAL_ value. */
+    luxfer_focal_source focal_source;
+    /** Focal length in pixels. */
+    double focal;
+    /** Principal point in pixels. */
+    double principal[2];
+    /** Room axes as unit vectors in camera space. */
+    double axes[3][3];
+    /** 1 if the plane has been unwarped, else 0, and what follows is 0. */
+    uint32_t is_unwarped;
+    /** Must be 0. */
+    uint32_t reserved;
+    /** The map from unwarped pixels to photo pixels, row by row. */
+    double to_photo[9];
+    /** Corners of the unwarped rectangle in the photo, x and y. */
+    double corners[4][2];
+    /** Expected error of each corner, in unwarped pixels. */
+    double corner_errors[4];
+    /** Size of an unwarped pixel as a share of the camera's distance from the plane. */
+    double pixel_size;
+    /** Trust in the aspect ratio, in [0, 1]: low where the focal length had to be assumed. */
+    double aspect_confidence;
+} luxfer_rectify_report;
+
+/** Regions of like gradient direction, with sub-pixel end points. */
+#define LUXFER_LINES_REGIONS 0
+
+/** The paper's: gradient-restricted Hough transform of Canny edges. */
+#define LUXFER_LINES_HOUGH 1
+
+/** Three orthogonal directions and the focal length at once, then each refined freely. */
+#define LUXFER_SEARCH_MANHATTAN 0
+
+/** The paper's: one group of lines after the other. */
+#define LUXFER_SEARCH_SUCCESSIVE 1
+
+/** The paper's measure on the segment that was detected, finite for vanishing points at infinity. */
+#define LUXFER_METRIC_SEGMENT 0
+
+/** As printed in the paper (Eq. 2), on the whole visible line. */
+#define LUXFER_METRIC_VISIBLE_LINE 1
+
+/** The caller gave it. */
+#define LUXFER_FOCAL_GIVEN 0
+
+/** From vanishing points of orthogonal directions. */
+#define LUXFER_FOCAL_FROM_VANISHING_POINTS 1
+
+/** A guess, 0.85 of the image's width. */
+#define LUXFER_FOCAL_ASSUMED 2
+
+/** The plane seen straight on, linear RGB. */
+#define LUXFER_RECTIFY_UNWARPED 0
+
+/** 1 where the photo shows the plane, else 0; 1 channel. */
+#define LUXFER_RECTIFY_VALID 1
+
+/**
+ * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+ */
+luxfer_status luxfer_rectify_params_init(luxfer_rectify_params *params,
+                                         size_t size);
+
+/** Creates the stage. The caller releases *rectify. Any thread. */
+luxfer_status luxfer_rectify_create(luxfer_context *context, luxfer_rectify **rectify);
+
+/** Sets the photo: linear RGB. Any thread. */
+luxfer_status luxfer_rectify_set_photo(luxfer_rectify *rectify, luxfer_image *photo);
+
+/**
+ * Sets the mask of the plane to unwarp, 1 on it and 0 elsewhere; 1 channel, the photo's size. mask may be NULL: then only
+ * lines and vanishing points are found. Any thread.
+ */
+luxfer_status luxfer_rectify_set_mask(luxfer_rectify *rectify,
+                                      luxfer_image *mask);
+
+/**
+ * Starts a job that finds lines, vanishing points and the camera, unless the same photo's are known from before, and
+ * unwarps the plane if its mask is set. params may be NULL for the defaults. The caller releases *job. Any thread.
+ * LUXFER_INVALID_OPERATION if the photo is missing or a job runs already. The job may end with LUXFER_DEGENERATE if there
+ * are no lines or the plane is seen edge-on, LUXFER_INVALID_ARGUMENT if sizes differ or a setting is out of range.
+ */
+luxfer_status luxfer_rectify_start(luxfer_rectify *rectify,
+                                   const luxfer_rectify_params *params,
+                                   luxfer_job **job);
+
+/**
+ * Gets an image of the result; which is a LUXFER_RECTIFY_ value. The caller releases *image. Any thread.
+ * LUXFER_NOT_READY before a job with a mask has succeeded.
+ */
+luxfer_status luxfer_rectify_get_image(luxfer_rectify *rectify,
+                                       luxfer_rectify_image which,
+                                       luxfer_image **image);
+
+/**
+ * Unwarps another image of the photo's size, such as the confidence of the lights, as the plane was; outside the photo it
+ * becomes 0. Returns when it is done, which takes some milliseconds for each megapixel. The caller releases *warped. Any
+ * thread.
+ * LUXFER_NOT_READY before a job with a mask has succeeded; LUXFER_INVALID_ARGUMENT if the size differs.
+ */
+luxfer_status luxfer_rectify_warp(luxfer_rectify *rectify,
+                                  luxfer_image *source,
+                                  luxfer_image **warped);
+
+/**
+ * Tells what was found and how sure it is. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded.
+ */
+luxfer_status luxfer_rectify_get_report(luxfer_rectify *rectify, luxfer_rectify_report *report);
+
+/** Adds a reference. Any thread. */
+luxfer_status luxfer_rectify_retain(luxfer_rectify *rectify);
+
+/** Gives a reference back; a job that runs goes on. Any thread. */
+luxfer_status luxfer_rectify_release(luxfer_rectify *rectify);
+
+/* ====================================================================================================================
+ * Features
+ *
+ * What segmentation knows of each pixel of a photo: ten channels, L*, a*, b* (CIELAB, D65), depth, position x, y, z and
+ * normal x, y, z. Depth comes from the caller, or is laid out as a room from the lines that luxfer_rectify has found, or is
+ * a neutral guess.
+ * ==================================================================================================================== */
+
+/** The features of a photo. See luxfer_features_create. */
+typedef struct luxfer_features luxfer_features;
+
+/** Settings of the features. Fill them with luxfer_features_params_init. */
+typedef struct luxfer_features_params {
+    /** sizeof(luxfer_features_params), set by luxfer_features_params_init. */
+    uint32_t struct_size;
+    /** Near plane of the paper's Eq. 1, in its own units, in [1e-3, 1e3]; default 1. */
+    float near_plane;
+    /** Far plane of Eq. 1, in [1.001, 1e6] times near_plane; default 10. */
+    float far_plane;
+    /** Half-width of the window the normals are fitted in, in pixels, in [0, 64]; default 0: from the photo's size. */
+    uint32_t normal_radius;
+} luxfer_features_params;
+
+/** What a depth map measures: a LUXFER_DEPTH_ value. */
+typedef int32_t luxfer_depth_kind;
+
+/** An image of the features: a LUXFER_FEATURES_ value. */
+typedef int32_t luxfer_features_image;
+
+/** Where the depth came from: a LUXFER_DEPTH_FROM_ value. */
+typedef int32_t luxfer_depth_source;
+
+/** How good the features are. Set struct_size before the call. */
+typedef struct luxfer_features_report {
+    /** sizeof(luxfer_features_report), set by the caller. */
+    uint32_t struct_size;
+    /** LUXFER_DEPTH_FROM_ value. */
+    luxfer_depth_source depth_source;
+    /** Mean trust in the depth, in [0, 1]. */
+    double depth_confidence;
+    /** Pixels of the photo that were NaN, infinite or negative and have been replaced from their neighbours. */
+    uint64_t replaced_pixels;
+} luxfer_features_report;
+
+/** Distance along the viewing axis. */
+#define LUXFER_DEPTH_ALONG_Z 0
+
+/** Distance along the ray of each pixel. */
+#define LUXFER_DEPTH_ALONG_RAY 1
+
+/** The ten channels; luxfer_image_read takes them apart. */
+#define LUXFER_FEATURES_CHANNELS 0
+
+/** Trust in the depth of each pixel, in [0, 1]; 1 channel. */
+#define LUXFER_FEATURES_DEPTH_CONFIDENCE 1
+
+/** The caller's depth map. */
+#define LUXFER_DEPTH_FROM_CALLER 0
+
+/** A room laid out from the lines of the photo. */
+#define LUXFER_DEPTH_FROM_LAYOUT 1
+
+/** A guess that knows nothing of the photo. */
+#define LUXFER_DEPTH_FROM_NOTHING 2
+
+/**
+ * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+ */
+luxfer_status luxfer_features_params_init(luxfer_features_params *params,
+                                          size_t size);
+
+/** Creates the stage. The caller releases *features. Any thread. */
+luxfer_status luxfer_features_create(luxfer_context *context, luxfer_features **features);
+
+/** Sets the photo: linear RGB, 1 = display white. Any thread. */
+luxfer_status luxfer_features_set_photo(luxfer_features *features, luxfer_image *photo);
+
+/**
+ * Sets a depth map of the photo's size, 1 channel, in any unit; what is not positive and finite is a hole. kind is a
+ * LUXFER_DEPTH_ value. depth may be NULL: none. Any thread.
+ */
+luxfer_status luxfer_features_set_depth(luxfer_features *features,
+                                        luxfer_image *depth,
+                                        luxfer_depth_kind kind);
+
+/**
+ * Takes the lines and the camera that a luxfer_rectify has found in the same photo, as they are now. rectify may be NULL:
+ * none. Any thread.
+ * LUXFER_NOT_READY if it has found none yet.
+ */
+luxfer_status luxfer_features_set_view(luxfer_features *features,
+                                       luxfer_rectify *rectify);
+
+/**
+ * Starts a job that computes the features. params may be NULL for the defaults. The caller releases *job. Any thread.
+ * LUXFER_INVALID_OPERATION if the photo is missing or a job runs already. The job may end with LUXFER_INVALID_ARGUMENT if
+ * sizes differ or a setting is out of range, LUXFER_DEGENERATE if the depth map is all holes.
+ */
+luxfer_status luxfer_features_start(luxfer_features *features,
+                                    const luxfer_features_params *params,
+                                    luxfer_job **job);
+
+/**
+ * Gets an image of the result; which is a LUXFER_FEATURES_ value. The caller releases *image. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded.
+ */
+luxfer_status luxfer_features_get_image(luxfer_features *features,
+                                        luxfer_features_image which,
+                                        luxfer_image **image);
+
+/**
+ * Tells how good the features are. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded.
+ */
+luxfer_status luxfer_features_get_report(luxfer_features *features,
+                                         luxfer_features_report *report);
+
+/** Adds a reference. Any thread. */
+luxfer_status luxfer_features_retain(luxfer_features *features);
+
+/** Gives a reference back; a job that runs goes on. Any thread. */
+luxfer_status luxfer_features_release(luxfer_features *features);
+
+/* ====================================================================================================================
+ * Segmentation
+ *
+ * From a few strokes on a photo to a mask with a confidence for each pixel. The transfer needs two: the plane that carries
+ * the lights, then the lights within it. Strokes may be added after a result, and the stage started again.
+ * ==================================================================================================================== */
+
+/** A segmentation by strokes. See luxfer_segment_create. */
+typedef struct luxfer_segment luxfer_segment;
+
+/** Settings of a segmentation. Fill them with luxfer_segment_params_init. */
+typedef struct luxfer_segment_params {
+    /** sizeof(luxfer_segment_params), set by luxfer_segment_params_init. */
+    uint32_t struct_size;
+    /** Samples drawn from the strokes of each class, in [1, 1000000]; default 1000. */
+    uint32_t samples_per_class;
+    /**
+     * Which channels of the features to use, bit i for channel i; default all. For lights 7, colour only, is best: they
+     * share the plane's geometry.
+     */
+    uint32_t channels;
+    /** Must be 0. */
+    uint32_t reserved;
+    /** Strength of the prior that keeps weights small, in [1e-9, 1e3]; default 1e-3. */
+    double ridge;
+    /** Seed of the samples; default 1. */
+    uint64_t seed;
+} luxfer_segment_params;
+
+/** What strokes are about: a LUXFER_PHASE_ value. */
+typedef int32_t luxfer_phase;
+
+/** An image of a segmentation: a LUXFER_SEGMENT_ value. */
+typedef int32_t luxfer_segment_image;
+
+/** How good a segmentation is. Set struct_size before the call. */
+typedef struct luxfer_segment_report {
+    /** sizeof(luxfer_segment_report), set by the caller. */
+    uint32_t struct_size;
+    /** Must be 0. */
+    uint32_t reserved;
+    /** Expected share of wrong pixels, in [0, 1], from strokes held out of the training. */
+    double error;
+    /** Samples used of the negative class. */
+    uint64_t negative_samples;
+    /** Samples used of the positive class. */
+    uint64_t positive_samples;
+    /** Pixels that strokes of both classes cover; the later stroke counts. */
+    uint64_t contradictory_pixels;
+} luxfer_segment_report;
+
+/** The plane that carries the lights; its positive strokes lie on the plane, those of lights count as well. */
+#define LUXFER_PHASE_PLANE 0
+
+/** The lights in the plane; its positive strokes lie on lights, the others on the plane beside them. */
+#define LUXFER_PHASE_LIGHTS 1
+
+/** 1 where the confidence is above one half, else 0; 1 channel. */
+#define LUXFER_SEGMENT_MASK 0
+
+/** Probability that a pixel is of the positive class, in [0, 1]; 1 channel. */
+#define LUXFER_SEGMENT_CONFIDENCE 1
+
+/**
+ * How far a pixel is from anything that strokes have shown, in [0, 1]: where it is high one more stroke helps; 1 channel.
+ */
+#define LUXFER_SEGMENT_UNSEEN 2
+
+/**
+ * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+ */
+luxfer_status luxfer_segment_params_init(luxfer_segment_params *params,
+                                         size_t size);
+
+/** Creates the stage. The caller releases *segment. Any thread. */
+luxfer_status luxfer_segment_create(luxfer_context *context, luxfer_segment **segment);
+
+/**
+ * Sets what is known of each pixel: LUXFER_FEATURES_CHANNELS, or any image of 1 to 16 channels. Strokes set for another
+ * size are dropped. Any thread.
+ */
+luxfer_status luxfer_segment_set_features(luxfer_segment *segment,
+                                          luxfer_image *features);
+
+/**
+ * Sets where to look, 1, and where not, 0, such as the mask of the plane when lights are sought; 1 channel, the size of
+ * the features. within may be NULL: everywhere. Any thread.
+ */
+luxfer_status luxfer_segment_set_within(luxfer_segment *segment,
+                                        luxfer_image *within);
+
+/**
+ * Adds a stroke along a polyline: points is an array of point_count pairs of float x, y in pixels (the top-left pixel's
+ * centre is 0.5, 0.5), radius is in pixels, in [0.001, 4096], and positive is 1 for what is sought and 0 for what is not.
+ * One point makes a dot. Any thread.
+ * LUXFER_INVALID_OPERATION before the features are set.
+ */
+luxfer_status luxfer_segment_add_stroke(luxfer_segment *segment,
+                                        const float *points,
+                                        size_t point_count,
+                                        float radius,
+                                        int32_t positive);
+
+/**
+ * Adds the strokes of a drawing of the features' size, those that concern phase (a LUXFER_PHASE_ value): green (0, 255, 0)
+ * plane, red (255, 0, 0) not plane, yellow (255, 255, 0) light, blue (0, 0, 255) not light; other colours and transparent
+ * pixels are unpainted. Load drawings with LUXFER_COLOUR_SRGB. Any thread.
+ * LUXFER_INVALID_OPERATION before the features are set; LUXFER_INVALID_ARGUMENT if the size differs.
+ */
+luxfer_status luxfer_segment_add_strokes_image(luxfer_segment *segment,
+                                               luxfer_image *drawing,
+                                               luxfer_phase phase);
+
+/**
+ * Adds the strokes that a text in UTF-8 describes, those that concern phase (a LUXFER_PHASE_ value). Each line is a class,
+ * a radius and the points' x and y in pixels, as "light 3 310.5 30 320 31"; classes are plane, not-plane, light and
+ * not-light; from # on a line is a comment. Any thread.
+ * LUXFER_INVALID_OPERATION before the features are set; LUXFER_FORMAT, naming the line, if the text is malformed.
+ */
+luxfer_status luxfer_segment_add_strokes_text(luxfer_segment *segment,
+                                              const char *description,
+                                              luxfer_phase phase);
+
+/** Removes all strokes. Any thread. */
+luxfer_status luxfer_segment_clear_strokes(luxfer_segment *segment);
+
+/**
+ * Starts a job that segments. params may be NULL for the defaults. The caller releases *job. Any thread.
+ * LUXFER_INVALID_OPERATION if the features are missing or a job runs already. The job may end with LUXFER_DEGENERATE if
+ * there are no strokes of one class, LUXFER_INVALID_ARGUMENT if sizes differ, a feature is not finite or a setting is out
+ * of range.
+ */
+luxfer_status luxfer_segment_start(luxfer_segment *segment,
+                                   const luxfer_segment_params *params,
+                                   luxfer_job **job);
+
+/**
+ * Gets an image of the result; which is a LUXFER_SEGMENT_ value. The caller releases *image. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded.
+ */
+luxfer_status luxfer_segment_get_image(luxfer_segment *segment,
+                                       luxfer_segment_image which,
+                                       luxfer_image **image);
+
+/**
+ * Tells how good the segmentation is. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded.
+ */
+luxfer_status luxfer_segment_get_report(luxfer_segment *segment, luxfer_segment_report *report);
+
+/** Adds a reference. Any thread. */
+luxfer_status luxfer_segment_retain(luxfer_segment *segment);
+
+/** Gives a reference back; a job that runs goes on. Any thread. */
+luxfer_status luxfer_segment_release(luxfer_segment *segment);
+
+/* ====================================================================================================================
+ * Emission
+ *
+ * From the unwarped lights of a photo to an emissive texture of any size that carries their pattern on, and the list of
+ * its luminaires.
+ * ==================================================================================================================== */
+
+/** An emissive texture in the making. See luxfer_emission_create. */
+typedef struct luxfer_emission luxfer_emission;
+
+/** Settings of the emission. Fill them with luxfer_emission_params_init. */
+typedef struct luxfer_emission_params {
+    /** sizeof(luxfer_emission_params), set by luxfer_emission_params_init. */
+    uint32_t struct_size;
+    /** Width of the texture in texels, in [1, 65536]; default 1024. */
+    uint32_t width;
+    /** Height of the texture in texels, in [1, 65536]; default 1024. */
+    uint32_t height;
+    /** Side of a patch in working pixels; 0, the default, chooses it from the spacing of the lights. */
+    uint32_t block;
+    /** Unwarped pixels per texel, in [1e-3, 1e3]; default 1. */
+    double scale;
+    /** Longest side of the exemplar during synthesis, in pixels, in [16, 2048]; default 256. */
+    uint32_t working_side;
+    /** Weight of the metadata channels against colour, in [0, 1e3]; default 1; 0 is plain quilting. */
+    float metadata_weight;
+    /** Seed of the synthesis; default 1. */
+    uint64_t seed;
+} luxfer_emission_params;
+
+/** An image of the emission: a LUXFER_EMISSION_ value. */
+typedef int32_t luxfer_emission_image;
+
+/** How good the texture is. Set struct_size before the call. */
+typedef struct luxfer_emission_report {
+    /** sizeof(luxfer_emission_report), set by the caller. */
+    uint32_t struct_size;
+    /** Number of luminaires; see luxfer_emission_get_luminaire. */
+    uint32_t luminaires;
+    /** Relative difference between texture and exemplar in the share of lit area. */
+    double error;
+    /**
+     * How regular the lights are, in [0, 1]: correlation with themselves shifted by the lattice that was found, 0 without.
+     */
+    double regularity;
+} luxfer_emission_report;
+
+/** One lamp of the texture. Set struct_size before the call. */
+typedef struct luxfer_luminaire {
+    /** sizeof(luxfer_luminaire), set by the caller. */
+    uint32_t struct_size;
+    /** Number of corners of its outline. */
+    uint32_t corners;
+    /** Centre in texels, x and y. */
+    double centre[2];
+    /** Lengths of the principal axes in texels, the long one first. */
+    double size[2];
+    /** Angle of the long axis from x towards y, in radians, in (-pi/2, pi/2]. */
+    double orientation;
+    /** Area in texels. */
+    double area;
+    /** Share of the light of the whole texture, in [0, 1]. */
+    double flux_share;
+    /** Mean linear colour, relative to the photo's white. */
+    float colour[3];
+    /** 0. */
+    uint32_t reserved;
+} luxfer_luminaire;
+
+/** The texture: linear RGB relative to the photo's white, 0 where there is no lamp. */
+#define LUXFER_EMISSION_TEXTURE 0
+
+/** 1 on lamps, else 0; 1 channel. */
+#define LUXFER_EMISSION_MASK 1
+
+/**
+ * What synthesis started from, at working size: confidence, signed x and y distance to the nearest light; 3 channels.
+ */
+#define LUXFER_EMISSION_EXEMPLAR_METADATA 2
+
+/** The same of its result. */
+#define LUXFER_EMISSION_METADATA 3
+
+/**
+ * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+ */
+luxfer_status luxfer_emission_params_init(luxfer_emission_params *params,
+                                          size_t size);
+
+/** Creates the stage. The caller releases *emission. Any thread. */
+luxfer_status luxfer_emission_create(luxfer_context *context, luxfer_emission **emission);
+
+/**
+ * Sets the exemplar, three images of one size: the unwarped photo (linear RGB), the unwarped confidence of the lights (1
+ * channel, in [0, 1]) and where both are valid (1 channel, 1 or 0). Any thread.
+ */
+luxfer_status luxfer_emission_set_exemplar(luxfer_emission *emission,
+                                           luxfer_image *unwarped,
+                                           luxfer_image *light,
+                                           luxfer_image *valid);
+
+/**
+ * Sets the photo from which full detail is recovered, and the map from unwarped to photo pixels, 9 doubles row by row
+ * (luxfer_rectify_report.to_photo). photo may be NULL: the unwarped image is the finest there is. Any thread.
+ */
+luxfer_status luxfer_emission_set_photo(luxfer_emission *emission,
+                                        luxfer_image *photo,
+                                        const double *to_photo);
+
+/**
+ * Starts a job that makes the texture. params may be NULL for the defaults. The caller releases *job. Any thread.
+ * LUXFER_INVALID_OPERATION if the exemplar is missing or a job runs already. The job may end with LUXFER_DEGENERATE if
+ * there are no lights in the exemplar, LUXFER_INVALID_ARGUMENT if sizes differ or a setting is out of range.
+ */
+luxfer_status luxfer_emission_start(luxfer_emission *emission,
+                                    const luxfer_emission_params *params,
+                                    luxfer_job **job);
+
+/**
+ * Gets an image of the result; which is a LUXFER_EMISSION_ value. The caller releases *image. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded.
+ */
+luxfer_status luxfer_emission_get_image(luxfer_emission *emission,
+                                        luxfer_emission_image which,
+                                        luxfer_image **image);
+
+/**
+ * Tells how good the texture is. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded.
+ */
+luxfer_status luxfer_emission_get_report(luxfer_emission *emission,
+                                         luxfer_emission_report *report);
+
+/**
+ * Describes a luminaire of the texture. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such luminaire.
+ */
+luxfer_status luxfer_emission_get_luminaire(luxfer_emission *emission,
+                                            uint32_t index,
+                                            luxfer_luminaire *luminaire);
+
+/**
+ * Tells a corner of a luminaire's outline, in texels. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such luminaire or corner.
+ */
+luxfer_status luxfer_emission_get_corner(luxfer_emission *emission,
+                                         uint32_t index,
+                                         uint32_t corner,
+                                         double *x,
+                                         double *y);
+
+/** Adds a reference. Any thread. */
+luxfer_status luxfer_emission_retain(luxfer_emission *emission);
+
+/** Gives a reference back; a job that runs goes on. Any thread. */
+luxfer_status luxfer_emission_release(luxfer_emission *emission);
+
+/* ====================================================================================================================
+ * Rendering
+ *
+ * A path tracer of a scene's light, in cd/m². It gets better pass by pass: while its job runs, and after a cancel, the
+ * image so far can be read with its own error estimate.
+ * ==================================================================================================================== */
+
+/** A rendering of a scene. See luxfer_render_create. */
+typedef struct luxfer_render luxfer_render;
+
+/** Settings of a rendering. Fill them with luxfer_render_params_init. */
+typedef struct luxfer_render_params {
+    /** sizeof(luxfer_render_params), set by luxfer_render_params_init. */
+    uint32_t struct_size;
+    /** Width of the image in pixels, in [1, 65536]; default 1280. */
+    uint32_t width;
+    /** Height of the image in pixels, in [1, 65536]; default 720. */
+    uint32_t height;
+    /** Paths per pixel, in [1, 1048576]; default 64. */
+    uint32_t samples;
+    /** Stop when the mean relative standard error falls below this, >= 0; default 0: never. */
+    float target_error;
+    /** Stop after this many milliseconds; default 0: never. */
+    uint32_t time_budget_ms;
+    /** Seed of the paths; default 1. */
+    uint64_t seed;
+} luxfer_render_params;
+
+/** An image of a rendering: a LUXFER_RENDER_ value. */
+typedef int32_t luxfer_render_image;
+
+/** How good a rendering is. Set struct_size before the call. */
+typedef struct luxfer_render_report {
+    /** sizeof(luxfer_render_report), set by the caller. */
+    uint32_t struct_size;
+    /** Paths per pixel so far. */
+    uint32_t samples;
+    /** Mean over the pixels of the standard error, relative to the image's mean. */
+    double error;
+} luxfer_render_report;
+
+/** Mean radiance of each pixel, linear RGB in cd/m². */
+#define LUXFER_RENDER_BEAUTY 0
+
+/** Variance of that mean; 3 channels. */
+#define LUXFER_RENDER_VARIANCE 1
+
+/**
+ * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+ */
+luxfer_status luxfer_render_params_init(luxfer_render_params *params,
+                                        size_t size);
+
+/** Creates the stage. The caller releases *render. Any thread. */
+luxfer_status luxfer_render_create(luxfer_context *context, luxfer_render **render);
+
+/** Sets the scene; each start renders it as it is then. Any thread. */
+luxfer_status luxfer_render_set_scene(luxfer_render *render, luxfer_scene *scene);
+
+/** Renders from a camera of the scene; the default is camera 0. Any thread. */
+luxfer_status luxfer_render_set_camera_index(luxfer_render *render, uint32_t camera);
+
+/** Renders from a camera of its own. camera may be NULL for the defaults of luxfer_camera_params. Any thread. */
+luxfer_status luxfer_render_set_camera(luxfer_render *render, const luxfer_camera_params *camera);
+
+/**
+ * Starts a job that renders. params may be NULL for the defaults. The caller releases *job. Any thread.
+ * LUXFER_INVALID_OPERATION if the scene is missing or a job runs already; LUXFER_NOT_FOUND if the scene has no such
+ * camera. The job may end with LUXFER_INVALID_ARGUMENT if the scene is not valid or a setting is out of range.
+ */
+luxfer_status luxfer_render_start(luxfer_render *render,
+                                  const luxfer_render_params *params,
+                                  luxfer_job **job);
+
+/**
+ * Gets an image of the rendering, as far as it is; which is a LUXFER_RENDER_ value. The caller releases *image. Any
+ * thread.
+ * LUXFER_NOT_READY before the first pass of a job.
+ */
+luxfer_status luxfer_render_get_image(luxfer_render *render,
+                                      luxfer_render_image which,
+                                      luxfer_image **image);
+
+/**
+ * Tells how good the rendering is so far. Any thread.
+ * LUXFER_NOT_READY before the first pass of a job.
+ */
+luxfer_status luxfer_render_get_report(luxfer_render *render, luxfer_render_report *report);
+
+/** Adds a reference. Any thread. */
+luxfer_status luxfer_render_retain(luxfer_render *render);
+
+/** Gives a reference back; a job that runs goes on. Any thread. */
+luxfer_status luxfer_render_release(luxfer_render *render);
+
+/* ====================================================================================================================
+ * Relighting
+ *
+ * Solves for the colour and intensity of an emission, so that a surface of the scene gets the colour it has in the photo:
+ * what to multiply the emission with, per channel, with a confidence interval.
+ * ==================================================================================================================== */
+
+/** A relighting of a scene. See luxfer_relight_create. */
+typedef struct luxfer_relight luxfer_relight;
+
+/** What should match the photo: a LUXFER_QUANTITY_ value. */
+typedef int32_t luxfer_quantity;
+
+/** Settings of a relighting. Fill them with luxfer_relight_params_init. */
+typedef struct luxfer_relight_params {
+    /** sizeof(luxfer_relight_params), set by luxfer_relight_params_init. */
+    uint32_t struct_size;
+    /** LUXFER_QUANTITY_ value; default LUXFER_QUANTITY_OUTGOING. */
+    luxfer_quantity quantity;
+    /** Most paths to trace, in [1024, 2^30]; default 2^22. */
+    uint32_t paths;
+    /**
+     * Stop when the half-width of the widest 95 % interval is below this share of its answer, in [0, 1]; default 0.01; 0 =
+     * never.
+     */
+    float target_error;
+    /** Stop after this many milliseconds; default 0: never. */
+    uint32_t time_budget_ms;
+    /** Must be 0. */
+    uint32_t reserved;
+    /** Seed of the paths; default 1. */
+    uint64_t seed;
+} luxfer_relight_params;
+
+/** How far the answer goes to meet the target in one colour channel: a LUXFER_REACH_ value. */
+typedef int32_t luxfer_reach;
+
+/** The solution and how sure it is. Set struct_size before the call. */
+typedef struct luxfer_relight_report {
+    /** sizeof(luxfer_relight_report), set by the caller. */
+    uint32_t struct_size;
+    /** Paths traced. */
+    uint32_t paths;
+    /** What to multiply the emission with, per channel, >= 0. */
+    double scale[3];
+    /** Half-widths of the 95 % confidence intervals of scale. */
+    double half_width[3];
+    /** Mean radiance of the target under the emission at scale 1, in cd/m². */
+    double response[3];
+    /** Mean radiance of the target under all other light, in cd/m². */
+    double background[3];
+    /** LUXFER_REACH_ value of each channel. */
+    luxfer_reach reach[3];
+    /** 0. */
+    uint32_t reserved;
+    /** The widest relative half-width among the channels that met their target. */
+    double error;
+} luxfer_relight_report;
+
+/** The light the target surface sends back, its albedo included: what a photo shows of it. */
+#define LUXFER_QUANTITY_OUTGOING 0
+
+/** The light that arrives at it, as if it were white. */
+#define LUXFER_QUANTITY_INCIDENT 1
+
+/** The target is met. */
+#define LUXFER_REACH_MET 0
+
+/** Other lights alone exceed the target: the emission is off in this channel. */
+#define LUXFER_REACH_TOO_BRIGHT 1
+
+/** No light of this channel reaches the target: the emission keeps the mean scale of the other channels. */
+#define LUXFER_REACH_DARK 2
+
+/**
+ * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+ */
+luxfer_status luxfer_relight_params_init(luxfer_relight_params *params,
+                                         size_t size);
+
+/** Creates the stage. The caller releases *relight. Any thread. */
+luxfer_status luxfer_relight_create(luxfer_context *context, luxfer_relight **relight);
+
+/**
+ * Sets the scene, the emitting material to solve for, and the mesh whose mean colour is to match: both as
+ * luxfer_scene_place_emission has told them. The emission has the strength that the solution will multiply. Any thread.
+ * LUXFER_NOT_FOUND if the scene has no such material or mesh.
+ */
+luxfer_status luxfer_relight_set_scene(luxfer_relight *relight,
+                                       luxfer_scene *scene,
+                                       uint32_t material,
+                                       uint32_t mesh);
+
+/**
+ * Sets the mean radiance the mesh should have, in cd/m² per channel, each finite and >= 0; for LUXFER_QUANTITY_INCIDENT
+ * that of a white surface in the same light, illuminance / pi. Any thread.
+ */
+luxfer_status luxfer_relight_set_target(luxfer_relight *relight,
+                                        float red,
+                                        float green,
+                                        float blue);
+
+/**
+ * Starts a job that solves. params may be NULL for the defaults. The caller releases *job. Any thread.
+ * LUXFER_INVALID_OPERATION if the scene or the target is missing or a job runs already. The job may end with
+ * LUXFER_UNREACHABLE if no light of the emission can reach the target, LUXFER_INVALID_ARGUMENT if the scene is not valid or
+ * a setting is out of range.
+ */
+luxfer_status luxfer_relight_start(luxfer_relight *relight,
+                                   const luxfer_relight_params *params,
+                                   luxfer_job **job);
+
+/**
+ * Tells the solution and how sure it is. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded.
+ */
+luxfer_status luxfer_relight_get_report(luxfer_relight *relight, luxfer_relight_report *report);
+
+/** Adds a reference. Any thread. */
+luxfer_status luxfer_relight_retain(luxfer_relight *relight);
+
+/** Gives a reference back; a job that runs goes on. Any thread. */
+luxfer_status luxfer_relight_release(luxfer_relight *relight);
+
+/* ====================================================================================================================
+ * Transfer
+ *
+ * The lighting transfer from end to end: from a photo, a few strokes and a scene to that scene lit as in the photo. It
+ * runs the stages in order. Every result can be read as soon as its stage has ended, replaced by the caller's own, and the
+ * run taken up again from any stage.
+ * ==================================================================================================================== */
+
+/** A lighting transfer. See luxfer_transfer_create. */
+typedef struct luxfer_transfer luxfer_transfer;
+
+/** What part of the photo gives the colour to match: a LUXFER_TARGET_ value. */
+typedef int32_t luxfer_target;
+
+/**
+ * Settings of a transfer. Fill them with luxfer_transfer_params_init. The structs pointed to are read during the call.
+ */
+typedef struct luxfer_transfer_params {
+    /** sizeof(luxfer_transfer_params), set by luxfer_transfer_params_init. */
+    uint32_t struct_size;
+    /** Longest side of the emissive texture in texels, in [1, 16384]; default 2048. */
+    uint32_t max_texels;
+    /**
+     * Distance of the photo's camera from the lit plane in metres, in [0.01, 1e4]; default 1.2. It sets the scale of the
+     * pattern.
+     */
+    double plane_distance;
+    /** Luminance that the photo's white stands for, in cd/m², in [1e-6, 1e9]; default 100. */
+    float white_luminance;
+    /** LUXFER_TARGET_ value; default LUXFER_TARGET_SURFACE. */
+    luxfer_target target;
+    /** Settings of the stages VIEW and UNWARP; NULL, the default, for their defaults. */
+    const luxfer_rectify_params *rectify;
+    /** Settings of the stage FEATURES; NULL, the default, for their defaults. */
+    const luxfer_features_params *features;
+    /** Settings of the stage PLANE; NULL, the default, for their defaults. */
+    const luxfer_segment_params *plane;
+    /** Settings of the stage LIGHTS; NULL, the default, for those of luxfer_segment with channels = 7, colour only. */
+    const luxfer_segment_params *lights;
+    /**
+     * Settings of the stage EMISSION, whose width, height and scale the transfer sets; NULL, the default, for their
+     * defaults.
+     */
+    const luxfer_emission_params *emission;
+    /** Settings of the stage RELIGHT; NULL, the default, for their defaults. */
+    const luxfer_relight_params *relight;
+    /** Settings of the stage RENDER; NULL, the default, for their defaults. */
+    const luxfer_render_params *render;
+} luxfer_transfer_params;
+
+/** A stage of the transfer: a LUXFER_STAGE_ value, in the order they run. */
+typedef int32_t luxfer_stage;
+
+/** Lines, vanishing points and the photo's camera. */
+#define LUXFER_STAGE_VIEW 0
+
+/** Ten channels for each pixel. */
+#define LUXFER_STAGE_FEATURES 1
+
+/** The mask of the plane that carries the lights. */
+#define LUXFER_STAGE_PLANE 2
+
+/** The mask of the lights in it. */
+#define LUXFER_STAGE_LIGHTS 3
+
+/** The plane seen straight on. */
+#define LUXFER_STAGE_UNWARP 4
+
+/** The emissive texture, laid onto the scene's surface. */
+#define LUXFER_STAGE_EMISSION 5
+
+/** Its colour and intensity. */
+#define LUXFER_STAGE_RELIGHT 6
+
+/** The picture. */
+#define LUXFER_STAGE_RENDER 7
+
+/** The plane that carries the lights, without them and their halo. */
+#define LUXFER_TARGET_SURFACE 0
+
+/** The whole photo. */
+#define LUXFER_TARGET_WHOLE_IMAGE 1
+
+/**
+ * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+ */
+luxfer_status luxfer_transfer_params_init(luxfer_transfer_params *params,
+                                          size_t size);
+
+/** Creates a transfer. The caller releases *transfer. Any thread. */
+luxfer_status luxfer_transfer_create(luxfer_context *context, luxfer_transfer **transfer);
+
+/** Sets the photo: linear RGB, 1 = display white. Strokes set for a photo of another size are dropped. Any thread. */
+luxfer_status luxfer_transfer_set_photo(luxfer_transfer *transfer,
+                                        luxfer_image *photo);
+
+/** Sets a depth map of the photo, as luxfer_features_set_depth. depth may be NULL: none. Any thread. */
+luxfer_status luxfer_transfer_set_depth(luxfer_transfer *transfer,
+                                        luxfer_image *depth,
+                                        luxfer_depth_kind kind);
+
+/**
+ * Sets the scene to light, and the name (UTF-8) of the object or material of its surface that receives the lights. The
+ * scene itself is never changed; each start takes it as it is then. Any thread.
+ */
+luxfer_status luxfer_transfer_set_scene(luxfer_transfer *transfer,
+                                        luxfer_scene *scene,
+                                        const char *surface);
+
+/** Sets the camera of the picture. camera may be NULL: the scene's first, which is the default. Any thread. */
+luxfer_status luxfer_transfer_set_camera(luxfer_transfer *transfer,
+                                         const luxfer_camera_params *camera);
+
+/**
+ * Adds a stroke on the photo that concerns phase, a LUXFER_PHASE_ value; otherwise as luxfer_segment_add_stroke. Strokes on
+ * lights are examples of the plane as well. Any thread.
+ * LUXFER_INVALID_OPERATION before the photo is set.
+ */
+luxfer_status luxfer_transfer_add_stroke(luxfer_transfer *transfer,
+                                         luxfer_phase phase,
+                                         const float *points,
+                                         size_t point_count,
+                                         float radius,
+                                         int32_t positive);
+
+/**
+ * Adds the strokes of both phases from a drawing of the photo's size, as luxfer_segment_add_strokes_image. Any thread.
+ * LUXFER_INVALID_OPERATION before the photo is set.
+ */
+luxfer_status luxfer_transfer_add_strokes_image(luxfer_transfer *transfer,
+                                                luxfer_image *drawing);
+
+/**
+ * Adds the strokes of both phases from a text, as luxfer_segment_add_strokes_text. Any thread.
+ * LUXFER_INVALID_OPERATION before the photo is set.
+ */
+luxfer_status luxfer_transfer_add_strokes_text(luxfer_transfer *transfer, const char *description);
+
+/** Removes all strokes. Any thread. */
+luxfer_status luxfer_transfer_clear_strokes(luxfer_transfer *transfer);
+
+/**
+ * Puts the lines and the camera that a luxfer_rectify has found, and the plane if it has unwarped one, in the place of the
+ * results of the stages VIEW and UNWARP. Any thread.
+ * LUXFER_NOT_READY if it has found none yet.
+ */
+luxfer_status luxfer_transfer_use_rectify(luxfer_transfer *transfer,
+                                          luxfer_rectify *rectify);
+
+/**
+ * Puts the result of a luxfer_features in the place of that of the stage FEATURES. Any thread.
+ * LUXFER_NOT_READY if it has none yet.
+ */
+luxfer_status luxfer_transfer_use_features(luxfer_transfer *transfer, luxfer_features *features);
+
+/**
+ * Puts the result of a luxfer_segment in the place of that of the stage PLANE or LIGHTS, as phase, a LUXFER_PHASE_ value,
+ * says. Any thread.
+ * LUXFER_NOT_READY if it has none yet.
+ */
+luxfer_status luxfer_transfer_use_segment(luxfer_transfer *transfer,
+                                          luxfer_phase phase,
+                                          luxfer_segment *segment);
+
+/**
+ * Puts a mask of the photo's size, such as one drawn by hand, in the place of the result of the stage PLANE or LIGHTS, as
+ * phase, a LUXFER_PHASE_ value, says; 1 channel, taken as a confidence in [0, 1]. Any thread.
+ */
+luxfer_status luxfer_transfer_use_mask(luxfer_transfer *transfer,
+                                       luxfer_phase phase,
+                                       luxfer_image *mask);
+
+/**
+ * Starts a job that runs the stages first to last, LUXFER_STAGE_ values, both included; those before must have results.
+ * params may be NULL for the defaults. The caller releases *job. Any thread.
+ * LUXFER_INVALID_OPERATION if a job runs already. The job may end as the jobs of its stages may, the message naming the
+ * stage, or with LUXFER_NOT_READY if an input or an earlier result is missing; the results of the stages before stay.
+ */
+luxfer_status luxfer_transfer_start(luxfer_transfer *transfer,
+                                    luxfer_stage first,
+                                    luxfer_stage last,
+                                    const luxfer_transfer_params *params,
+                                    luxfer_job **job);
+
+/** Adds a reference. Any thread. */
+luxfer_status luxfer_transfer_retain(luxfer_transfer *transfer);
+
+/** Gives a reference back; a job that runs goes on. Any thread. */
+luxfer_status luxfer_transfer_release(luxfer_transfer *transfer);
+
+/* ====================================================================================================================
+ * Transfer results
+ *
+ * What a transfer has made so far. Results appear when their stage has ended; the picture grows while it is rendered.
+ * ==================================================================================================================== */
+
+/** An image of the transfer: a LUXFER_TRANSFER_ value. */
+typedef int32_t luxfer_transfer_image;
+
+/** A scene of the transfer: a LUXFER_SCENE_ value. */
+typedef int32_t luxfer_transfer_scene;
+
+/**
+ * What each stage took and how good its result is. Set struct_size before the call. Errors of stages without a result are
+ * NaN.
+ */
+typedef struct luxfer_transfer_report {
+    /** sizeof(luxfer_transfer_report), set by the caller. */
+    uint32_t struct_size;
+    /** Number of fixtures; see luxfer_transfer_get_fixture. 0 before the stage RELIGHT has ended. */
+    uint32_t fixtures;
+    /** Seconds each stage took when it last ran, by LUXFER_STAGE_ value. */
+    double seconds[8];
+    /** Largest standard deviation of a vanishing point's direction, in radians. */
+    double view_error;
+    /** Mean trust in the depth of the features, in [0, 1]. */
+    double depth_confidence;
+    /** Expected share of wrong pixels in the mask of the plane. */
+    double plane_error;
+    /** Expected share of wrong pixels in the mask of the lights. */
+    double lights_error;
+    /** Largest expected error of a corner of the unwarped image, in unwarped pixels. */
+    double unwarp_error;
+    /** Relative difference between texture and photo in the share of lit area. */
+    double emission_error;
+    /** Widest relative half-width of the solution's 95 % intervals. */
+    double relight_error;
+    /** Mean relative standard error of the picture. */
+    double render_error;
+    /** Size of a texel of the emission in metres. */
+    double texel_size;
+    /** Mean colour the surface is to have, relative to the photo's white. */
+    float target[3];
+    /** 0. */
+    uint32_t reserved;
+} luxfer_transfer_report;
+
+/** One lamp of the lit scene. Set struct_size before the call. */
+typedef struct luxfer_fixture {
+    /** sizeof(luxfer_fixture), set by the caller. */
+    uint32_t struct_size;
+    /** Centre in metres. */
+    float position[3];
+    /** Unit direction the lamp shines in. */
+    float normal[3];
+    /** Unit direction of its long axis. */
+    float axis[3];
+    /** Mean luminance per channel in cd/m². */
+    float radiance[3];
+    /** 0. */
+    uint32_t reserved;
+    /** Lengths along and across the axis in metres. */
+    double size[2];
+    /** Area in m². */
+    double area;
+    /** Luminous flux in lumens. */
+    double flux;
+} luxfer_fixture;
+
+/** The ten channels of the features. */
+#define LUXFER_TRANSFER_FEATURES 0
+
+/** 1 on the plane, else 0; 1 channel. */
+#define LUXFER_TRANSFER_PLANE_MASK 1
+
+/** Probability that a pixel is on the plane; 1 channel. */
+#define LUXFER_TRANSFER_PLANE_CONFIDENCE 2
+
+/** 1 on lights, else 0; 1 channel. */
+#define LUXFER_TRANSFER_LIGHTS_MASK 3
+
+/** Probability that a pixel is a light; 1 channel. */
+#define LUXFER_TRANSFER_LIGHTS_CONFIDENCE 4
+
+/** The plane seen straight on, linear RGB. */
+#define LUXFER_TRANSFER_UNWARPED 5
+
+/** 1 where the photo shows the plane, else 0; 1 channel. */
+#define LUXFER_TRANSFER_UNWARPED_VALID 6
+
+/** The emissive texture, linear RGB relative to the photo's white. */
+#define LUXFER_TRANSFER_EMISSION 7
+
+/** 1 on lamps of the texture, else 0; 1 channel. */
+#define LUXFER_TRANSFER_EMISSION_MASK 8
+
+/** The scene in its new light, linear RGB in cd/m²; while it is being rendered, as far as it is. */
+#define LUXFER_TRANSFER_RENDER 9
+
+/** Variance of the rendering; 3 channels. */
+#define LUXFER_TRANSFER_RENDER_VARIANCE 10
+
+/** With the emission at the photo's own strength, before it is solved for. */
+#define LUXFER_SCENE_UNSOLVED 0
+
+/** With the solved emission: the result. */
+#define LUXFER_SCENE_LIT 1
+
+/** As LUXFER_SCENE_LIT, the light's colour taken away and its luminance kept. */
+#define LUXFER_SCENE_WHITE 2
+
+/**
+ * Gets an image; which is a LUXFER_TRANSFER_ value. The caller releases *image. Any thread.
+ * LUXFER_NOT_READY before the stage that makes it has ended.
+ */
+luxfer_status luxfer_transfer_get_image(luxfer_transfer *transfer,
+                                        luxfer_transfer_image which,
+                                        luxfer_image **image);
+
+/**
+ * Gets a scene; which is a LUXFER_SCENE_ value. The caller releases *scene, which is independent of the transfer. Any
+ * thread.
+ * LUXFER_NOT_READY before the stage EMISSION, for LUXFER_SCENE_UNSOLVED, or RELIGHT has ended.
+ */
+luxfer_status luxfer_transfer_get_scene(luxfer_transfer *transfer,
+                                        luxfer_transfer_scene which,
+                                        luxfer_scene **scene);
+
+/**
+ * Tells what each stage took and how good its result is. Any thread.
+ * LUXFER_NOT_READY before the first stage has ended.
+ */
+luxfer_status luxfer_transfer_get_report(luxfer_transfer *transfer, luxfer_transfer_report *report);
+
+/**
+ * Tells the solved colour and intensity and how sure they are. Any thread.
+ * LUXFER_NOT_READY before the stage RELIGHT has ended.
+ */
+luxfer_status luxfer_transfer_get_solution(luxfer_transfer *transfer, luxfer_relight_report *solution);
+
+/**
+ * Describes a lamp of the lit scene. Any thread.
+ * LUXFER_NOT_READY before the stage RELIGHT has ended; LUXFER_NOT_FOUND if there is no such fixture.
+ */
+luxfer_status luxfer_transfer_get_fixture(luxfer_transfer *transfer,
+                                          uint32_t index,
+                                          luxfer_fixture *fixture);
 #ifdef __cplusplus
 }
 #endif

@@ -12,7 +12,23 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Files of `src/ffi` with exported items, in the order of the header.
-const GROUPS: &[&str] = &["version", "status", "context", "image", "job", "scene", "scene_parts"];
+const GROUPS: &[&str] = &[
+    "version",
+    "status",
+    "context",
+    "image",
+    "job",
+    "scene",
+    "scene_parts",
+    "rectify",
+    "features",
+    "segment",
+    "emission",
+    "render",
+    "relight",
+    "transfer",
+    "transfer_results",
+];
 
 #[test]
 fn the_header_is_what_the_sources_say() {
@@ -250,36 +266,48 @@ fn structs(header: &str) -> BTreeMap<&str, Vec<&str>> {
 
 type Fields = Vec<(&'static str, usize, usize)>;
 
-/// Sizes, and offsets and sizes of the fields, as Rust has them.
-fn rust_layouts() -> BTreeMap<&'static str, (usize, Fields)> {
-    let mut layouts = BTreeMap::new();
-    macro_rules! layout {
-        ($type:ident: $($field:ident)*) => {
-            fn size_of_field<T>(_: fn(&$type) -> &T) -> usize { size_of::<T>() }
-            let fields = vec![$((stringify!($field), offset_of!($type, $field), size_of_field(|s| &s.$field))),*];
-            layouts.insert(stringify!($type), (size_of::<$type>(), fields));
-        };
-    }
-    {
-        layout!(luxfer_context_params: struct_size num_threads memory_budget_mib);
-    }
-    {
-        layout!(luxfer_image_view: struct_size channels sample colour_space width height flags reserved pixel_stride row_stride byte_size data);
-    }
-    {
-        layout!(luxfer_scene_counts: struct_size meshes materials textures lights cameras triangles);
-    }
-    {
-        layout!(luxfer_surface: struct_size triangles origin u_axis v_axis normal size area reserved);
-    }
-    {
-        layout!(luxfer_material_params: struct_size double_sided name base_color metallic roughness emission transmission ior);
-    }
-    {
-        layout!(luxfer_mesh_params: struct_size material name vertex_count positions position_stride normals normal_stride uvs uv_stride triangle_count indices index_stride);
-    }
-    {
-        layout!(luxfer_camera_params: struct_size fov_y position target up reserved);
-    }
-    layouts
+macro_rules! layouts {
+    ($($type:ident: $($field:ident)*;)*) => {
+        /// Sizes, and offsets and sizes of the fields, as Rust has them.
+        fn rust_layouts() -> BTreeMap<&'static str, (usize, Fields)> {
+            BTreeMap::from([$((stringify!($type), {
+                fn size<T>(_: fn(&$type) -> &T) -> usize {
+                    size_of::<T>()
+                }
+                (size_of::<$type>(), vec![$((stringify!($field), offset_of!($type, $field), size(|s| &s.$field))),*])
+            })),*])
+        }
+    };
+}
+
+layouts! {
+    luxfer_context_params: struct_size num_threads memory_budget_mib;
+    luxfer_image_view: struct_size channels sample colour_space width height flags reserved pixel_stride row_stride
+        byte_size data;
+    luxfer_scene_counts: struct_size meshes materials textures lights cameras triangles;
+    luxfer_surface: struct_size triangles origin u_axis v_axis normal size area reserved;
+    luxfer_material_params: struct_size double_sided name base_color metallic roughness emission transmission ior;
+    luxfer_mesh_params: struct_size material name vertex_count positions position_stride normals normal_stride uvs
+        uv_stride triangle_count indices index_stride;
+    luxfer_camera_params: struct_size fov_y position target up reserved;
+    luxfer_features_params: struct_size near_plane far_plane normal_radius;
+    luxfer_features_report: struct_size depth_source depth_confidence replaced_pixels;
+    luxfer_segment_params: struct_size samples_per_class channels reserved ridge seed;
+    luxfer_segment_report: struct_size reserved error negative_samples positive_samples contradictory_pixels;
+    luxfer_rectify_params: struct_size detector search metric hough_band focal principal plane_axes max_side reserved
+        max_magnification seed;
+    luxfer_rectify_report: struct_size segments vanishing_points vanishing_errors vanishing_support focal_source
+        focal principal axes is_unwarped reserved to_photo corners corner_errors pixel_size aspect_confidence;
+    luxfer_emission_params: struct_size width height block scale working_side metadata_weight seed;
+    luxfer_emission_report: struct_size luminaires error regularity;
+    luxfer_luminaire: struct_size corners centre size orientation area flux_share colour reserved;
+    luxfer_render_params: struct_size width height samples target_error time_budget_ms seed;
+    luxfer_render_report: struct_size samples error;
+    luxfer_relight_params: struct_size quantity paths target_error time_budget_ms reserved seed;
+    luxfer_relight_report: struct_size paths scale half_width response background reach reserved error;
+    luxfer_transfer_params: struct_size max_texels plane_distance white_luminance target rectify features plane lights
+        emission relight render;
+    luxfer_transfer_report: struct_size fixtures seconds view_error depth_confidence plane_error lights_error
+        unwarp_error emission_error relight_error render_error texel_size target reserved;
+    luxfer_fixture: struct_size position normal axis radiance reserved size area flux;
 }

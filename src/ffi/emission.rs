@@ -14,7 +14,7 @@ use super::scene::missing;
 use super::stage::{Stage, need};
 use super::status::luxfer_status;
 use crate::emission::{self, Emission};
-use crate::error::{Error, Result};
+use crate::error::Error;
 use crate::geometry::Homography;
 use crate::image::Image;
 use glam::DMat3;
@@ -171,7 +171,10 @@ impl Handle for luxfer_emission {
 
 /// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_emission_params_init(params: *mut luxfer_emission_params, size: usize) -> luxfer_status {
+pub unsafe extern "C" fn luxfer_emission_params_init(
+    params: *mut luxfer_emission_params,
+    size: usize,
+) -> luxfer_status {
     guard(|| params::init(params, size))
 }
 

@@ -124,7 +124,10 @@ pub(super) fn depth_kind(value: luxfer_depth_kind) -> Result<DepthKind> {
 
 /// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_features_params_init(params: *mut luxfer_features_params, size: usize) -> luxfer_status {
+pub unsafe extern "C" fn luxfer_features_params_init(
+    params: *mut luxfer_features_params,
+    size: usize,
+) -> luxfer_status {
     guard(|| params::init(params, size))
 }
 
@@ -212,10 +215,10 @@ pub unsafe extern "C" fn luxfer_features_start(
             let input = features::Input {
                 photo,
                 depth: depth.map(|(image, kind)| features::DepthMap { image: image.image(), kind: *kind }),
-                room: inputs.view.as_ref().map(|view| features::RoomView {
-                    perspective: &view.perspective,
-                    segments: &view.segments,
-                }),
+                room: inputs
+                    .view
+                    .as_ref()
+                    .map(|view| features::RoomView { perspective: &view.perspective, segments: &view.segments }),
             };
             features::run(&input, &params, job)
         })

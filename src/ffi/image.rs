@@ -142,7 +142,7 @@ pub(super) struct Pixels {
 
 /// Who owns the pixels.
 enum Source {
-    Own(Image, #[expect(dead_code, reason = "held until the image goes")] Charge),
+    Own(Arc<Image>, #[expect(dead_code, reason = "held until the image goes")] Charge),
     Result(Arc<dyn Holder>),
 }
 
@@ -170,9 +170,22 @@ impl Pixels {
         }
     }
 
+    /// The image with an owner of its own; a part of a result is copied.
+    pub(super) fn shared(&self) -> Result<Arc<Image>> {
+        match &self.source {
+            Source::Own(image, _) => Ok(image.clone()),
+            Source::Result(holder) => {
+                let image = holder.image();
+                let mut copy = Image::new(image.width, image.height, image.channels)?;
+                copy.data.copy_from_slice(&image.data);
+                Ok(Arc::new(copy))
+            }
+        }
+    }
+
     /// Pixels of the caller's, counted in the budget.
     fn own(context: &Arc<Context>, image: Image, charge: Charge) -> Arc<Self> {
-        Arc::new(Self { context: context.clone(), source: Source::Own(image, charge) })
+        Arc::new(Self { context: context.clone(), source: Source::Own(Arc::new(image), charge) })
     }
 
     /// An image inside a result, shared with it.

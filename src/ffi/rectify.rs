@@ -17,7 +17,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::FocalSource;
 use crate::image::Image;
 use crate::job::Monitor;
-use crate::rectify::{self, Metric, UnwarpParams, Unwarped, View};
+use crate::rectify::{self, LineDetector, Metric, Search, UnwarpParams, Unwarped, View};
 use glam::DVec2;
 use std::sync::Arc;
 
@@ -26,7 +26,21 @@ pub struct luxfer_rectify {
     _opaque: [u8; 0],
 }
 
-/// How far a vanishing point is from a line: a LUXFER_METRIC_ value.
+/// How lines are found: a LUXFER_LINES_ value.
+pub type luxfer_lines = i32;
+/// Regions of like gradient direction, with sub-pixel end points.
+pub const LUXFER_LINES_REGIONS: luxfer_lines = 0;
+/// The paper's: gradient-restricted Hough transform of Canny edges.
+pub const LUXFER_LINES_HOUGH: luxfer_lines = 1;
+
+/// How vanishing points are found: a LUXFER_SEARCH_ value.
+pub type luxfer_search = i32;
+/// Three orthogonal directions and the focal length at once, then each refined freely.
+pub const LUXFER_SEARCH_MANHATTAN: luxfer_search = 0;
+/// The paper's: one group of lines after the other.
+pub const LUXFER_SEARCH_SUCCESSIVE: luxfer_search = 1;
+
+/// How far a vanishing point is from a line, in LUXFER_SEARCH_SUCCESSIVE: a LUXFER_METRIC_ value.
 pub type luxfer_metric = i32;
 /// The paper's measure on the segment that was detected, finite for vanishing points at infinity.
 pub const LUXFER_METRIC_SEGMENT: luxfer_metric = 0;
@@ -55,6 +69,10 @@ pub const LUXFER_RECTIFY_VALID: luxfer_rectify_image = 1;
 pub struct luxfer_rectify_params {
     /// sizeof(luxfer_rectify_params), set by luxfer_rectify_params_init.
     pub struct_size: u32,
+    /// LUXFER_LINES_ value; default LUXFER_LINES_REGIONS.
+    pub detector: luxfer_lines,
+    /// LUXFER_SEARCH_ value; default LUXFER_SEARCH_MANHATTAN.
+    pub search: luxfer_search,
     /// LUXFER_METRIC_ value; default LUXFER_METRIC_SEGMENT.
     pub metric: luxfer_metric,
     /// Half-width in radians of the band around the gradient's direction that votes for a line, in (0, pi/2]; default 2.5
@@ -79,11 +97,13 @@ pub struct luxfer_rectify_params {
 // SAFETY: plain numbers.
 unsafe impl Versioned for luxfer_rectify_params {
     const NAME: &'static str = "luxfer_rectify_params";
-    const SIZES: &'static [usize] = &[72];
+    const SIZES: &'static [usize] = &[80];
     fn defaults() -> Self {
         let (view, unwarp) = (rectify::Params::default(), UnwarpParams::default());
         Self {
-            struct_size: 72,
+            struct_size: 80,
+            detector: LUXFER_LINES_REGIONS,
+            search: LUXFER_SEARCH_MANHATTAN,
             metric: LUXFER_METRIC_SEGMENT,
             hough_band: view.hough_band,
             focal: 0.0,
@@ -99,6 +119,16 @@ unsafe impl Versioned for luxfer_rectify_params {
 
 impl luxfer_rectify_params {
     pub(super) fn params(&self) -> Result<(rectify::Params, UnwarpParams)> {
+        let detector = match self.detector {
+            LUXFER_LINES_REGIONS => LineDetector::Regions,
+            LUXFER_LINES_HOUGH => LineDetector::Hough,
+            other => return Err(Error::argument(format!("detector is {other}; it must be a LUXFER_LINES_ value"))),
+        };
+        let search = match self.search {
+            LUXFER_SEARCH_MANHATTAN => Search::Manhattan,
+            LUXFER_SEARCH_SUCCESSIVE => Search::Successive,
+            other => return Err(Error::argument(format!("search is {other}; it must be a LUXFER_SEARCH_ value"))),
+        };
         let metric = match self.metric {
             LUXFER_METRIC_SEGMENT => Metric::Segment,
             LUXFER_METRIC_VISIBLE_LINE => Metric::VisibleLine,
@@ -115,19 +145,15 @@ impl luxfer_rectify_params {
         };
         let [x, y] = self.principal;
         let view = rectify::Params {
+            detector,
+            search,
             metric,
             hough_band: self.hough_band,
             focal: (self.focal != 0.0).then_some(self.focal),
             principal: (!x.is_nan() || !y.is_nan()).then_some(DVec2::new(x, y)),
             seed: self.seed,
-            ..rectify::Params::default()
         };
-        let unwarp = UnwarpParams {
-            axes,
-            max_side: self.max_side as usize,
-            max_magnification: self.max_magnification,
-            ..UnwarpParams::default()
-        };
+        let unwarp = UnwarpParams { axes, max_side: self.max_side as usize, max_magnification: self.max_magnification };
         Ok((view, unwarp))
     }
 }
@@ -381,8 +407,7 @@ pub unsafe extern "C" fn luxfer_rectify_warp(
         let (width, height) = (unwarped.image.width, unwarped.image.height);
         let monitor = Monitor::default();
         let pool = &stage.context().pool;
-        let image =
-            pool.run(|| rectify::warp(source.image(), &unwarped.to_photo, width, height, monitor.job()))?;
+        let image = pool.run(|| rectify::warp(source.image(), &unwarped.to_photo, width, height, monitor.job()))?;
         out.set(handle::give(Pixels::part(stage.context(), Arc::new(image), |image| image)));
         Ok(())
     })

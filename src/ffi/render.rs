@@ -14,7 +14,7 @@ use super::scene::{SceneObject, luxfer_scene, missing};
 use super::scene_parts::luxfer_camera_params;
 use super::stage::{Stage, need};
 use super::status::luxfer_status;
-use crate::error::{Error, Result};
+use crate::error::Error;
 use crate::image::Image;
 use crate::render::{self, Film};
 use crate::scene::Camera;

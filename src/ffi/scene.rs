@@ -129,6 +129,12 @@ impl SceneObject {
         Ok(Arc::new(Self { context: context.clone(), state: Mutex::new(State { scene, world: None, charges }) }))
     }
 
+    /// A scene that a stage has made, which is not counted.
+    pub(super) fn of_result(context: &Arc<Context>, scene: Arc<Scene>) -> Arc<Self> {
+        let state = State { scene, world: None, charges: Vec::new() };
+        Arc::new(Self { context: context.clone(), state: Mutex::new(state) })
+    }
+
     /// The scene as it is.
     pub(super) fn snapshot(&self) -> Arc<Scene> {
         lock(&self.state).scene.clone()

@@ -103,7 +103,14 @@ unsafe impl Versioned for luxfer_segment_report {
     const NAME: &'static str = "luxfer_segment_report";
     const SIZES: &'static [usize] = &[40];
     fn defaults() -> Self {
-        Self { struct_size: 40, reserved: 0, error: 0.0, negative_samples: 0, positive_samples: 0, contradictory_pixels: 0 }
+        Self {
+            struct_size: 40,
+            reserved: 0,
+            error: 0.0,
+            negative_samples: 0,
+            positive_samples: 0,
+            contradictory_pixels: 0,
+        }
     }
 }
 

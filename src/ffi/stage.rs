@@ -50,9 +50,20 @@ impl<I: Clone + Send + 'static, O: Send + Sync + 'static> Stage<I, O> {
         })
     }
 
-    /// Replaces the result: by a job that shows how far it is, or by the caller.
+    /// Replaces the result while a job runs, to show how far it is.
     pub(super) fn publish(&self, output: O) {
         lock(&self.state).output = Some(Arc::new(output));
+    }
+
+    /// Changes a part of the result for the caller's own, unless a job runs.
+    pub(super) fn replace(&self, change: impl FnOnce(&mut O)) -> Result<()>
+    where
+        O: Clone + Default,
+    {
+        let state = &mut *lock(&self.state);
+        state.check_idle()?;
+        change(Arc::make_mut(state.output.get_or_insert_default()));
+        Ok(())
     }
 
     /// Starts a job on the inputs as they are; its result becomes the stage's when it succeeds.

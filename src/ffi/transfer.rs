@@ -5,26 +5,28 @@
 //! run taken up again from any stage.
 
 use super::context::luxfer_context;
-use super::features::{depth_kind, luxfer_depth_kind, luxfer_features, luxfer_features_params};
 use super::emission::luxfer_emission_params;
+use super::features::{depth_kind, luxfer_depth_kind, luxfer_features, luxfer_features_params};
 use super::guard::{enter, guard};
 use super::handle::{self, Handle, Owned, tag};
 use super::image::{Pixels, luxfer_image};
 use super::job::luxfer_job;
-use super::params::{self, Report, Versioned};
+use super::params::{self, Versioned};
 use super::pointer::{Out, text};
 use super::rectify::{luxfer_rectify, luxfer_rectify_params};
-use super::relight::{luxfer_relight_params, luxfer_relight_report};
+use super::relight::luxfer_relight_params;
 use super::render::luxfer_render_params;
-use super::scene::{SceneObject, luxfer_scene, missing};
+use super::scene::{SceneObject, luxfer_scene};
 use super::scene_parts::luxfer_camera_params;
-use super::segment::{self, LUXFER_PHASE_LIGHTS, LUXFER_PHASE_PLANE, luxfer_phase, luxfer_segment, luxfer_segment_params};
+use super::segment::{
+    LUXFER_PHASE_LIGHTS, LUXFER_PHASE_PLANE, luxfer_phase, luxfer_segment, luxfer_segment_params, stroke,
+};
 use super::stage::{Stage as Runner, need};
 use super::status::luxfer_status;
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{Error, Result};
 use crate::features::DepthKind;
 use crate::scene::Camera;
-use crate::segment::{StrokeSet, strokes};
+use crate::segment::{self, Segmentation, StrokeSet, strokes};
 use crate::transfer::{self, Results, STAGES, Stage, TargetColour, Transfer};
 use std::ffi::c_char;
 use std::sync::Arc;
@@ -53,40 +55,6 @@ pub const LUXFER_STAGE_RELIGHT: luxfer_stage = 6;
 /// The picture.
 pub const LUXFER_STAGE_RENDER: luxfer_stage = 7;
 
-/// An image of the transfer: a LUXFER_TRANSFER_ value.
-pub type luxfer_transfer_image = i32;
-/// The ten channels of the features.
-pub const LUXFER_TRANSFER_FEATURES: luxfer_transfer_image = 0;
-/// 1 on the plane, else 0; 1 channel.
-pub const LUXFER_TRANSFER_PLANE_MASK: luxfer_transfer_image = 1;
-/// Probability that a pixel is on the plane; 1 channel.
-pub const LUXFER_TRANSFER_PLANE_CONFIDENCE: luxfer_transfer_image = 2;
-/// 1 on lights, else 0; 1 channel.
-pub const LUXFER_TRANSFER_LIGHTS_MASK: luxfer_transfer_image = 3;
-/// Probability that a pixel is a light; 1 channel.
-pub const LUXFER_TRANSFER_LIGHTS_CONFIDENCE: luxfer_transfer_image = 4;
-/// The plane seen straight on, linear RGB.
-pub const LUXFER_TRANSFER_UNWARPED: luxfer_transfer_image = 5;
-/// 1 where the photo shows the plane, else 0; 1 channel.
-pub const LUXFER_TRANSFER_UNWARPED_VALID: luxfer_transfer_image = 6;
-/// The emissive texture, linear RGB relative to the photo's white.
-pub const LUXFER_TRANSFER_EMISSION: luxfer_transfer_image = 7;
-/// 1 on lamps of the texture, else 0; 1 channel.
-pub const LUXFER_TRANSFER_EMISSION_MASK: luxfer_transfer_image = 8;
-/// The scene in its new light, linear RGB in cd/m²; while it is being rendered, as far as it is.
-pub const LUXFER_TRANSFER_RENDER: luxfer_transfer_image = 9;
-/// Variance of the rendering; 3 channels.
-pub const LUXFER_TRANSFER_RENDER_VARIANCE: luxfer_transfer_image = 10;
-
-/// A scene of the transfer: a LUXFER_SCENE_ value.
-pub type luxfer_transfer_scene = i32;
-/// With the emission at the photo's own strength, before it is solved for.
-pub const LUXFER_SCENE_UNSOLVED: luxfer_transfer_scene = 0;
-/// With the solved emission: the result.
-pub const LUXFER_SCENE_LIT: luxfer_transfer_scene = 1;
-/// As LUXFER_SCENE_LIT, the light's colour taken away and its luminance kept.
-pub const LUXFER_SCENE_WHITE: luxfer_transfer_scene = 2;
-
 /// What part of the photo gives the colour to match: a LUXFER_TARGET_ value.
 pub type luxfer_target = i32;
 /// The plane that carries the lights, without them and their halo.
@@ -113,8 +81,10 @@ pub struct luxfer_transfer_params {
     pub rectify: *const luxfer_rectify_params,
     /// Settings of the stage FEATURES; NULL, the default, for their defaults.
     pub features: *const luxfer_features_params,
-    /// Settings of the stages PLANE and LIGHTS; NULL, the default, for their defaults.
-    pub segment: *const luxfer_segment_params,
+    /// Settings of the stage PLANE; NULL, the default, for their defaults.
+    pub plane: *const luxfer_segment_params,
+    /// Settings of the stage LIGHTS; NULL, the default, for those of luxfer_segment with channels = 7, colour only.
+    pub lights: *const luxfer_segment_params,
     /// Settings of the stage EMISSION, whose width, height and scale the transfer sets; NULL, the default, for their
     /// defaults.
     pub emission: *const luxfer_emission_params,
@@ -124,7 +94,7 @@ pub struct luxfer_transfer_params {
     pub render: *const luxfer_render_params,
 }
 
-const PARAMS_SIZE: usize = 24 + 6 * size_of::<usize>();
+const PARAMS_SIZE: usize = 24 + 7 * size_of::<usize>();
 
 // SAFETY: numbers, and pointers that are checked before use.
 unsafe impl Versioned for luxfer_transfer_params {
@@ -140,7 +110,8 @@ unsafe impl Versioned for luxfer_transfer_params {
             target: LUXFER_TARGET_SURFACE,
             rectify: std::ptr::null(),
             features: std::ptr::null(),
-            segment: std::ptr::null(),
+            plane: std::ptr::null(),
+            lights: std::ptr::null(),
             emission: std::ptr::null(),
             relight: std::ptr::null(),
             render: std::ptr::null(),
@@ -160,7 +131,12 @@ impl luxfer_transfer_params {
             rectify,
             unwarp,
             features: params::read(self.features)?.params(),
-            segment: params::read(self.segment)?.params(),
+            plane: params::read(self.plane)?.params(),
+            lights: if self.lights.is_null() {
+                segment::Params::for_lights()
+            } else {
+                params::read_required(self.lights)?.params()
+            },
             emission: params::read(self.emission)?.params(),
             plane_distance: self.plane_distance,
             max_texels: self.max_texels as usize,
@@ -172,135 +148,326 @@ impl luxfer_transfer_params {
     }
 }
 
-/// What each stage took and how good its result is. Set struct_size before the call. Errors of stages without a result are
-/// NaN.
-#[repr(C)]
-#[derive(Clone, Copy)]
-pub struct luxfer_transfer_report {
-    /// sizeof(luxfer_transfer_report), set by the caller.
-    pub struct_size: u32,
-    /// Number of fixtures; see luxfer_transfer_get_fixture. 0 before the stage RELIGHT has ended.
-    pub fixtures: u32,
-    /// Seconds each stage took when it last ran, by LUXFER_STAGE_ value.
-    pub seconds: [f64; 8],
-    /// Largest standard deviation of a vanishing point's direction, in radians.
-    pub view_error: f64,
-    /// Mean trust in the depth of the features, in [0, 1].
-    pub depth_confidence: f64,
-    /// Expected share of wrong pixels in the mask of the plane.
-    pub plane_error: f64,
-    /// Expected share of wrong pixels in the mask of the lights.
-    pub lights_error: f64,
-    /// Largest expected error of a corner of the unwarped image, in unwarped pixels.
-    pub unwarp_error: f64,
-    /// Relative difference between texture and photo in the share of lit area.
-    pub emission_error: f64,
-    /// Widest relative half-width of the solution's 95 % intervals.
-    pub relight_error: f64,
-    /// Mean relative standard error of the picture.
-    pub render_error: f64,
-    /// Size of a texel of the emission in metres.
-    pub texel_size: f64,
-    /// Mean colour the surface is to have, relative to the photo's white.
-    pub target: [f32; 3],
-    /// 0.
-    pub reserved: u32,
+#[derive(Clone, Default)]
+pub(super) struct Inputs {
+    photo: Option<Arc<Pixels>>,
+    depth: Option<(Arc<Pixels>, DepthKind)>,
+    strokes: StrokeSet,
+    scene: Option<Arc<SceneObject>>,
+    surface: String,
+    camera: Option<Camera>,
 }
 
-const REPORT_SIZE: usize = 8 + 64 + 72 + 16;
+impl Inputs {
+    fn photo_size(&self) -> Result<(usize, usize)> {
+        let photo = need(&self.photo, "luxfer_transfer_set_photo")?.image();
+        Ok((photo.width, photo.height))
+    }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_transfer_report {
-    const NAME: &'static str = "luxfer_transfer_report";
-    const SIZES: &'static [usize] = &[REPORT_SIZE];
-    fn defaults() -> Self {
-        Self {
-            struct_size: REPORT_SIZE as u32,
-            fixtures: 0,
-            seconds: [0.0; 8],
-            view_error: f64::NAN,
-            depth_confidence: f64::NAN,
-            plane_error: f64::NAN,
-            lights_error: f64::NAN,
-            unwarp_error: f64::NAN,
-            emission_error: f64::NAN,
-            relight_error: f64::NAN,
-            render_error: f64::NAN,
-            texel_size: f64::NAN,
-            target: [f32::NAN; 3],
-            reserved: 0,
-        }
+    /// The inputs as the transfer takes them.
+    fn input(&self) -> Result<transfer::Input> {
+        let depth = match &self.depth {
+            Some((depth, kind)) => Some((depth.shared()?, *kind)),
+            None => None,
+        };
+        Ok(transfer::Input {
+            photo: self.photo.as_ref().map(|photo| photo.shared()).transpose()?,
+            depth,
+            strokes: self.strokes.clone(),
+            scene: self.scene.as_ref().map(|scene| scene.snapshot()),
+            surface: self.surface.clone(),
+            camera: self.camera.clone(),
+        })
     }
 }
 
-impl luxfer_transfer_report {
-    fn new(results: &Results) -> Self {
-        let or_nan = |error: Option<f64>| error.unwrap_or(f64::NAN);
-        let largest = |errors: &[f64]| errors.iter().copied().fold(0.0, f64::max);
-        let lit = results.lit.as_ref();
-        Self {
-            fixtures: match (lit, &results.emission) {
-                (Some(_), Some(emission)) => u32::try_from(emission.luminaires.len()).unwrap_or(u32::MAX),
-                _ => 0,
-            },
-            seconds: results.seconds,
-            view_error: or_nan(results.view.as_ref().map(|v| largest(&[0, 1, 2].map(|i| v.vanishing_points[i].error)))),
-            depth_confidence: or_nan(results.features.as_ref().map(|f| {
-                let data = &f.depth_confidence.data;
-                data.iter().map(|&c| f64::from(c)).sum::<f64>() / data.len() as f64
-            })),
-            plane_error: or_nan(results.plane.as_ref().map(|s| s.error)),
-            lights_error: or_nan(results.lights.as_ref().map(|s| s.error)),
-            unwarp_error: or_nan(results.unwarped.as_ref().map(|u| largest(&u.corner_error))),
-            emission_error: or_nan(results.emission.as_ref().map(|e| e.error)),
-            relight_error: or_nan(results.solution.as_ref().map(|s| s.error())),
-            render_error: or_nan(results.film.as_ref().map(|f| f.error)),
-            texel_size: or_nan(lit.or(results.unsolved.as_ref()).map(|l| l.texel_size)),
-            target: results.target.map_or([f32::NAN; 3], |t| t.to_array()),
-            ..Self::defaults()
-        }
+impl Handle for luxfer_transfer {
+    type Object = Runner<Inputs, Results>;
+    const TAG: u64 = tag(b"lux.tran");
+    const NAME: &'static str = "luxfer_transfer";
+}
+
+fn stage_of(name: &str, value: luxfer_stage) -> Result<Stage> {
+    let found = usize::try_from(value).ok().and_then(|i| STAGES.get(i)).copied();
+    found.ok_or_else(|| Error::argument(format!("{name} is {value}; it must be a LUXFER_STAGE_ value")))
+}
+
+fn unknown_phase(phase: luxfer_phase) -> Error {
+    Error::argument(format!("phase is {phase}; it must be a LUXFER_PHASE_ value"))
+}
+
+/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_transfer_params_init(
+    params: *mut luxfer_transfer_params,
+    size: usize,
+) -> luxfer_status {
+    guard(|| params::init(params, size))
+}
+
+/// Creates a transfer. The caller releases *transfer. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_transfer_create(
+    context: *mut luxfer_context,
+    transfer: *mut *mut luxfer_transfer,
+) -> luxfer_status {
+    enter(context, |object| {
+        Out::new(transfer, "transfer")?.set(handle::give(Runner::new(object.context(), Inputs::default())));
+        Ok(())
+    })
+}
+
+/// Sets the photo: linear RGB, 1 = display white. Strokes set for a photo of another size are dropped. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_transfer_set_photo(
+    transfer: *mut luxfer_transfer,
+    photo: *mut luxfer_image,
+) -> luxfer_status {
+    enter(transfer, |stage| {
+        let photo = handle::borrow_in(stage.context(), photo, "photo")?;
+        stage.change(|inputs| {
+            let size = (photo.image().width, photo.image().height);
+            if inputs.photo_size().is_ok_and(|before| before != size) {
+                inputs.strokes = StrokeSet::default();
+            }
+            inputs.photo = Some(photo);
+            Ok(())
+        })
+    })
+}
+
+/// Sets a depth map of the photo, as luxfer_features_set_depth. depth may be NULL: none. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_transfer_set_depth(
+    transfer: *mut luxfer_transfer,
+    depth: *mut luxfer_image,
+    kind: luxfer_depth_kind,
+) -> luxfer_status {
+    enter(transfer, |stage| {
+        let kind = depth_kind(kind)?;
+        let depth = Pixels::optional(stage.context(), depth, "depth")?;
+        stage.change(|inputs| {
+            inputs.depth = depth.map(|depth| (depth, kind));
+            Ok(())
+        })
+    })
+}
+
+/// Sets the scene to light, and the name (UTF-8) of the object or material of its surface that receives the lights. The
+/// scene itself is never changed; each start takes it as it is then. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_transfer_set_scene(
+    transfer: *mut luxfer_transfer,
+    scene: *mut luxfer_scene,
+    surface: *const c_char,
+) -> luxfer_status {
+    enter(transfer, |stage| {
+        let scene = handle::borrow_in(stage.context(), scene, "scene")?;
+        let surface = text(surface, "surface")?.to_string();
+        stage.change(|inputs| {
+            inputs.scene = Some(scene);
+            inputs.surface = surface;
+            Ok(())
+        })
+    })
+}
+
+/// Sets the camera of the picture. camera may be NULL: the scene's first, which is the default. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_transfer_set_camera(
+    transfer: *mut luxfer_transfer,
+    camera: *const luxfer_camera_params,
+) -> luxfer_status {
+    enter(transfer, |stage| {
+        let camera = if camera.is_null() { None } else { Some(params::read_required(camera)?.camera()?) };
+        stage.change(|inputs| {
+            inputs.camera = camera;
+            Ok(())
+        })
+    })
+}
+
+/// Adds a stroke on the photo that concerns phase, a LUXFER_PHASE_ value; otherwise as luxfer_segment_add_stroke. Strokes on
+/// lights are examples of the plane as well. Any thread.
+/// LUXFER_INVALID_OPERATION before the photo is set.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_transfer_add_stroke(
+    transfer: *mut luxfer_transfer,
+    phase: luxfer_phase,
+    points: *const f32,
+    point_count: usize,
+    radius: f32,
+    positive: i32,
+) -> luxfer_status {
+    enter(transfer, |stage| {
+        stage.change(|inputs| {
+            let stroke = stroke(points.cast(), point_count, radius, positive, inputs.photo_size()?)?;
+            match phase {
+                LUXFER_PHASE_PLANE => inputs.strokes.plane.push(stroke),
+                LUXFER_PHASE_LIGHTS => inputs.strokes.lights.push(stroke),
+                _ => return Err(unknown_phase(phase)),
+            }
+            Ok(())
+        })
+    })
+}
+
+/// Adds the strokes of both phases from a drawing of the photo's size, as luxfer_segment_add_strokes_image. Any thread.
+/// LUXFER_INVALID_OPERATION before the photo is set.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_transfer_add_strokes_image(
+    transfer: *mut luxfer_transfer,
+    drawing: *mut luxfer_image,
+) -> luxfer_status {
+    enter(transfer, |stage| {
+        let drawing = handle::borrow_in(stage.context(), drawing, "drawing")?;
+        stage.change(|inputs| {
+            let photo = need(&inputs.photo, "luxfer_transfer_set_photo")?.image();
+            photo.check_same_size("the photo", drawing.image(), "the drawing")?;
+            add(&mut inputs.strokes, strokes::from_image(drawing.image())?);
+            Ok(())
+        })
+    })
+}
+
+/// Adds the strokes of both phases from a text, as luxfer_segment_add_strokes_text. Any thread.
+/// LUXFER_INVALID_OPERATION before the photo is set.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_transfer_add_strokes_text(
+    transfer: *mut luxfer_transfer,
+    description: *const c_char,
+) -> luxfer_status {
+    enter(transfer, |stage| {
+        let description = text(description, "description")?;
+        stage.change(|inputs| {
+            let (width, height) = inputs.photo_size()?;
+            add(&mut inputs.strokes, strokes::parse(description, width, height)?);
+            Ok(())
+        })
+    })
+}
+
+fn add(strokes: &mut StrokeSet, more: StrokeSet) {
+    strokes.plane.extend(more.plane);
+    strokes.lights.extend(more.lights);
+}
+
+/// Removes all strokes. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_transfer_clear_strokes(transfer: *mut luxfer_transfer) -> luxfer_status {
+    enter(transfer, |stage| {
+        stage.change(|inputs| {
+            inputs.strokes = StrokeSet::default();
+            Ok(())
+        })
+    })
+}
+
+/// Puts the lines and the camera that a luxfer_rectify has found, and the plane if it has unwarped one, in the place of the
+/// results of the stages VIEW and UNWARP. Any thread.
+/// LUXFER_NOT_READY if it has found none yet.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_transfer_use_rectify(
+    transfer: *mut luxfer_transfer,
+    rectify: *mut luxfer_rectify,
+) -> luxfer_status {
+    enter(transfer, |stage| {
+        let found = handle::borrow_in(stage.context(), rectify, "rectify")?.output()?;
+        stage.replace(|results| {
+            results.view = Some(found.view.clone());
+            if found.unwarped.is_some() {
+                results.unwarped = found.unwarped.clone();
+            }
+        })
+    })
+}
+
+/// Puts the result of a luxfer_features in the place of that of the stage FEATURES. Any thread.
+/// LUXFER_NOT_READY if it has none yet.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_transfer_use_features(
+    transfer: *mut luxfer_transfer,
+    features: *mut luxfer_features,
+) -> luxfer_status {
+    enter(transfer, |stage| {
+        let found = handle::borrow_in(stage.context(), features, "features")?.output()?;
+        stage.replace(|results| results.features = Some(found))
+    })
+}
+
+/// Puts the result of a luxfer_segment in the place of that of the stage PLANE or LIGHTS, as phase, a LUXFER_PHASE_ value,
+/// says. Any thread.
+/// LUXFER_NOT_READY if it has none yet.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_transfer_use_segment(
+    transfer: *mut luxfer_transfer,
+    phase: luxfer_phase,
+    segment: *mut luxfer_segment,
+) -> luxfer_status {
+    enter(transfer, |stage| {
+        let found = handle::borrow_in(stage.context(), segment, "segment")?.output()?;
+        use_segmentation(stage, phase, found)
+    })
+}
+
+/// Puts a mask of the photo's size, such as one drawn by hand, in the place of the result of the stage PLANE or LIGHTS, as
+/// phase, a LUXFER_PHASE_ value, says; 1 channel, taken as a confidence in [0, 1]. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_transfer_use_mask(
+    transfer: *mut luxfer_transfer,
+    phase: luxfer_phase,
+    mask: *mut luxfer_image,
+) -> luxfer_status {
+    enter(transfer, |stage| {
+        let mask = handle::borrow_in(stage.context(), mask, "mask")?;
+        use_segmentation(stage, phase, Arc::new(Segmentation::from_confidence(mask.image())?))
+    })
+}
+
+fn use_segmentation(
+    stage: &Runner<Inputs, Results>,
+    phase: luxfer_phase,
+    segmentation: Arc<Segmentation>,
+) -> Result<()> {
+    match phase {
+        LUXFER_PHASE_PLANE => stage.replace(|results| results.plane = Some(segmentation)),
+        LUXFER_PHASE_LIGHTS => stage.replace(|results| results.lights = Some(segmentation)),
+        _ => Err(unknown_phase(phase)),
     }
 }
 
-/// One lamp of the lit scene. Set struct_size before the call.
-#[repr(C)]
-#[derive(Clone, Copy)]
-pub struct luxfer_fixture {
-    /// sizeof(luxfer_fixture), set by the caller.
-    pub struct_size: u32,
-    /// Centre in metres.
-    pub position: [f32; 3],
-    /// Unit direction the lamp shines in.
-    pub normal: [f32; 3],
-    /// Unit direction of its long axis.
-    pub axis: [f32; 3],
-    /// Mean luminance per channel in cd/m².
-    pub radiance: [f32; 3],
-    /// 0.
-    pub reserved: u32,
-    /// Lengths along and across the axis in metres.
-    pub size: [f64; 2],
-    /// Area in m².
-    pub area: f64,
-    /// Luminous flux in lumens.
-    pub flux: f64,
+/// Starts a job that runs the stages first to last, LUXFER_STAGE_ values, both included; those before must have results.
+/// params may be NULL for the defaults. The caller releases *job. Any thread.
+/// LUXFER_INVALID_OPERATION if a job runs already. The job may end as the jobs of its stages may, the message naming the
+/// stage, or with LUXFER_NOT_READY if an input or an earlier result is missing; the results of the stages before stay.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_transfer_start(
+    transfer: *mut luxfer_transfer,
+    first: luxfer_stage,
+    last: luxfer_stage,
+    params: *const luxfer_transfer_params,
+    job: *mut *mut luxfer_job,
+) -> luxfer_status {
+    enter(transfer, |stage| {
+        let (first, last) = (stage_of("first", first)?, stage_of("last", last)?);
+        let params = params::read(params)?.params()?;
+        stage.start(job, move |inputs, stage, job| {
+            let results = stage.output().map(|results| (*results).clone()).unwrap_or_default();
+            let mut transfer = Transfer { input: inputs.input()?, params, results };
+            transfer.run(first, last, job, |results| stage.publish(results.clone()))?;
+            Ok(transfer.results)
+        })
+    })
 }
 
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_fixture {
-    const NAME: &'static str = "luxfer_fixture";
-    const SIZES: &'static [usize] = &[88];
-    fn defaults() -> Self {
-        Self {
-            struct_size: 88,
-            position: [0.0; 3],
-            normal: [0.0; 3],
-            axis: [0.0; 3],
-            radiance: [0.0; 3],
-            reserved: 0,
-            size: [0.0; 2],
-            area: 0.0,
-            flux: 0.0,
-        }
-    }
+/// Adds a reference. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_transfer_retain(transfer: *mut luxfer_transfer) -> luxfer_status {
+    handle::retain(transfer)
+}
+
+/// Gives a reference back; a job that runs goes on. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_transfer_release(transfer: *mut luxfer_transfer) -> luxfer_status {
+    handle::release(transfer)
 }

@@ -98,6 +98,31 @@ pub struct Segmentation {
     pub off_image: usize,
 }
 
+impl Segmentation {
+    /// A caller's own: one channel of probabilities in `[0, 1]`, or a mask.
+    pub fn from_confidence(confidence: &Image) -> Result<Self> {
+        check_range("the number of channels of the mask", confidence.channels, 1, 1)?;
+        let bad = confidence.data.iter().find(|v| !(0.0..=1.0).contains(*v));
+        if let Some(bad) = bad {
+            return Err(Error::argument(format!("the mask has a value of {bad}; all must lie in [0, 1]")));
+        }
+        let mut mask = Image::new(confidence.width, confidence.height, 1)?;
+        for (m, &c) in mask.data.iter_mut().zip(&confidence.data) {
+            *m = f32::from(c > 0.5);
+        }
+        Ok(Self {
+            mask,
+            confidence: confidence.clone(),
+            unseen: Image::new(confidence.width, confidence.height, 1)?,
+            error: 0.0,
+            model: Model::Linear,
+            samples: [0, 0],
+            contradictory: 0,
+            off_image: 0,
+        })
+    }
+}
+
 /// Segments an image by examples. Fails where either class has no pixel in the image.
 pub fn run(input: &Input, params: &Params, job: Job) -> Result<Segmentation> {
     let features = input.features;

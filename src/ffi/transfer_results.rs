@@ -1,0 +1,306 @@
+//! Transfer results
+//!
+//! What a transfer has made so far. Results appear when their stage has ended; the picture grows while it is rendered.
+
+use super::guard::enter;
+use super::handle::{self, Owned};
+use super::image::{Pixels, luxfer_image};
+use super::params::{Report, Versioned};
+use super::pointer::Out;
+use super::relight::luxfer_relight_report;
+use super::scene::{SceneObject, luxfer_scene, missing};
+use super::status::luxfer_status;
+use super::transfer::luxfer_transfer;
+use crate::error::{Error, ErrorKind, Result};
+use crate::transfer::{Results, Transfer};
+use std::sync::Arc;
+
+/// An image of the transfer: a LUXFER_TRANSFER_ value.
+pub type luxfer_transfer_image = i32;
+/// The ten channels of the features.
+pub const LUXFER_TRANSFER_FEATURES: luxfer_transfer_image = 0;
+/// 1 on the plane, else 0; 1 channel.
+pub const LUXFER_TRANSFER_PLANE_MASK: luxfer_transfer_image = 1;
+/// Probability that a pixel is on the plane; 1 channel.
+pub const LUXFER_TRANSFER_PLANE_CONFIDENCE: luxfer_transfer_image = 2;
+/// 1 on lights, else 0; 1 channel.
+pub const LUXFER_TRANSFER_LIGHTS_MASK: luxfer_transfer_image = 3;
+/// Probability that a pixel is a light; 1 channel.
+pub const LUXFER_TRANSFER_LIGHTS_CONFIDENCE: luxfer_transfer_image = 4;
+/// The plane seen straight on, linear RGB.
+pub const LUXFER_TRANSFER_UNWARPED: luxfer_transfer_image = 5;
+/// 1 where the photo shows the plane, else 0; 1 channel.
+pub const LUXFER_TRANSFER_UNWARPED_VALID: luxfer_transfer_image = 6;
+/// The emissive texture, linear RGB relative to the photo's white.
+pub const LUXFER_TRANSFER_EMISSION: luxfer_transfer_image = 7;
+/// 1 on lamps of the texture, else 0; 1 channel.
+pub const LUXFER_TRANSFER_EMISSION_MASK: luxfer_transfer_image = 8;
+/// The scene in its new light, linear RGB in cd/m²; while it is being rendered, as far as it is.
+pub const LUXFER_TRANSFER_RENDER: luxfer_transfer_image = 9;
+/// Variance of the rendering; 3 channels.
+pub const LUXFER_TRANSFER_RENDER_VARIANCE: luxfer_transfer_image = 10;
+
+/// A scene of the transfer: a LUXFER_SCENE_ value.
+pub type luxfer_transfer_scene = i32;
+/// With the emission at the photo's own strength, before it is solved for.
+pub const LUXFER_SCENE_UNSOLVED: luxfer_transfer_scene = 0;
+/// With the solved emission: the result.
+pub const LUXFER_SCENE_LIT: luxfer_transfer_scene = 1;
+/// As LUXFER_SCENE_LIT, the light's colour taken away and its luminance kept.
+pub const LUXFER_SCENE_WHITE: luxfer_transfer_scene = 2;
+
+/// What each stage took and how good its result is. Set struct_size before the call. Errors of stages without a result are
+/// NaN.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_transfer_report {
+    /// sizeof(luxfer_transfer_report), set by the caller.
+    pub struct_size: u32,
+    /// Number of fixtures; see luxfer_transfer_get_fixture. 0 before the stage RELIGHT has ended.
+    pub fixtures: u32,
+    /// Seconds each stage took when it last ran, by LUXFER_STAGE_ value.
+    pub seconds: [f64; 8],
+    /// Largest standard deviation of a vanishing point's direction, in radians.
+    pub view_error: f64,
+    /// Mean trust in the depth of the features, in [0, 1].
+    pub depth_confidence: f64,
+    /// Expected share of wrong pixels in the mask of the plane.
+    pub plane_error: f64,
+    /// Expected share of wrong pixels in the mask of the lights.
+    pub lights_error: f64,
+    /// Largest expected error of a corner of the unwarped image, in unwarped pixels.
+    pub unwarp_error: f64,
+    /// Relative difference between texture and photo in the share of lit area.
+    pub emission_error: f64,
+    /// Widest relative half-width of the solution's 95 % intervals.
+    pub relight_error: f64,
+    /// Mean relative standard error of the picture.
+    pub render_error: f64,
+    /// Size of a texel of the emission in metres.
+    pub texel_size: f64,
+    /// Mean colour the surface is to have, relative to the photo's white.
+    pub target: [f32; 3],
+    /// 0.
+    pub reserved: u32,
+}
+
+const REPORT_SIZE: usize = 8 + 64 + 72 + 16;
+
+// SAFETY: plain numbers.
+unsafe impl Versioned for luxfer_transfer_report {
+    const NAME: &'static str = "luxfer_transfer_report";
+    const SIZES: &'static [usize] = &[REPORT_SIZE];
+    fn defaults() -> Self {
+        Self {
+            struct_size: REPORT_SIZE as u32,
+            fixtures: 0,
+            seconds: [0.0; 8],
+            view_error: f64::NAN,
+            depth_confidence: f64::NAN,
+            plane_error: f64::NAN,
+            lights_error: f64::NAN,
+            unwarp_error: f64::NAN,
+            emission_error: f64::NAN,
+            relight_error: f64::NAN,
+            render_error: f64::NAN,
+            texel_size: f64::NAN,
+            target: [f32::NAN; 3],
+            reserved: 0,
+        }
+    }
+}
+
+impl luxfer_transfer_report {
+    fn new(results: &Results) -> Self {
+        let or_nan = |error: Option<f64>| error.unwrap_or(f64::NAN);
+        let largest = |errors: &[f64]| errors.iter().copied().fold(0.0, f64::max);
+        let lit = results.lit.as_ref();
+        Self {
+            fixtures: match (lit, &results.emission) {
+                (Some(_), Some(emission)) => u32::try_from(emission.luminaires.len()).unwrap_or(u32::MAX),
+                _ => 0,
+            },
+            seconds: results.seconds,
+            view_error: or_nan(results.view.as_ref().map(|v| largest(&[0, 1, 2].map(|i| v.vanishing_points[i].error)))),
+            depth_confidence: or_nan(results.features.as_ref().map(|f| {
+                let data = &f.depth_confidence.data;
+                data.iter().map(|&c| f64::from(c)).sum::<f64>() / data.len() as f64
+            })),
+            plane_error: or_nan(results.plane.as_ref().map(|s| s.error)),
+            lights_error: or_nan(results.lights.as_ref().map(|s| s.error)),
+            unwarp_error: or_nan(results.unwarped.as_ref().map(|u| largest(&u.corner_error))),
+            emission_error: or_nan(results.emission.as_ref().map(|e| e.error)),
+            relight_error: or_nan(results.solution.as_ref().map(|s| s.error())),
+            render_error: or_nan(results.film.as_ref().map(|f| f.error)),
+            texel_size: or_nan(lit.or(results.unsolved.as_ref()).map(|l| l.texel_size)),
+            target: results.target.map_or([f32::NAN; 3], |t| t.to_array()),
+            ..Self::defaults()
+        }
+    }
+}
+
+/// One lamp of the lit scene. Set struct_size before the call.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_fixture {
+    /// sizeof(luxfer_fixture), set by the caller.
+    pub struct_size: u32,
+    /// Centre in metres.
+    pub position: [f32; 3],
+    /// Unit direction the lamp shines in.
+    pub normal: [f32; 3],
+    /// Unit direction of its long axis.
+    pub axis: [f32; 3],
+    /// Mean luminance per channel in cd/m².
+    pub radiance: [f32; 3],
+    /// 0.
+    pub reserved: u32,
+    /// Lengths along and across the axis in metres.
+    pub size: [f64; 2],
+    /// Area in m².
+    pub area: f64,
+    /// Luminous flux in lumens.
+    pub flux: f64,
+}
+
+// SAFETY: plain numbers.
+unsafe impl Versioned for luxfer_fixture {
+    const NAME: &'static str = "luxfer_fixture";
+    const SIZES: &'static [usize] = &[88];
+    fn defaults() -> Self {
+        Self {
+            struct_size: 88,
+            position: [0.0; 3],
+            normal: [0.0; 3],
+            axis: [0.0; 3],
+            radiance: [0.0; 3],
+            reserved: 0,
+            size: [0.0; 2],
+            area: 0.0,
+            flux: 0.0,
+        }
+    }
+}
+
+/// A result of a stage, or which stage makes it.
+fn made<'a, T>(result: &'a Option<Arc<T>>, stage: &str) -> Result<&'a Arc<T>> {
+    result.as_ref().ok_or_else(|| {
+        Error::new(ErrorKind::NotReady, format!("there is no such result yet; LUXFER_STAGE_{stage} makes it"))
+    })
+}
+
+/// Gets an image; which is a LUXFER_TRANSFER_ value. The caller releases *image. Any thread.
+/// LUXFER_NOT_READY before the stage that makes it has ended.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_transfer_get_image(
+    transfer: *mut luxfer_transfer,
+    which: luxfer_transfer_image,
+    image: *mut *mut luxfer_image,
+) -> luxfer_status {
+    enter(transfer, |stage| {
+        let out = Out::new(image, "image")?;
+        let (context, r) = (stage.context(), stage.output()?);
+        let part = match which {
+            LUXFER_TRANSFER_FEATURES => Pixels::part(context, made(&r.features, "FEATURES")?.clone(), |f| &f.image),
+            LUXFER_TRANSFER_PLANE_MASK => Pixels::part(context, made(&r.plane, "PLANE")?.clone(), |s| &s.mask),
+            LUXFER_TRANSFER_PLANE_CONFIDENCE => {
+                Pixels::part(context, made(&r.plane, "PLANE")?.clone(), |s| &s.confidence)
+            }
+            LUXFER_TRANSFER_LIGHTS_MASK => Pixels::part(context, made(&r.lights, "LIGHTS")?.clone(), |s| &s.mask),
+            LUXFER_TRANSFER_LIGHTS_CONFIDENCE => {
+                Pixels::part(context, made(&r.lights, "LIGHTS")?.clone(), |s| &s.confidence)
+            }
+            LUXFER_TRANSFER_UNWARPED => Pixels::part(context, made(&r.unwarped, "UNWARP")?.clone(), |u| &u.image),
+            LUXFER_TRANSFER_UNWARPED_VALID => Pixels::part(context, made(&r.unwarped, "UNWARP")?.clone(), |u| &u.valid),
+            LUXFER_TRANSFER_EMISSION => Pixels::part(context, made(&r.emission, "EMISSION")?.clone(), |e| &e.texture),
+            LUXFER_TRANSFER_EMISSION_MASK => Pixels::part(context, made(&r.emission, "EMISSION")?.clone(), |e| &e.mask),
+            LUXFER_TRANSFER_RENDER => Pixels::part(context, made(&r.film, "RENDER")?.clone(), |f| &f.beauty),
+            LUXFER_TRANSFER_RENDER_VARIANCE => Pixels::part(context, made(&r.film, "RENDER")?.clone(), |f| &f.variance),
+            _ => return Err(Error::argument(format!("which is {which}; it must be a LUXFER_TRANSFER_ value"))),
+        };
+        out.set(handle::give(part));
+        Ok(())
+    })
+}
+
+/// Gets a scene; which is a LUXFER_SCENE_ value. The caller releases *scene, which is independent of the transfer. Any
+/// thread.
+/// LUXFER_NOT_READY before the stage EMISSION, for LUXFER_SCENE_UNSOLVED, or RELIGHT has ended.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_transfer_get_scene(
+    transfer: *mut luxfer_transfer,
+    which: luxfer_transfer_scene,
+    scene: *mut *mut luxfer_scene,
+) -> luxfer_status {
+    enter(transfer, |stage| {
+        let out = Out::new(scene, "scene")?;
+        let results = stage.output()?;
+        let found = match which {
+            LUXFER_SCENE_UNSOLVED => made(&results.unsolved, "EMISSION")?.scene.clone(),
+            LUXFER_SCENE_LIT => made(&results.lit, "RELIGHT")?.scene.clone(),
+            LUXFER_SCENE_WHITE => made(&results.lit, "RELIGHT")?.in_white().scene,
+            _ => return Err(Error::argument(format!("which is {which}; it must be a LUXFER_SCENE_ value"))),
+        };
+        out.set(handle::give(SceneObject::of_result(stage.context(), found)));
+        Ok(())
+    })
+}
+
+/// Tells what each stage took and how good its result is. Any thread.
+/// LUXFER_NOT_READY before the first stage has ended.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_transfer_get_report(
+    transfer: *mut luxfer_transfer,
+    report: *mut luxfer_transfer_report,
+) -> luxfer_status {
+    enter(transfer, |stage| {
+        let out = Report::new(report)?;
+        out.set(luxfer_transfer_report::new(&*stage.output()?));
+        Ok(())
+    })
+}
+
+/// Tells the solved colour and intensity and how sure they are. Any thread.
+/// LUXFER_NOT_READY before the stage RELIGHT has ended.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_transfer_get_solution(
+    transfer: *mut luxfer_transfer,
+    solution: *mut luxfer_relight_report,
+) -> luxfer_status {
+    enter(transfer, |stage| {
+        let out = Report::new(solution)?;
+        let results = stage.output()?;
+        let solved = results.solution.as_ref().ok_or_else(|| {
+            Error::new(ErrorKind::NotReady, "there is no solution yet; LUXFER_STAGE_RELIGHT makes it")
+        })?;
+        out.set(luxfer_relight_report::new(solved));
+        Ok(())
+    })
+}
+
+/// Describes a lamp of the lit scene. Any thread.
+/// LUXFER_NOT_READY before the stage RELIGHT has ended; LUXFER_NOT_FOUND if there is no such fixture.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_transfer_get_fixture(
+    transfer: *mut luxfer_transfer,
+    index: u32,
+    fixture: *mut luxfer_fixture,
+) -> luxfer_status {
+    enter(transfer, |stage| {
+        let out = Report::new(fixture)?;
+        let results = (*stage.output()?).clone();
+        let fixtures = Transfer { results, ..Transfer::default() }.fixtures()?;
+        let lamp = fixtures.get(index as usize).ok_or_else(|| missing("fixture", index, fixtures.len()))?;
+        out.set(luxfer_fixture {
+            position: lamp.position.to_array(),
+            normal: lamp.normal.to_array(),
+            axis: lamp.axis.to_array(),
+            radiance: lamp.radiance.to_array(),
+            size: lamp.size.to_array(),
+            area: lamp.area,
+            flux: lamp.flux,
+            ..luxfer_fixture::defaults()
+        });
+        Ok(())
+    })
+}

@@ -1,0 +1,666 @@
+//! What the C boundary promises, through its own functions: handles, versioned structs, image views, messages and jobs.
+
+use luxfer::ffi::*;
+use std::ffi::{CStr, c_char, c_void};
+use std::ptr::{null, null_mut};
+use std::sync::Mutex;
+use std::time::{Duration, Instant};
+
+/// Tests that count the threads of the process, or start many, take turns.
+static ALONE: Mutex<()> = Mutex::new(());
+
+/// Calls a function that creates something; its handle.
+fn made<T>(create: impl FnOnce(*mut *mut T) -> luxfer_status) -> *mut T {
+    let mut handle = null_mut();
+    assert_eq!(create(&mut handle), LUXFER_OK);
+    assert!(!handle.is_null());
+    handle
+}
+
+fn context(num_threads: u32) -> *mut luxfer_context {
+    let params = luxfer_context_params { struct_size: 16, num_threads, memory_budget_mib: 0 };
+    made(|out| unsafe { luxfer_context_create(&params, out) })
+}
+
+fn message(context: *mut luxfer_context) -> String {
+    let mut buffer = [0 as c_char; 1024];
+    unsafe {
+        assert_eq!(luxfer_context_last_error(context, buffer.as_mut_ptr(), buffer.len(), null_mut()), LUXFER_OK);
+        CStr::from_ptr(buffer.as_ptr()).to_str().unwrap().to_string()
+    }
+}
+
+fn view(width: u32, height: u32, pixels: &mut [f32]) -> luxfer_image_view {
+    let mut view = unsafe { std::mem::zeroed::<luxfer_image_view>() };
+    assert_eq!(unsafe { luxfer_image_view_init(&mut view, size_of_val(&view)) }, LUXFER_OK);
+    luxfer_image_view { width, height, byte_size: size_of_val(pixels), data: pixels.as_mut_ptr().cast(), ..view }
+}
+
+fn image(context: *mut luxfer_context, width: u32, height: u32, value: f32) -> *mut luxfer_image {
+    let mut pixels = vec![value; (width * height * 3) as usize];
+    let view = view(width, height, &mut pixels);
+    made(|out| unsafe { luxfer_image_create(context, &view, out) })
+}
+
+/// A closed grey box with a small bright lamp under its ceiling and a camera: enough to keep a renderer busy.
+fn scene(context: *mut luxfer_context) -> *mut luxfer_scene {
+    let scene = made(|out| unsafe { luxfer_scene_create(context, out) });
+    let mut material = unsafe { std::mem::zeroed::<luxfer_material_params>() };
+    let mut mesh = unsafe { std::mem::zeroed::<luxfer_mesh_params>() };
+    unsafe {
+        assert_eq!(luxfer_material_params_init(&mut material, size_of_val(&material)), LUXFER_OK);
+        assert_eq!(luxfer_mesh_params_init(&mut mesh, size_of_val(&mesh)), LUXFER_OK);
+        assert_eq!(luxfer_scene_add_material(scene, &material, null_mut()), LUXFER_OK);
+        material.emission = [100.0; 3];
+        assert_eq!(luxfer_scene_add_material(scene, &material, null_mut()), LUXFER_OK);
+    }
+    // The corners of a cube, its six sides, and the lamp as a smaller side.
+    let corner = |i: u32| [0, 1, 2].map(|axis| if i >> axis & 1 == 1 { 2.0f32 } else { -2.0 });
+    let room: Vec<[f32; 3]> = (0..8).map(corner).collect();
+    let sides: [[u32; 4]; 6] = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]];
+    let triangles: Vec<[u32; 3]> = sides.iter().flat_map(|s| [[s[0], s[1], s[2]], [s[0], s[2], s[3]]]).collect();
+    let lamp = [[-0.5f32, 1.9, -0.5], [0.5, 1.9, -0.5], [0.5, 1.9, 0.5], [-0.5, 1.9, 0.5]];
+    let lamp_triangles = [[0u32, 1, 2], [0, 2, 3]];
+    let mut add = |material, name: &CStr, positions: &[[f32; 3]], triangles: &[[u32; 3]]| {
+        mesh.material = material;
+        mesh.name = name.as_ptr();
+        (mesh.vertex_count, mesh.positions) = (positions.len(), positions.as_ptr().cast());
+        (mesh.triangle_count, mesh.indices) = (triangles.len(), triangles.as_ptr().cast());
+        assert_eq!(unsafe { luxfer_scene_add_mesh(scene, &mesh, null_mut()) }, LUXFER_OK, "{}", message(context));
+    };
+    add(0, c"Room", &room, &triangles);
+    add(1, c"Lamp", &lamp, &lamp_triangles);
+    assert_eq!(unsafe { luxfer_scene_add_camera(scene, null(), null_mut()) }, LUXFER_OK);
+    scene
+}
+
+fn render_params(side: u32, samples: u32) -> luxfer_render_params {
+    let mut params = unsafe { std::mem::zeroed::<luxfer_render_params>() };
+    assert_eq!(unsafe { luxfer_render_params_init(&mut params, size_of_val(&params)) }, LUXFER_OK);
+    luxfer_render_params { width: side, height: side, samples, ..params }
+}
+
+/// A renderer of that box.
+fn renderer(context: *mut luxfer_context) -> *mut luxfer_render {
+    let scene = scene(context);
+    let render = made(|out| unsafe { luxfer_render_create(context, out) });
+    unsafe {
+        assert_eq!(luxfer_render_set_scene(render, scene), LUXFER_OK);
+        assert_eq!(luxfer_scene_release(scene), LUXFER_OK);
+    }
+    render
+}
+
+fn start(render: *mut luxfer_render, params: &luxfer_render_params) -> *mut luxfer_job {
+    made(|out| unsafe { luxfer_render_start(render, params, out) })
+}
+
+/// A job far too long to end by itself.
+const ENDLESS: u32 = 1 << 20;
+
+fn threads() -> usize {
+    std::fs::read_dir("/proc/self/task").unwrap().count()
+}
+
+#[test]
+fn handles_that_are_none_are_errors() {
+    let context = context(1);
+    let image = image(context, 2, 2, 0.5);
+    let garbage = [0xdead_beef_u64; 8];
+    let unaligned = garbage.as_ptr().cast::<u8>().wrapping_add(1);
+    unsafe {
+        for bad in [null_mut(), garbage.as_ptr().cast_mut().cast(), unaligned.cast_mut().cast(), context.cast()] {
+            let bad: *mut luxfer_image = bad;
+            assert_eq!(luxfer_image_size(bad, null_mut(), null_mut(), null_mut()), LUXFER_INVALID_ARGUMENT);
+            assert_eq!(luxfer_image_retain(bad), LUXFER_INVALID_ARGUMENT);
+            assert_eq!(luxfer_job_cancel(bad.cast()), LUXFER_INVALID_ARGUMENT);
+            if !bad.is_null() {
+                assert_eq!(luxfer_image_release(bad), LUXFER_INVALID_ARGUMENT);
+            }
+        }
+        assert_eq!(luxfer_context_release(image.cast()), LUXFER_INVALID_ARGUMENT);
+        // NULL is nothing to release.
+        assert_eq!(luxfer_context_release(null_mut()), LUXFER_OK);
+        assert_eq!(luxfer_image_release(null_mut()), LUXFER_OK);
+        assert_eq!(luxfer_scene_release(null_mut()), LUXFER_OK);
+        assert_eq!(luxfer_job_release(null_mut()), LUXFER_OK);
+        assert_eq!(luxfer_image_release(image), LUXFER_OK);
+        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+    }
+}
+
+#[test]
+fn objects_of_two_contexts_do_not_mix() {
+    let (here, there) = (context(1), context(1));
+    let (photo, features) = (image(there, 4, 4, 0.5), made(|out| unsafe { luxfer_features_create(here, out) }));
+    unsafe {
+        assert_eq!(luxfer_features_set_photo(features, photo), LUXFER_INVALID_ARGUMENT);
+        assert!(message(here).contains("photo belongs to another context"), "{}", message(here));
+        assert_eq!(message(there), "");
+        assert_eq!(luxfer_features_set_photo(features, null_mut()), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_image_release(photo), LUXFER_OK);
+        assert_eq!(luxfer_features_release(features), LUXFER_OK);
+        assert_eq!(luxfer_context_release(there), LUXFER_OK);
+        assert_eq!(luxfer_context_release(here), LUXFER_OK);
+    }
+}
+
+#[test]
+fn any_release_order_is_fine() {
+    let _alone = ALONE.lock();
+    let release = |objects: [*mut c_void; 4], order: [usize; 4]| {
+        let status = order.map(|i| unsafe {
+            match i {
+                0 => luxfer_context_release(objects[0].cast()),
+                1 => luxfer_image_release(objects[1].cast()),
+                2 => luxfer_render_release(objects[2].cast()),
+                _ => luxfer_job_release(objects[3].cast()),
+            }
+        });
+        assert_eq!(status, [LUXFER_OK; 4], "{order:?}");
+    };
+    for code in 0..256usize {
+        let order = [code & 3, code >> 2 & 3, code >> 4 & 3, code >> 6];
+        let is_permutation = (0..4).all(|i| order.contains(&i));
+        if is_permutation {
+            let context = context(1);
+            let render = renderer(context);
+            let job = start(render, &render_params(64, ENDLESS));
+            release([context.cast(), image(context, 3, 3, 1.0).cast(), render.cast(), job.cast()], order);
+        }
+    }
+}
+
+#[test]
+fn references_are_counted() {
+    let context = context(1);
+    let image = image(context, 2, 3, 0.25);
+    let mut height = 0;
+    unsafe {
+        for _ in 0..3 {
+            assert_eq!(luxfer_image_retain(image), LUXFER_OK);
+        }
+        for _ in 0..3 {
+            assert_eq!(luxfer_image_release(image), LUXFER_OK);
+            assert_eq!(luxfer_image_size(image, null_mut(), &mut height, null_mut()), LUXFER_OK);
+        }
+        assert_eq!(height, 3);
+        assert_eq!(luxfer_image_release(image), LUXFER_OK);
+        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+    }
+}
+
+#[test]
+fn views_of_every_size_and_stride_are_read_or_refused() {
+    let context = context(1);
+    let mut pixels = vec![0.5f32; 3 * 65_537];
+    let create = |view: &luxfer_image_view| {
+        let mut image = null_mut();
+        let status = unsafe { luxfer_image_create(context, view, &mut image) };
+        assert_eq!(status == LUXFER_OK, !image.is_null(), "outputs are written on success only");
+        assert_eq!(unsafe { luxfer_image_release(image) }, LUXFER_OK);
+        status
+    };
+    for (width, height, want) in [
+        (0, 1, LUXFER_INVALID_ARGUMENT),
+        (1, 0, LUXFER_INVALID_ARGUMENT),
+        (1, 1, LUXFER_OK),
+        (65_536, 1, LUXFER_OK),
+        (1, 65_536, LUXFER_OK),
+        (65_537, 1, LUXFER_INVALID_ARGUMENT),
+        (1, 65_537, LUXFER_INVALID_ARGUMENT),
+        (u32::MAX, u32::MAX, LUXFER_INVALID_ARGUMENT),
+    ] {
+        assert_eq!(create(&view(width, height, &mut pixels)), want, "{width} x {height}");
+    }
+    let good = view(5, 4, &mut pixels[..60]);
+    for (bad, why) in [
+        (luxfer_image_view { byte_size: 239, ..good }, "one byte short"),
+        (luxfer_image_view { byte_size: usize::MAX, ..good }, "more than there can be"),
+        (luxfer_image_view { data: null_mut(), ..good }, "no data"),
+        (luxfer_image_view { pixel_stride: 11, ..good }, "pixels overlap"),
+        (luxfer_image_view { row_stride: 59, ..good }, "rows overlap"),
+        (luxfer_image_view { row_stride: usize::MAX, ..good }, "row stride overflows"),
+        (luxfer_image_view { pixel_stride: usize::MAX, ..good }, "pixel stride overflows"),
+        (luxfer_image_view { channels: 0, ..good }, "no channels"),
+        (luxfer_image_view { channels: 5, ..good }, "five channels"),
+        (luxfer_image_view { sample: 4, ..good }, "unknown sample"),
+        (luxfer_image_view { sample: -1, ..good }, "negative sample"),
+        (luxfer_image_view { colour_space: 2, ..good }, "unknown colour space"),
+        (luxfer_image_view { flags: 2, ..good }, "unknown flag"),
+        (luxfer_image_view { reserved: 1, ..good }, "reserved field"),
+        (luxfer_image_view { struct_size: 0, ..good }, "no size"),
+        (luxfer_image_view { struct_size: good.struct_size - 1, ..good }, "too small"),
+        (luxfer_image_view { struct_size: u32::MAX, ..good }, "too large"),
+    ] {
+        assert_eq!(create(&bad), LUXFER_INVALID_ARGUMENT, "{why}");
+        assert!(!message(context).is_empty(), "{why}");
+    }
+    let mut image = null_mut();
+    assert_eq!(unsafe { luxfer_image_create(context, null(), &mut image) }, LUXFER_INVALID_ARGUMENT);
+    assert_eq!(unsafe { luxfer_image_create(context, &good, null_mut()) }, LUXFER_INVALID_ARGUMENT);
+    assert_eq!(unsafe { luxfer_context_release(context) }, LUXFER_OK);
+}
+
+#[test]
+fn pixels_round_trip_through_strides_and_misalignment() {
+    let context = context(1);
+    let mut bytes = vec![0xffu8; 4096];
+    let (width, height, row_stride) = (7u32, 5u32, 7 * 13 + 10);
+    let offset = |x: usize, y: usize| 1 + y * row_stride + x * 13;
+    for y in 0..5 {
+        for x in 0..7 {
+            for c in 0..3 {
+                let at = offset(x, y) + 4 * c;
+                bytes[at..at + 4].copy_from_slice(&((x * 100 + y * 10 + c) as f32).to_ne_bytes());
+            }
+        }
+    }
+    let mut strided = view(width, height, &mut []);
+    strided.pixel_stride = 13;
+    strided.row_stride = row_stride;
+    strided.byte_size = bytes.len() - 1;
+    strided.data = bytes.as_mut_ptr().wrapping_add(1).cast();
+    strided.flags = LUXFER_VIEW_BOTTOM_UP;
+    let image = made(|out| unsafe { luxfer_image_create(context, &strided, out) });
+
+    let mut packed = vec![0.0f32; 105];
+    assert_eq!(unsafe { luxfer_image_read(image, 0, &view(width, height, &mut packed)) }, LUXFER_OK);
+    for (i, pixel) in packed.chunks(3).enumerate() {
+        let (x, y) = (i % 7, 4 - i / 7);
+        assert_eq!(pixel, [0, 1, 2].map(|c| (x * 100 + y * 10 + c) as f32));
+    }
+    // One channel of three, back into the strided memory: nothing between the pixels is touched.
+    let before = bytes.clone();
+    let one = luxfer_image_view { channels: 1, data: bytes.as_mut_ptr().wrapping_add(1).cast(), ..strided };
+    assert_eq!(unsafe { luxfer_image_read(image, 2, &one) }, LUXFER_OK);
+    let changed = (0..bytes.len()).filter(|&i| bytes[i] != before[i]);
+    assert!(changed.into_iter().all(|i| (i - 1) % row_stride % 13 < 4));
+    assert_eq!(unsafe { luxfer_image_read(image, 3, &one) }, LUXFER_INVALID_ARGUMENT);
+    unsafe {
+        luxfer_image_release(image);
+        luxfer_context_release(context);
+    }
+}
+
+#[test]
+fn every_params_struct_takes_its_own_size_and_no_other() {
+    macro_rules! check {
+        ($($init:ident: $params:ident;)*) => {$(
+            let mut room = [0xffu8; 4200];
+            let own = size_of::<$params>();
+            for size in 0..4200usize {
+                let status = unsafe { $init(room.as_mut_ptr().cast(), size) };
+                let want = if (own..=4096).contains(&size) { LUXFER_OK } else { LUXFER_INVALID_ARGUMENT };
+                assert_eq!(status, want, "{} with {size} bytes", stringify!($init));
+            }
+            assert_eq!(unsafe { $init(null_mut(), own) }, LUXFER_INVALID_ARGUMENT);
+        )*};
+    }
+    check! {
+        luxfer_context_params_init: luxfer_context_params;
+        luxfer_image_view_init: luxfer_image_view;
+        luxfer_material_params_init: luxfer_material_params;
+        luxfer_mesh_params_init: luxfer_mesh_params;
+        luxfer_camera_params_init: luxfer_camera_params;
+        luxfer_features_params_init: luxfer_features_params;
+        luxfer_segment_params_init: luxfer_segment_params;
+        luxfer_rectify_params_init: luxfer_rectify_params;
+        luxfer_emission_params_init: luxfer_emission_params;
+        luxfer_render_params_init: luxfer_render_params;
+        luxfer_relight_params_init: luxfer_relight_params;
+        luxfer_transfer_params_init: luxfer_transfer_params;
+    }
+}
+
+#[test]
+fn a_newer_struct_is_taken_if_what_is_new_is_zero() {
+    #[repr(C)]
+    struct Newer {
+        known: luxfer_context_params,
+        unknown: [u32; 4],
+    }
+    let known = luxfer_context_params { struct_size: size_of::<Newer>() as u32, num_threads: 1, memory_budget_mib: 0 };
+    let mut newer = Newer { known, unknown: [0; 4] };
+    let context = made(|out| unsafe { luxfer_context_create((&raw const newer).cast(), out) });
+    newer.unknown[3] = 1;
+    let mut refused = null_mut();
+    unsafe {
+        let status = luxfer_context_create((&raw const newer).cast(), &mut refused);
+        assert_eq!((status, refused.is_null()), (LUXFER_INVALID_ARGUMENT, true));
+        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+        let many = luxfer_context_params { struct_size: 16, num_threads: 1025, memory_budget_mib: 0 };
+        assert_eq!(luxfer_context_create(&many, &mut refused), LUXFER_INVALID_ARGUMENT);
+    }
+}
+
+#[test]
+fn messages_are_kept_for_each_thread_and_cut_to_fit() {
+    let context = context(1);
+    let shared = context as usize;
+    let fail = move |path: &CStr| unsafe {
+        let mut image = null_mut();
+        luxfer_image_load(shared as *mut luxfer_context, path.as_ptr(), LUXFER_COLOUR_SRGB, &mut image)
+    };
+    assert_eq!(message(context), "");
+    assert_eq!(fail(c"/nonexistent/here.png"), LUXFER_IO);
+    std::thread::spawn(move || {
+        assert_eq!(message(shared as *mut luxfer_context), "");
+        assert_eq!(fail(c"/nonexistent/there.png"), LUXFER_IO);
+        assert!(message(shared as *mut luxfer_context).contains("there.png"));
+    })
+    .join()
+    .unwrap();
+    let whole = message(context);
+    assert!(whole.contains("here.png"), "{whole}");
+
+    let mut needed = 0;
+    unsafe {
+        assert_eq!(luxfer_context_last_error(context, null_mut(), 0, &mut needed), LUXFER_OK);
+        assert_eq!(needed, whole.len() + 1);
+        for capacity in 1..needed + 3 {
+            let mut buffer = vec![0x7f as c_char; needed + 8];
+            assert_eq!(luxfer_context_last_error(context, buffer.as_mut_ptr(), capacity, null_mut()), LUXFER_OK);
+            let text = CStr::from_ptr(buffer.as_ptr()).to_str().unwrap();
+            assert_eq!(text, &whole[..whole.len().min(capacity - 1)]);
+            assert!(buffer[capacity.min(needed)..].iter().all(|&b| b == 0x7f));
+        }
+        assert_eq!(luxfer_context_last_error(context, null_mut(), 5, null_mut()), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+    }
+}
+
+#[test]
+fn the_memory_budget_holds_until_objects_are_released() {
+    let params = luxfer_context_params { struct_size: 16, num_threads: 1, memory_budget_mib: 1 };
+    let context = made(|out| unsafe { luxfer_context_create(&params, out) });
+    let mut pixels = vec![0.0f32; 3 * 256 * 256];
+    let view = view(256, 256, &mut pixels);
+    unsafe {
+        let first = made(|out| luxfer_image_create(context, &view, out));
+        let mut second = null_mut();
+        assert_eq!(luxfer_image_create(context, &view, &mut second), LUXFER_OUT_OF_MEMORY);
+        assert!(message(context).contains("memory_budget_mib"), "{}", message(context));
+        assert_eq!(luxfer_image_release(first), LUXFER_OK);
+        assert_eq!(luxfer_image_create(context, &view, &mut second), LUXFER_OK);
+        assert_eq!(luxfer_image_release(second), LUXFER_OK);
+        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+    }
+}
+
+#[test]
+fn files_that_are_missing_damaged_or_misnamed_say_so() {
+    let context = context(1);
+    let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let path = |name: &str| std::ffi::CString::new(folder.join(name).to_str().unwrap()).unwrap();
+    let image = image(context, 4, 3, 0.5);
+    let mut other = null_mut();
+    let mut scene = null_mut();
+    unsafe {
+        assert_eq!(luxfer_image_save(image, path("contract.png").as_ptr(), 1.0), LUXFER_OK);
+        assert_eq!(luxfer_image_save(image, path("contract.EXR").as_ptr(), 0.0), LUXFER_OK);
+        for (name, exposure) in [("contract.tif", 1.0), ("contract", 1.0), ("c.png", 0.0), ("c.png", f32::NAN)] {
+            assert_eq!(luxfer_image_save(image, path(name).as_ptr(), exposure), LUXFER_INVALID_ARGUMENT);
+        }
+        assert_eq!(luxfer_image_save(image, c"/nonexistent/x.png".as_ptr(), 1.0), LUXFER_IO);
+        let load = |path: *const c_char, space, out: &mut _| luxfer_image_load(context, path, space, out);
+        assert_eq!(load(path("contract.png").as_ptr(), 7, &mut other), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(load(null(), LUXFER_COLOUR_SRGB, &mut other), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(load(c"\xff\xfe.png".as_ptr(), LUXFER_COLOUR_SRGB, &mut other), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(load(path("contract.png").as_ptr(), LUXFER_COLOUR_SRGB, &mut other), LUXFER_OK);
+        assert_eq!(luxfer_image_release(other), LUXFER_OK);
+        let junk = [7u8; 64];
+        let junk = junk.as_ptr().cast();
+        assert_eq!(luxfer_image_load_memory(context, junk, 64, LUXFER_COLOUR_SRGB, &mut other), LUXFER_FORMAT);
+        assert_eq!(
+            luxfer_image_load_memory(context, null(), 64, LUXFER_COLOUR_SRGB, &mut other),
+            LUXFER_INVALID_ARGUMENT
+        );
+        assert_eq!(luxfer_scene_load_memory(context, junk, 64, null(), &mut scene), LUXFER_FORMAT);
+        assert_eq!(luxfer_scene_load(context, c"/nonexistent.glb".as_ptr(), &mut scene), LUXFER_IO);
+        assert_eq!(luxfer_image_release(image), LUXFER_OK);
+        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+    }
+}
+
+#[test]
+fn scenes_are_checked_as_they_are_described() {
+    let context = context(1);
+    let scene = scene(context);
+    let positions = [[0.0f32, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, f32::NAN]];
+    let (inside, outside) = ([[0u32, 1, 2]], [[0u32, 1, 3]]);
+    unsafe {
+        let mut mesh = std::mem::zeroed::<luxfer_mesh_params>();
+        assert_eq!(luxfer_mesh_params_init(&mut mesh, size_of_val(&mesh)), LUXFER_OK);
+        (mesh.vertex_count, mesh.positions) = (3, positions.as_ptr().cast());
+        (mesh.triangle_count, mesh.indices) = (1, outside.as_ptr().cast());
+        let add = |mesh: &luxfer_mesh_params| luxfer_scene_add_mesh(scene, mesh, null_mut());
+        assert_eq!(add(&mesh), LUXFER_INVALID_ARGUMENT);
+        mesh.indices = inside.as_ptr().cast();
+        assert_eq!(add(&mesh), LUXFER_INVALID_ARGUMENT);
+        assert!(message(context).contains("mesh.positions"), "{}", message(context));
+        assert_eq!(add(&luxfer_mesh_params { material: 9, ..mesh }), LUXFER_NOT_FOUND);
+        assert_eq!(add(&luxfer_mesh_params { positions: null(), ..mesh }), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(add(&luxfer_mesh_params { position_stride: 8, ..mesh }), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(add(&luxfer_mesh_params { vertex_count: usize::MAX, ..mesh }), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(add(&luxfer_mesh_params { position_stride: usize::MAX, ..mesh }), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_scene_set_environment(scene, -1.0, 0.0, 0.0), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_scene_set_emission(scene, 7, 1.0, 1.0, 1.0), LUXFER_NOT_FOUND);
+
+        let mut counts = std::mem::zeroed::<luxfer_scene_counts>();
+        assert_eq!(luxfer_scene_get_counts(scene, &mut counts), LUXFER_INVALID_ARGUMENT);
+        counts.struct_size = size_of_val(&counts) as u32;
+        assert_eq!(luxfer_scene_get_counts(scene, &mut counts), LUXFER_OK);
+        assert_eq!((counts.meshes, counts.materials, counts.cameras, counts.triangles), (2, 2, 1, 14));
+
+        let mut surface = std::mem::zeroed::<luxfer_surface>();
+        surface.struct_size = size_of_val(&surface) as u32;
+        assert_eq!(luxfer_scene_find_surface(scene, c"Sky".as_ptr(), &mut surface), LUXFER_NOT_FOUND);
+        assert_eq!(luxfer_scene_find_surface(scene, c"Lamp".as_ptr(), &mut surface), LUXFER_OK);
+        assert!((surface.area - 1.0).abs() < 1e-5 && surface.triangles == 2);
+
+        // Out and in again; a writer that gives up is an error.
+        unsafe extern "C" fn collect(user: *mut c_void, data: *const c_void, size: usize) -> i32 {
+            unsafe { (*user.cast::<Vec<u8>>()).extend(std::slice::from_raw_parts(data.cast::<u8>(), size)) };
+            0
+        }
+        unsafe extern "C" fn give_up(_: *mut c_void, _: *const c_void, _: usize) -> i32 {
+            1
+        }
+        let mut file: Vec<u8> = Vec::new();
+        assert_eq!(luxfer_scene_export_memory(scene, Some(collect), (&raw mut file).cast()), LUXFER_OK);
+        assert_eq!(luxfer_scene_export_memory(scene, Some(give_up), null_mut()), LUXFER_IO);
+        assert_eq!(luxfer_scene_export_memory(scene, None, null_mut()), LUXFER_INVALID_ARGUMENT);
+        let again = made(|out| luxfer_scene_load_memory(context, file.as_ptr().cast(), file.len(), null(), out));
+        assert_eq!(luxfer_scene_get_counts(again, &mut counts), LUXFER_OK);
+        assert_eq!((counts.meshes, counts.triangles), (2, 14));
+        assert_eq!(luxfer_scene_release(again), LUXFER_OK);
+        assert_eq!(luxfer_scene_release(scene), LUXFER_OK);
+        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+    }
+}
+
+#[test]
+fn stages_say_what_they_lack() {
+    let context = context(1);
+    let mut job = null_mut();
+    let mut image = null_mut();
+    macro_rules! check {
+        ($($create:ident $start:ident $release:ident;)*) => {$(
+            let stage = made(|out| unsafe { $create(context, out) });
+            unsafe {
+                assert_eq!($start(stage, null(), &mut job), LUXFER_INVALID_OPERATION, "{}", stringify!($start));
+                assert!(message(context).contains("_set_"), "{}", message(context));
+                assert_eq!($release(stage), LUXFER_OK);
+            }
+        )*};
+    }
+    check! {
+        luxfer_features_create luxfer_features_start luxfer_features_release;
+        luxfer_segment_create luxfer_segment_start luxfer_segment_release;
+        luxfer_rectify_create luxfer_rectify_start luxfer_rectify_release;
+        luxfer_emission_create luxfer_emission_start luxfer_emission_release;
+        luxfer_render_create luxfer_render_start luxfer_render_release;
+        luxfer_relight_create luxfer_relight_start luxfer_relight_release;
+    }
+    let transfer = made(|out| unsafe { luxfer_transfer_create(context, out) });
+    unsafe {
+        assert_eq!(luxfer_transfer_get_image(transfer, LUXFER_TRANSFER_RENDER, &mut image), LUXFER_NOT_READY);
+        for (first, last) in [(-1, 7), (0, 8)] {
+            assert_eq!(luxfer_transfer_start(transfer, first, last, null(), &mut job), LUXFER_INVALID_ARGUMENT);
+        }
+        assert_eq!(luxfer_transfer_start(transfer, 0, 7, null(), &mut job), LUXFER_OK);
+        assert_eq!(luxfer_job_wait(job, -1, None, null_mut()), LUXFER_NOT_READY);
+        assert!(message(context).contains("photo"), "{}", message(context));
+        assert_eq!(luxfer_job_release(job), LUXFER_OK);
+        assert_eq!(luxfer_transfer_release(transfer), LUXFER_OK);
+        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+    }
+}
+
+/// What a progress callback has seen, and when it should cancel.
+struct Watch {
+    seen: Vec<f64>,
+    thread: std::thread::ThreadId,
+    cancel_at: f64,
+    cancelled: Option<Instant>,
+}
+
+impl Watch {
+    fn new(cancel_at: f64) -> Self {
+        Self { seen: Vec::new(), thread: std::thread::current().id(), cancel_at, cancelled: None }
+    }
+}
+
+unsafe extern "C" fn watch(user: *mut c_void, fraction: f64) -> i32 {
+    let watch = unsafe { &mut *user.cast::<Watch>() };
+    watch.seen.push(fraction);
+    // A panic would not come through C: anything wrong shows as a fraction that cannot be.
+    if std::thread::current().id() != watch.thread || watch.cancelled.is_some() {
+        watch.seen.push(-1.0);
+    }
+    if fraction >= watch.cancel_at {
+        watch.cancelled = Some(Instant::now());
+    }
+    i32::from(watch.cancelled.is_some())
+}
+
+#[test]
+fn progress_rises_and_ends_at_one() {
+    let context = context(2);
+    let render = renderer(context);
+    let job = start(render, &render_params(96, 64));
+    let mut seen = Watch::new(f64::INFINITY);
+    unsafe {
+        assert_eq!(luxfer_job_wait(job, -1, Some(watch), (&raw mut seen).cast()), LUXFER_OK, "{}", message(context));
+        let (last, before) = seen.seen.split_last().unwrap();
+        assert_eq!(*last, 1.0);
+        assert!(before.iter().all(|f| (0.0..1.0).contains(f)) && before.is_sorted(), "{before:?}");
+        let (mut fraction, mut finished) = (0.0, 0);
+        assert_eq!(luxfer_job_poll(job, &mut fraction, &mut finished), LUXFER_OK);
+        assert_eq!((fraction, finished), (1.0, 1));
+        assert_eq!(luxfer_job_status(job), LUXFER_OK);
+        assert_eq!(luxfer_job_cancel(job), LUXFER_OK);
+        assert_eq!(luxfer_job_wait(job, 0, None, null_mut()), LUXFER_OK);
+        let mut report = luxfer_render_report { struct_size: 16, samples: 0, error: 0.0 };
+        assert_eq!(luxfer_render_get_report(render, &mut report), LUXFER_OK);
+        assert_eq!(report.samples, 64);
+        assert_eq!(luxfer_job_release(job), LUXFER_OK);
+        assert_eq!(luxfer_render_release(render), LUXFER_OK);
+        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+    }
+}
+
+#[test]
+fn a_cancel_is_answered_at_any_point() {
+    let _alone = ALONE.lock();
+    let context = context(2);
+    let render = renderer(context);
+    for cancel_at in [0.0, 0.1, 0.5] {
+        let job = start(render, &render_params(48, 512));
+        let mut seen = Watch::new(cancel_at);
+        let status = unsafe { luxfer_job_wait(job, -1, Some(watch), (&raw mut seen).cast()) };
+        assert_eq!(status, LUXFER_CANCELLED, "at {cancel_at}: {:?}", seen.seen.last());
+        // 100 ms are promised; a crowded machine gets more before this is called a failure.
+        let late = seen.cancelled.unwrap().elapsed();
+        assert!(late < Duration::from_millis(500), "{late:?} after {cancel_at}");
+        assert!(seen.seen.iter().all(|f| (0.0..1.0).contains(f)), "no call after the cancel, none from elsewhere");
+        assert_eq!(unsafe { luxfer_job_status(job) }, LUXFER_CANCELLED);
+        assert_eq!(unsafe { luxfer_job_release(job) }, LUXFER_OK);
+    }
+    // From another thread while this one waits.
+    let job = start(render, &render_params(64, ENDLESS));
+    let shared = job as usize;
+    let other = std::thread::spawn(move || {
+        std::thread::sleep(Duration::from_millis(30));
+        unsafe { luxfer_job_cancel(shared as *mut luxfer_job) }
+    });
+    unsafe {
+        assert_eq!(luxfer_job_wait(job, -1, None, null_mut()), LUXFER_CANCELLED);
+        assert_eq!(other.join().unwrap(), LUXFER_OK);
+        assert_eq!(luxfer_job_release(job), LUXFER_OK);
+        assert_eq!(luxfer_render_release(render), LUXFER_OK);
+        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+    }
+}
+
+#[test]
+fn waits_time_out_and_a_busy_object_refuses_changes() {
+    let context = context(1);
+    let render = renderer(context);
+    let scene = scene(context);
+    let job = start(render, &render_params(64, ENDLESS));
+    let mut second = null_mut();
+    unsafe {
+        for timeout in [0, 1, 60] {
+            let clock = Instant::now();
+            assert_eq!(luxfer_job_wait(job, timeout, None, null_mut()), LUXFER_NOT_READY);
+            assert!(clock.elapsed() >= Duration::from_millis(timeout as u64));
+        }
+        assert_eq!(luxfer_job_status(job), LUXFER_NOT_READY);
+        assert_eq!(luxfer_render_start(render, null(), &mut second), LUXFER_INVALID_OPERATION);
+        assert!(second.is_null());
+        assert_eq!(luxfer_render_set_scene(render, scene), LUXFER_INVALID_OPERATION);
+        // Another object is free, and so is the scene.
+        let other = renderer(context);
+        let small = start(other, &render_params(8, 1));
+        assert_eq!(luxfer_scene_set_environment(scene, 1.0, 1.0, 1.0), LUXFER_OK);
+        assert_eq!(luxfer_job_cancel(job), LUXFER_OK);
+        assert_eq!(luxfer_job_wait(job, -1, None, null_mut()), LUXFER_CANCELLED);
+        assert_eq!(luxfer_job_wait(small, -1, None, null_mut()), LUXFER_OK);
+        // Idle again as soon as the wait is over.
+        assert_eq!(luxfer_render_set_scene(render, scene), LUXFER_OK);
+        for job in [job, small] {
+            assert_eq!(luxfer_job_release(job), LUXFER_OK);
+        }
+        assert_eq!(luxfer_render_release(other), LUXFER_OK);
+        assert_eq!(luxfer_scene_release(scene), LUXFER_OK);
+        assert_eq!(luxfer_render_release(render), LUXFER_OK);
+        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+    }
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_thousand_contexts_and_jobs_leave_no_thread_behind() {
+    let _alone = ALONE.lock();
+    // Other tests come and go meanwhile; a thousand leaked threads would still show.
+    let before = threads();
+    for i in 0..1000 {
+        let context = context(1);
+        let image = image(context, 1, 1, 0.0);
+        if i % 20 == 0 {
+            let render = renderer(context);
+            let job = start(render, &render_params(16, ENDLESS));
+            unsafe {
+                assert_eq!(luxfer_render_release(render), LUXFER_OK);
+                assert_eq!(luxfer_job_release(job), LUXFER_OK);
+            }
+        }
+        unsafe {
+            assert_eq!(luxfer_context_release(context), LUXFER_OK);
+            assert_eq!(luxfer_image_release(image), LUXFER_OK);
+        }
+    }
+    assert!(threads() < before + 50, "{before} threads before, {} after", threads());
+}

@@ -1,0 +1,227 @@
+// The C boundary as a C++ program sees it, through the header and the shared library that a plug-in would use. What Rust
+// can check as well is in tests/abi_contract.rs; here are the linkage, the macros, threads of the host, and callbacks that
+// call back.
+#include "check.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <cstring>
+#include <thread>
+#include <vector>
+
+namespace {
+
+luxfer_context *new_context(std::uint32_t threads) {
+    luxfer_context_params params;
+    CHECK_OK(luxfer_context_params_init(&params, sizeof params));
+    params.num_threads = threads;
+    luxfer_context *context = nullptr;
+    CHECK_OK(luxfer_context_create(&params, &context));
+    return context;
+}
+
+luxfer_image *new_image(luxfer_context *context, std::uint32_t width, std::uint32_t height) {
+    std::vector<float> pixels(std::size_t(width) * height * 3, 0.5f);
+    luxfer_image_view view;
+    CHECK_OK(luxfer_image_view_init(&view, sizeof view));
+    view.width = width;
+    view.height = height;
+    view.data = pixels.data();
+    view.byte_size = pixels.size() * sizeof(float);
+    luxfer_image *image = nullptr;
+    CHECK_OK(luxfer_image_create(context, &view, &image));
+    return image;
+}
+
+// A lamp over a floor, and a camera.
+luxfer_scene *new_scene(luxfer_context *context) {
+    luxfer_scene *scene = nullptr;
+    CHECK_OK(luxfer_scene_create(context, &scene));
+    luxfer_material_params material;
+    CHECK_OK(luxfer_material_params_init(&material, sizeof material));
+    CHECK_OK(luxfer_scene_add_material(scene, &material, nullptr));
+    for (float &channel : material.emission)
+        channel = 100.0f;
+    std::uint32_t glowing = 0;
+    CHECK_OK(luxfer_scene_add_material(scene, &material, &glowing));
+
+    const std::uint32_t triangles[] = {0, 1, 2, 0, 2, 3};
+    for (int i = 0; i < 2; ++i) {
+        const float y = i == 0 ? -1.0f : 2.0f, r = i == 0 ? 3.0f : 0.5f;
+        const float corners[] = {-r, y, -r, -r, y, r, r, y, r, r, y, -r};
+        luxfer_mesh_params mesh;
+        CHECK_OK(luxfer_mesh_params_init(&mesh, sizeof mesh));
+        mesh.name = i == 0 ? "Floor" : "Lamp";
+        mesh.material = i == 0 ? 0 : glowing;
+        mesh.vertex_count = 4;
+        mesh.positions = corners;
+        mesh.triangle_count = 2;
+        mesh.indices = triangles;
+        CHECK_OK(luxfer_scene_add_mesh(scene, &mesh, nullptr));
+    }
+    CHECK_OK(luxfer_scene_add_camera(scene, nullptr, nullptr));
+    return scene;
+}
+
+luxfer_render *new_render(luxfer_context *context) {
+    luxfer_scene *scene = new_scene(context);
+    luxfer_render *render = nullptr;
+    CHECK_OK(luxfer_render_create(context, &render));
+    CHECK_OK(luxfer_render_set_scene(render, scene));
+    CHECK_OK(luxfer_scene_release(scene));
+    return render;
+}
+
+luxfer_job *start(luxfer_render *render, std::uint32_t side, std::uint32_t samples) {
+    luxfer_render_params params;
+    CHECK_OK(luxfer_render_params_init(&params, sizeof params));
+    params.width = params.height = side;
+    params.samples = samples;
+    luxfer_job *job = nullptr;
+    CHECK_OK(luxfer_render_start(render, &params, &job));
+    return job;
+}
+
+constexpr std::uint32_t endless = 1u << 20;
+
+void versions_agree() {
+    CHECK(luxfer_version() == LUXFER_VERSION);
+    const std::string text = std::to_string(LUXFER_VERSION_MAJOR) + "." + std::to_string(LUXFER_VERSION_MINOR) + "." +
+                             std::to_string(LUXFER_VERSION_PATCH);
+    CHECK(text == luxfer_version_string());
+    CHECK(std::strcmp(luxfer_status_name(LUXFER_FORMAT), "LUXFER_FORMAT") == 0);
+    CHECK(std::strcmp(luxfer_status_name(-5), "LUXFER_UNKNOWN") == 0);
+}
+
+void wrong_handles_are_errors() {
+    luxfer_context *context = new_context(1);
+    luxfer_image *image = new_image(context, 4, 4);
+    CHECK_STATUS(luxfer_image_size(reinterpret_cast<luxfer_image *>(context), nullptr, nullptr, nullptr),
+                 LUXFER_INVALID_ARGUMENT);
+    std::uint64_t garbage[4] = {1, 2, 3, 4};
+    CHECK_STATUS(luxfer_image_release(reinterpret_cast<luxfer_image *>(garbage)), LUXFER_INVALID_ARGUMENT);
+    CHECK_STATUS(luxfer_context_retain(nullptr), LUXFER_INVALID_ARGUMENT);
+    CHECK_OK(luxfer_image_release(nullptr));
+    CHECK_OK(luxfer_context_release(context));
+    CHECK_OK(luxfer_image_release(image));
+}
+
+// Errors of one host thread are not those of another.
+void messages_belong_to_threads() {
+    luxfer_context *context = new_context(1);
+    std::vector<std::thread> hosts;
+    std::atomic<int> wrong{0};
+    for (int i = 0; i < 8; ++i)
+        hosts.emplace_back([context, i, &wrong] {
+            const std::string path = "/nonexistent/" + std::to_string(i) + ".png";
+            for (int repeat = 0; repeat < 100; ++repeat) {
+                luxfer_image *image = nullptr;
+                if (luxfer_image_load(context, path.c_str(), LUXFER_COLOUR_SRGB, &image) != LUXFER_IO || image != nullptr ||
+                    check::message(context).find(path) == std::string::npos)
+                    ++wrong;
+            }
+        });
+    for (std::thread &host : hosts)
+        host.join();
+    CHECK(wrong == 0);
+    CHECK(check::message(context).empty());
+    CHECK_OK(luxfer_context_release(context));
+}
+
+// A callback may call any function, even release the very job it is told about.
+struct Reentrant {
+    luxfer_context *context;
+    luxfer_render *render;
+    luxfer_job *job;
+    int calls;
+};
+
+std::int32_t reenter(void *user, double) {
+    Reentrant &seen = *static_cast<Reentrant *>(user);
+    ++seen.calls;
+    double fraction = -1.0;
+    std::int32_t finished = -1;
+    luxfer_image *image = nullptr;
+    if (seen.calls == 1) {
+        CHECK_OK(luxfer_job_poll(seen.job, &fraction, &finished));
+        CHECK(fraction >= 0.0 && fraction <= 1.0 && (finished == 0 || finished == 1));
+        CHECK_STATUS(luxfer_image_load(seen.context, "/nonexistent", LUXFER_COLOUR_SRGB, &image), LUXFER_IO);
+        CHECK_OK(luxfer_render_release(seen.render));
+        CHECK_OK(luxfer_context_release(seen.context));
+        CHECK_OK(luxfer_job_release(seen.job));
+        return 1;
+    }
+    CHECK(false); // Not called again after it has asked to cancel.
+    return 1;
+}
+
+void callbacks_may_call_back() {
+    luxfer_context *context = new_context(2);
+    luxfer_render *render = new_render(context);
+    luxfer_job *job = start(render, 64, endless);
+    Reentrant seen{context, render, job, 0};
+    CHECK_STATUS(luxfer_job_wait(job, -1, reenter, &seen), LUXFER_CANCELLED);
+    CHECK(seen.calls == 1);
+}
+
+// A job is released from one thread while another cancels it through a reference of its own.
+void references_of_two_threads() {
+    luxfer_context *context = new_context(2);
+    for (int i = 0; i < 20; ++i) {
+        luxfer_render *render = new_render(context);
+        luxfer_job *job = start(render, 16, endless);
+        CHECK_OK(luxfer_job_retain(job));
+        std::thread other([job] {
+            CHECK_OK(luxfer_job_cancel(job));
+            CHECK_OK(luxfer_job_release(job));
+        });
+        CHECK_STATUS(luxfer_job_wait(job, -1, nullptr, nullptr), LUXFER_CANCELLED);
+        CHECK_OK(luxfer_job_release(job));
+        CHECK_OK(luxfer_render_release(render));
+        other.join();
+    }
+    CHECK_OK(luxfer_context_release(context));
+}
+
+// The same bits on one thread and on three.
+void threads_do_not_change_results() {
+    std::vector<float> first;
+    for (std::uint32_t threads : {1u, 3u}) {
+        luxfer_context *context = new_context(threads);
+        luxfer_render *render = new_render(context);
+        luxfer_job *job = start(render, 32, 16);
+        CHECK_OK(luxfer_job_wait(job, -1, nullptr, nullptr));
+        luxfer_image *image = nullptr;
+        CHECK_OK(luxfer_render_get_image(render, LUXFER_RENDER_BEAUTY, &image));
+        // Everything but the image goes; its pixels stay.
+        CHECK_OK(luxfer_job_release(job));
+        CHECK_OK(luxfer_render_release(render));
+        CHECK_OK(luxfer_context_release(context));
+
+        std::vector<float> pixels(32 * 32 * 3);
+        luxfer_image_view view;
+        CHECK_OK(luxfer_image_view_init(&view, sizeof view));
+        view.width = view.height = 32;
+        view.data = pixels.data();
+        view.byte_size = pixels.size() * sizeof(float);
+        CHECK_OK(luxfer_image_read(image, 0, &view));
+        CHECK_OK(luxfer_image_release(image));
+        if (first.empty())
+            first = pixels;
+        CHECK(std::memcmp(first.data(), pixels.data(), view.byte_size) == 0);
+        CHECK(*std::max_element(pixels.begin(), pixels.end()) > 0.0f);
+    }
+}
+
+} // namespace
+
+int main() {
+    versions_agree();
+    wrong_handles_are_errors();
+    messages_belong_to_threads();
+    callbacks_may_call_back();
+    references_of_two_threads();
+    threads_do_not_change_results();
+    return check::summary("abi_contract");
+}
