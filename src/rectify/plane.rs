@@ -97,7 +97,7 @@ fn facing(perspective: &Perspective, [i, j]: [usize; 2], pixels: &[DVec2]) -> Pl
         let v = perspective.vanishing_point(axis);
         (v.truncate() - centre * v.z).normalize_or_zero()
     };
-    let (i, j) = if runs(i).x.abs() >= runs(j).x.abs() { (i, j) } else { (j, i) };
+    let i = if runs(i).x.abs() >= runs(j).x.abs() { i } else { j };
     let right = perspective.axes.col(i) * if runs(i).x < 0.0 { -1.0 } else { 1.0 };
     // Not mirrored: as the camera sees it, right, down and away are right-handed.
     let down = normal.cross(right);
