@@ -1,0 +1,131 @@
+//! Reversed retrieval under an error budget (§3.3).
+//!
+//! In each pass every exemplar patch looks for its nearest target patch among those still free. The errors give a budget;
+//! in order of rising error the patches take their targets until it is spent. Where two want the same target the closer
+//! one has it, among equals the first. Then all exemplar patches may be used again for what is left. When enough is covered,
+//! or a pass brings next to nothing, the remaining target patches look for their nearest exemplar patch instead.
+//!
+//! A pass starts from the last one: an exemplar patch whose target was taken looks around it; the others stay.
+
+use super::budget::budget;
+use super::level::Level;
+use super::{Mode, Params};
+use crate::error::Result;
+use crate::job::Job;
+use crate::patch::{Domain, Field, NONE, Sweep, pack, unpack};
+
+/// What a retrieval pass did.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pass {
+    /// Share of the exemplar patches left of the knee.
+    pub knee: f64,
+    /// Target patches that were given a match in this pass.
+    pub gained: usize,
+    /// Share of the wanted target patches with a match after it.
+    pub coverage: f64,
+}
+
+/// A pass that covers less than this share of the target is the last.
+const LEAST_GAIN: f64 = 0.005;
+
+/// Matches every wanted target patch; `field` holds matches or hints of the last iteration, and what it returns has the
+/// distances of this one.
+pub(super) fn retrieve(level: &Level, field: &mut Field, params: &Params, round: u64, job: Job) -> Result<Vec<Pass>> {
+    let wanted = level.wanted.len();
+    let search = level.forward();
+    search.rescore(field, job.part(0.0, 0.05), |i| level.wanted.contains_index(i))?;
+    let mut free = level.wanted.clone();
+    let mut reverse = field.invert(&level.allowed)?;
+    let mut matched = Field::new(field.width, field.height)?;
+    let mut passes = Vec::new();
+    let enough = if params.mode == Mode::Uniform { 1.0 } else { f64::from(params.coverage) };
+
+    while passes.len() < params.passes && ((wanted - free.len()) as f64) < enough * wanted as f64 {
+        let done = passes.len() as f64 / params.passes as f64;
+        let job = job.part(0.05 + 0.75 * done, 0.05 + 0.75 * (done + 1.0 / params.passes as f64));
+        nearest_free(level, &free, &mut reverse, params, round * 1000 + passes.len() as u64, job)?;
+        let (knee, gained) = accept(&mut matched, &mut free, &mut reverse, params.mode);
+        let coverage = (wanted - free.len()) as f64 / wanted as f64;
+        passes.push(Pass { knee, gained, coverage });
+        if (gained as f64) < LEAST_GAIN * wanted as f64 {
+            break;
+        }
+    }
+
+    // Ordinary retrieval for what is left, from the last iteration's matches and those of the neighbours.
+    for i in (0..field.at.len()).filter(|&i| free.contains_index(i)) {
+        (matched.at[i], matched.error[i]) = (field.at[i], field.error[i]);
+    }
+    for k in 0..params.sweeps {
+        let job =
+            job.part(0.8 + 0.2 * k as f64 / params.sweeps as f64, 0.8 + 0.2 * (k + 1) as f64 / params.sweeps as f64);
+        let sweep = Sweep { index: round * 1000 + 900 + k as u64, reach: 64, fresh: 4 };
+        search.sweep(&mut matched, sweep, job, |i| free.contains_index(i))?;
+    }
+    *field = matched;
+    Ok(passes)
+}
+
+/// Finds for each exemplar patch its nearest free target patch, starting from what is known.
+fn nearest_free(
+    level: &Level,
+    free: &Domain,
+    reverse: &mut Field,
+    params: &Params,
+    index: u64,
+    job: Job,
+) -> Result<()> {
+    let search = level.reverse(free);
+    let lost: Vec<bool> = reverse.error.iter().map(|&e| e == u32::MAX).collect();
+    for k in 0..params.sweeps {
+        let job = job.part(k as f64 / params.sweeps as f64, (k + 1) as f64 / params.sweeps as f64);
+        let sweep = Sweep { index: index * 100 + k as u64, reach: 32, fresh: 2 };
+        search.sweep(reverse, sweep, job, |i| lost[i] && level.allowed.contains_index(i))?;
+    }
+    Ok(())
+}
+
+/// Gives target patches to exemplar patches in order of rising error until the budget is spent; returns the knee and the
+/// number given.
+fn accept(matched: &mut Field, free: &mut Domain, reverse: &mut Field, mode: Mode) -> (f64, usize) {
+    // Sort by error, then by position.
+    let mut order: Vec<u64> = (reverse.error.iter().enumerate())
+        .filter(|(_, e)| **e != u32::MAX)
+        .map(|(i, &e)| u64::from(e) << 32 | i as u64)
+        .collect();
+    order.sort_unstable();
+    let errors: Vec<u32> = order.iter().map(|o| (o >> 32) as u32).collect();
+    let budget = budget(&errors);
+    let total = if mode == Mode::Uniform { f64::INFINITY } else { budget.total };
+
+    // Spend the budget; a target that is taken costs nothing.
+    let (mut spent, mut gained) = (0.0, 0);
+    for (&o, &error) in order.iter().zip(&errors) {
+        let source = (o & 0xffff_ffff) as usize;
+        let (x, y) = unpack(reverse.at[source]);
+        let target = y * matched.width + x;
+        if !free.contains_index(target) {
+            continue;
+        }
+        spent += f64::from(error);
+        if spent > total {
+            break;
+        }
+        matched.at[target] = pack(source % reverse.width, source / reverse.width);
+        matched.error[target] = error;
+        free.remove(target);
+        gained += 1;
+    }
+    free.compact();
+
+    // What pointed at a target now taken is but a hint.
+    for (at, error) in reverse.at.iter().zip(&mut reverse.error) {
+        if *at != NONE {
+            let (x, y) = unpack(*at);
+            if !free.contains(x, y) {
+                *error = u32::MAX;
+            }
+        }
+    }
+    (budget.knee, gained)
+}
