@@ -30,6 +30,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             Some(("iterations", v)) => params.iterations = v.parse()?,
             Some(("finest", v)) => params.finest_iterations = v.parse()?,
             Some(("sweeps", v)) => params.sweeps = v.parse()?,
+            Some(("settle", v)) => params.settle = v.parse()?,
             Some(("passes", v)) => params.passes = v.parse()?,
             Some(("patch", v)) => params.patch = v.parse()?,
             Some(("coverage", v)) => params.coverage = v.parse()?,

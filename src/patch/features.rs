@@ -3,8 +3,8 @@
 use crate::error::Result;
 use crate::image::try_vec;
 
-/// Samples per pixel are padded to a multiple of this: one AVX2 register of `i16`.
-pub const LANES: usize = 16;
+/// Samples per pixel are padded to a multiple of this: half an AVX2 register of `i16`.
+pub const LANES: usize = 8;
 
 /// Interleaved 16-bit channels, each multiplied by the square root of its weight, so that a plain sum of squared
 /// differences is the weighted one of Eq. 1.

@@ -3,11 +3,19 @@
 //! The sorted matching errors, both axes scaled to `[0, 1]`, follow a hyperbola `f(x) = 1 / (a - b x)`. Its knee, where
 //! `f′ = 1`, parts feasible from forced matches. `f′ = b f²`, so the knee is where `a - b x = √b`:
 //! `k = a/b - √(1/b)`. The paper prints a plus sign, which lies beyond the pole at `a/b`.
+//!
+//! Where no hyperbola fits, as when most exemplar patches have no place left and the curve is a step (Fig. 7), the knee is
+//! the point farthest below the diagonal. A curve that never runs below it has no knee: flat errors are all feasible.
 
 /// Fewer errors than this have no shape to fit.
 const FEWEST: usize = 8;
 /// Points of the sorted curve that are fitted.
 const SAMPLES: usize = 256;
+
+/// Least share of the variance that a hyperbola must explain.
+const FIT: f64 = 0.8;
+/// A curve that runs less than this below the diagonal has no knee.
+const SAG: f64 = 0.01;
 
 /// The hyperbola `1 / (a - b x)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,6 +30,14 @@ impl Hyperbola {
         let pole = self.a / self.b;
         let knee = pole - (1.0 / self.b).sqrt();
         (self.b > 0.0 && pole > 1.0 && knee > 0.0 && knee < 1.0).then_some(knee)
+    }
+
+    /// Share of the variance of `points` that it explains.
+    fn explained(self, points: &[(f64, f64)]) -> f64 {
+        let mean = points.iter().map(|p| p.1).sum::<f64>() / points.len() as f64;
+        let variance: f64 = points.iter().map(|p| (p.1 - mean).powi(2)).sum();
+        let rest: f64 = points.iter().map(|p| (p.1 - 1.0 / (self.a - self.b * p.0)).powi(2)).sum();
+        1.0 - rest / variance
     }
 
     /// Fits sorted points `(x, y)` in the unit square.
@@ -87,10 +103,20 @@ pub fn budget(errors: &[u32]) -> Budget {
             ((i as f64 + 0.5) / n as f64, f64::from(errors[i]) / f64::from(worst))
         })
         .collect();
-    match Hyperbola::fit(&points).and_then(Hyperbola::knee) {
+    // A hyperbola through (1, 1) with a knee runs below the diagonal there, by (1 - √(1/b))².
+    let knee = farthest_below_diagonal(&points).map(|farthest| {
+        let hyperbola = Hyperbola::fit(&points).filter(|f| f.explained(&points) >= FIT);
+        hyperbola.and_then(Hyperbola::knee).unwrap_or(farthest)
+    });
+    match knee {
         Some(knee) => Budget { knee, total: sum(&errors[..(knee * n as f64).ceil() as usize]) },
         None => all(),
     }
+}
+
+fn farthest_below_diagonal(points: &[(f64, f64)]) -> Option<f64> {
+    let farthest = points.iter().max_by(|p, q| (p.0 - p.1).total_cmp(&(q.0 - q.1)))?;
+    (farthest.0 - farthest.1 > SAG).then_some(farthest.0)
 }
 
 #[cfg(test)]
@@ -139,6 +165,9 @@ mod tests {
         outlier[999] = u32::MAX - 1;
         let b = budget(&outlier);
         assert!(b.knee > 0.0 && b.knee <= 1.0 && b.total >= 0.0);
+        // A step: a fifth fits, the rest is forced (Fig. 7).
+        let step = curve(1000, |x| if x < 0.2 { 0.01 } else { 0.9 + 0.1 * x });
+        assert!((super::budget(&step).knee - 0.2).abs() < 0.01);
         // Most are perfect.
         let mut zeros = vec![0u32; 1000];
         zeros[990..].iter_mut().enumerate().for_each(|(i, e)| *e = 1 + i as u32);

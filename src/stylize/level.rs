@@ -1,7 +1,7 @@
 //! One resolution of the problem, quantised for matching.
 
 use super::guides::Channels;
-use super::{Input, Params, check_side};
+use super::{Input, Params, check_side, pca};
 use crate::error::{Error, Result};
 use crate::image::Image;
 use crate::image::colour::linear_to_srgb;
@@ -31,7 +31,7 @@ impl Problem {
         if ![1, 3, 4].contains(&artwork.channels) {
             return Err(Error::argument(format!("artwork has {} channels; it must have 1, 3 or 4", artwork.channels)));
         }
-        let guides = Channels::new(input.guides, job)?;
+        let mut guides = Channels::new(input.guides, job)?;
         check_side("guides[0].target", &guides.target)?;
         artwork.check_same_size("artwork", &guides.source, "guides[0].source")?;
         let mut style = artwork.clone();
@@ -51,10 +51,14 @@ impl Problem {
         style.data.iter_mut().for_each(|v| *v = if v.is_finite() { linear_to_srgb(*v) } else { 0.0 });
         let known = input.known.map(|known| encode_known(known, &guides.target, artwork.channels)).transpose()?;
 
+        if params.preview {
+            pca::compress(&mut guides, job)?;
+        }
         let sides = [style.width, style.height, guides.target.width, guides.target.height];
         let shortest = sides.into_iter().min().unwrap_or(1);
         let patch = if params.patch <= shortest { params.patch } else { (shortest - 1) | 1 };
-        Ok(Self { patch, style, guides, source_mask, target_mask, known, broken: counts })
+        let whole = Self { patch, style, guides, source_mask, target_mask, known, broken: counts };
+        if params.preview && shortest >= 2 * patch { whole.halve(job) } else { Ok(whole) }
     }
 
     /// Shortest side of exemplar and target.

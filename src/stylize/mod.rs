@@ -22,6 +22,7 @@ mod budget;
 mod greedy;
 mod guides;
 mod level;
+mod pca;
 mod report;
 mod retrieve;
 mod schedule;
@@ -90,6 +91,9 @@ pub struct Params {
     pub coverage: f32,
     /// Most retrieval passes in an iteration, in `[1, 1000]`.
     pub passes: usize,
+    /// Sweeps of propagation after a retrieval, in `[0, 100]`: a target patch may continue its neighbour's match where that
+    /// is closer. 0 is the paper's assignment as it is.
+    pub settle: usize,
     pub vote: Vote,
     /// How the last picture is made from the last field.
     pub final_vote: Vote,
@@ -110,8 +114,9 @@ impl Default for Params {
             sweeps: 2,
             coverage: 0.95,
             passes: 12,
-            vote: Vote::Plain,
-            final_vote: Vote::Plain,
+            settle: 1,
+            vote: Vote::Weighted,
+            final_vote: Vote::Nearest,
             preview: false,
             seed: 1,
         }
@@ -130,6 +135,7 @@ impl Params {
         check_range("finest_iterations", self.finest_iterations, 1, 100)?;
         check_range("sweeps", self.sweeps, 1, 100)?;
         check_range("coverage", self.coverage, 0.0, 1.0)?;
+        check_range("settle", self.settle, 0, 100)?;
         check_range("passes", self.passes, 1, 1000)?;
         Ok(())
     }
