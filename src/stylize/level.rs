@@ -67,6 +67,19 @@ impl Problem {
         s.width.min(s.height).min(t.width).min(t.height)
     }
 
+    /// Whether it is of the artwork's own size: a preview is not.
+    pub fn is_of(&self, artwork: &Image) -> bool {
+        (self.style.width, self.style.height) == (artwork.width, artwork.height)
+    }
+
+    /// What is known of the target, else black; encoded for display.
+    pub fn blank_picture(&self) -> Result<Image> {
+        match &self.known {
+            Some(known) => Ok(known.clone()),
+            None => Image::new(self.guides.target.width, self.guides.target.height, self.style.channels),
+        }
+    }
+
     /// The problem at half the resolution.
     pub fn halve(&self, job: Job) -> Result<Self> {
         let (source, target) = (&self.guides.source, &self.guides.target);

@@ -9,7 +9,7 @@
 //! ([`budget`](self), [`retrieve`](self)).
 //!
 //! `guides` normalises, `level` quantises one resolution, `retrieve` matches under the budget, `budget` fits the knee,
-//! `schedule` goes from coarse to fine, `greedy` is Hertzmann's algorithm for comparison, `report` measures.
+//! `schedule` goes from coarse to fine, `study` follows changes of the artwork, `greedy` is Hertzmann's algorithm for comparison, `report` measures.
 //!
 //! Colours are compared and averaged as they are encoded for display (sRGB), which is how paint is looked at.
 //!
@@ -26,6 +26,7 @@ mod pca;
 mod report;
 mod retrieve;
 mod schedule;
+mod study;
 
 #[cfg(test)]
 mod tests;
@@ -34,6 +35,7 @@ pub use budget::{Budget, Hyperbola, budget};
 pub use guides::{Guide, Range};
 pub use report::{LevelReport, Report, Usage};
 pub use retrieve::Pass;
+pub use study::Study;
 
 use crate::error::{Error, Result, check_range};
 use crate::image::Image;
@@ -111,10 +113,10 @@ impl Default for Params {
             levels: 6,
             iterations: 6,
             finest_iterations: 2,
-            sweeps: 2,
+            sweeps: 1,
             coverage: 0.95,
             passes: 12,
-            settle: 1,
+            settle: 2,
             vote: Vote::Weighted,
             final_vote: Vote::Nearest,
             preview: false,

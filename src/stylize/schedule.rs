@@ -51,10 +51,7 @@ pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Pu
             Some(previous) => checked(previous, &level)?,
             None => by_guides_alone(problem, params, seed, job.part(0.0, 0.1))?,
         };
-        let mut picture = match &problem.known {
-            Some(known) => known.clone(),
-            None => Image::new(problem.guides.target.width, problem.guides.target.height, problem.style.channels)?,
-        };
+        let mut picture = problem.blank_picture()?;
         let how = if params.mode == Mode::LitSphere { Vote::Nearest } else { params.vote };
         paint(&mut picture, &current, problem, &level, how, job.part(0.1, 0.12))?;
 
@@ -102,7 +99,7 @@ pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Pu
         publish(&decode(&picture), l);
 
         if l == 0 {
-            let image = finish(&picture, &current, problem, input, job)?;
+            let image = finish(&picture, &current, problem, input.artwork, input.known, job)?;
             let report = Report {
                 levels: reports,
                 usage: Usage::of(&current, &level)?,
@@ -174,7 +171,14 @@ fn checked(field: Field, level: &Level) -> Result<Field> {
 }
 
 /// Votes, and puts back what is known.
-fn paint(picture: &mut Image, field: &Field, problem: &Problem, level: &Level, how: Vote, job: Job) -> Result<()> {
+pub(super) fn paint(
+    picture: &mut Image,
+    field: &Field,
+    problem: &Problem,
+    level: &Level,
+    how: Vote,
+    job: Job,
+) -> Result<()> {
     vote(picture, field, &problem.style, &level.allowed, problem.patch, how, job)?;
     restore_known(picture, problem);
     Ok(())
@@ -196,10 +200,16 @@ fn decode(picture: &Image) -> Image {
 
 /// The result in linear colour. Pixels that all patches agree on, and known ones, are copied and not decoded, so that
 /// they are the artwork's to the bit.
-fn finish(picture: &Image, field: &Field, problem: &Problem, input: &Input, job: Job) -> Result<Image> {
+pub(super) fn finish(
+    picture: &Image,
+    field: &Field,
+    problem: &Problem,
+    artwork: &Image,
+    known: Option<&Image>,
+    job: Job,
+) -> Result<Image> {
     let mut image = decode(picture);
-    // A preview is made from half of the artwork.
-    if (problem.style.width, problem.style.height) != (input.artwork.width, input.artwork.height) {
+    if !problem.is_of(artwork) {
         return Ok(image);
     }
     let channels = image.channels;
@@ -207,12 +217,12 @@ fn finish(picture: &Image, field: &Field, problem: &Problem, input: &Input, job:
     for (pixel, &origin) in image.data.chunks_exact_mut(channels).zip(&origins) {
         if origin != NONE {
             let (x, y) = unpack(origin);
-            pixel.copy_from_slice(input.artwork.pixel(x, y));
+            pixel.copy_from_slice(artwork.pixel(x, y));
         }
     }
     if let Some(mask) = &problem.target_mask {
         for (i, (pixel, made)) in image.data.chunks_exact_mut(channels).zip(mask).enumerate() {
-            match input.known {
+            match known {
                 _ if *made => {}
                 Some(known) => pixel.copy_from_slice(&known.data[i * channels..(i + 1) * channels]),
                 None => pixel.fill(0.0),

@@ -293,3 +293,28 @@ fn an_earlier_field_is_a_start_and_is_checked() {
         assert!(error.message.contains("previous"));
     }
 }
+
+#[test]
+fn a_study_follows_its_artwork_where_it_changed_and_nowhere_else() {
+    let (a, b) = (scene(80, 60, 40.0, 30.0, 18.0), scene(80, 60, 36.0, 30.0, 18.0));
+    let mut art = artwork(&a);
+    let guides = [guide(&a, &b)];
+    for preview in [false, true] {
+        let params = Params { levels: 2, iterations: 2, preview, ..Params::default() };
+        let (mut study, before) = Study::new(&input(&art, &guides), &params, Monitor::default().job()).unwrap();
+        let whole = stylise(&input(&art, &guides), &params).unwrap();
+        assert!(before.image == whole.image);
+
+        // Paint the ball green; the ground stays as it was.
+        let changed = Image::from_fn(80, 60, |x, y| [a.pixel(x, y)[2]]).unwrap();
+        for (p, _) in art.data.chunks_exact_mut(3).zip(&changed.data).filter(|(_, c)| **c > 0.5) {
+            p.copy_from_slice(&[0.0, 1.0, 0.0]);
+        }
+        let after = study.repaint(&art, &changed, Monitor::default().job()).unwrap();
+        let scale = if preview { 2 } else { 1 };
+        let (ball, corner) = (after.pixel(36 / scale, 30 / scale), (4 / scale, 4 / scale));
+        assert!(ball[1] > 0.9 && ball[0] < 0.1, "{ball:?}");
+        assert_eq!(after.pixel(corner.0, corner.1), before.image.pixel(corner.0, corner.1));
+        assert!(study.repaint(&b, &before.image, Monitor::default().job()).is_err());
+    }
+}
