@@ -6,7 +6,7 @@
 use luxfer::image::io::{Encoding, encode_png, load};
 use luxfer::job::Monitor;
 use luxfer::patch::Vote;
-use luxfer::stylize::{Guide, Input, Mode, Params, Range, run};
+use luxfer::stylize::{Finder, Guide, Input, Mode, Params, Range, run};
 use std::path::Path;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -30,6 +30,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             Some(("iterations", v)) => params.iterations = v.parse()?,
             Some(("finest", v)) => params.finest_iterations = v.parse()?,
             Some(("sweeps", v)) => params.sweeps = v.parse()?,
+            Some(("finder", v)) => {
+                params.finder = match v {
+                    "patchmatch" => Finder::PatchMatch,
+                    "table" => Finder::Table,
+                    _ => return Err(format!("unknown finder {v}").into()),
+                }
+            }
             Some(("settle", v)) => params.settle = v.parse()?,
             Some(("passes", v)) => params.passes = v.parse()?,
             Some(("patch", v)) => params.patch = v.parse()?,

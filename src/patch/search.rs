@@ -213,16 +213,16 @@ impl Tile {
 }
 
 /// The best match of one patch so far.
-struct Best {
-    at: u32,
-    error: u32,
-    x: usize,
-    y: usize,
+pub(super) struct Best {
+    pub at: u32,
+    pub error: u32,
+    pub x: usize,
+    pub y: usize,
 }
 
 impl Best {
     #[inline]
-    fn try_at(&mut self, search: &Search, px: isize, py: isize) {
+    pub fn try_at(&mut self, search: &Search, px: isize, py: isize) {
         if px < 0 || py < 0 || px as usize >= search.allowed.width || py as usize >= search.allowed.height {
             return;
         }

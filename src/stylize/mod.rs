@@ -9,6 +9,7 @@
 //! ([`budget`](self), [`retrieve`](self)).
 //!
 //! `guides` normalises, `level` quantises one resolution, `retrieve` matches under the budget, `budget` fits the knee,
+//! `finder` searches,
 //! `schedule` goes from coarse to fine, `study` follows changes of the artwork, `greedy` is Hertzmann's algorithm for comparison, `report` measures.
 //!
 //! Colours are compared and averaged as they are encoded for display (sRGB), which is how paint is looked at.
@@ -19,6 +20,7 @@
 //! US 8,861,869, 8,571,328 and 8,625,927); hence the Cargo feature `stylize`, which a distributor can leave out.
 
 mod budget;
+mod finder;
 mod greedy;
 mod guides;
 mod level;
@@ -58,6 +60,15 @@ pub enum Mode {
     LitSphere,
 }
 
+/// How nearest patches are searched for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Finder {
+    /// PatchMatch.
+    PatchMatch,
+    /// A k-d tree over patch means: not PatchMatch.
+    Table,
+}
+
 #[derive(Clone, Copy)]
 pub struct Input<'a> {
     /// The artwork A′, linear colour, aligned with the source side of the guides; 1, 3 or 4 channels.
@@ -77,6 +88,7 @@ pub struct Input<'a> {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Params {
     pub mode: Mode,
+    pub finder: Finder,
     /// Width of a patch in pixels, odd, in `[1, 33]`. Shrinks to the images where they are smaller.
     pub patch: usize,
     /// Weight μ of all guides together against the artwork's colours together, in `[0, 1e6]`.
@@ -108,6 +120,7 @@ impl Default for Params {
     fn default() -> Self {
         Self {
             mode: Mode::Budget,
+            finder: Finder::PatchMatch,
             patch: 5,
             guide_weight: 2.0,
             levels: 6,

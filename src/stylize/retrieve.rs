@@ -13,6 +13,7 @@
 //! A pass starts from the last one: an exemplar patch whose target was taken looks around it; the others stay.
 
 use super::budget::budget;
+use super::finder::Nearest;
 use super::level::Level;
 use super::{Mode, Params};
 use crate::error::Result;
@@ -37,8 +38,9 @@ const LEAST_GAIN: f64 = 0.005;
 /// distances of this one.
 pub(super) fn retrieve(level: &Level, field: &mut Field, params: &Params, round: u64, job: Job) -> Result<Vec<Pass>> {
     let wanted = level.wanted.len();
+    let nearest = Nearest::new(level, params, job.part(0.0, 0.02))?;
     let search = level.forward();
-    search.rescore(field, job.part(0.0, 0.05), |i| level.wanted.contains_index(i))?;
+    search.rescore(field, job.part(0.02, 0.05), |i| level.wanted.contains_index(i))?;
     let mut free = level.wanted.clone();
     let mut reverse = field.invert(&level.allowed)?;
     let mut matched = Field::new(field.width, field.height)?;
@@ -48,7 +50,9 @@ pub(super) fn retrieve(level: &Level, field: &mut Field, params: &Params, round:
     while passes.len() < params.passes && ((wanted - free.len()) as f64) < enough * wanted as f64 {
         let done = passes.len() as f64 / params.passes as f64;
         let job = job.part(0.05 + 0.75 * done, 0.05 + 0.75 * (done + 1.0 / params.passes as f64));
-        nearest_free(level, &free, &mut reverse, params, round * 1000 + passes.len() as u64, job)?;
+        let lost: Vec<bool> = reverse.error.iter().map(|&e| e == u32::MAX).collect();
+        let index = 2000 * round + passes.len() as u64;
+        nearest.reverse(&mut reverse, &free, index, job, |i| lost[i] && level.allowed.contains_index(i))?;
         let (knee, gained) = accept(&mut matched, &mut free, &mut reverse, params.mode);
         let coverage = (wanted - free.len()) as f64 / wanted as f64;
         passes.push(Pass { knee, gained, coverage });
@@ -61,38 +65,14 @@ pub(super) fn retrieve(level: &Level, field: &mut Field, params: &Params, round:
     for i in (0..field.at.len()).filter(|&i| free.contains_index(i)) {
         (matched.at[i], matched.error[i]) = (field.at[i], field.error[i]);
     }
-    for k in 0..params.sweeps {
-        let job =
-            job.part(0.8 + 0.1 * k as f64 / params.sweeps as f64, 0.8 + 0.1 * (k + 1) as f64 / params.sweeps as f64);
-        let sweep = Sweep { index: round * 1000 + 900 + k as u64, reach: 64, fresh: 4 };
-        search.sweep(&mut matched, sweep, job, |i| free.contains_index(i))?;
-    }
-    // Let patches that fit continue their neighbours.
+    nearest.forward(&mut matched, 2000 * round + 1500, job.part(0.8, 0.9), |i| free.contains_index(i))?;
+    // Let patches continue their neighbours' matches where those fit better.
     for k in 0..params.settle {
-        let sweep = Sweep { index: round * 1000 + 950 + k as u64, reach: 0, fresh: 0 };
+        let sweep = Sweep { index: k as u64, reach: 0, fresh: 0 };
         search.sweep(&mut matched, sweep, job.part(0.9, 1.0), |i| level.wanted.contains_index(i))?;
     }
     *field = matched;
     Ok(passes)
-}
-
-/// Finds for each exemplar patch its nearest free target patch, starting from what is known.
-fn nearest_free(
-    level: &Level,
-    free: &Domain,
-    reverse: &mut Field,
-    params: &Params,
-    index: u64,
-    job: Job,
-) -> Result<()> {
-    let search = level.reverse(free);
-    let lost: Vec<bool> = reverse.error.iter().map(|&e| e == u32::MAX).collect();
-    for k in 0..params.sweeps {
-        let job = job.part(k as f64 / params.sweeps as f64, (k + 1) as f64 / params.sweeps as f64);
-        let sweep = Sweep { index: index * 100 + k as u64, reach: 32, fresh: 2 };
-        search.sweep(reverse, sweep, job, |i| lost[i] && level.allowed.contains_index(i))?;
-    }
-    Ok(())
 }
 
 /// Gives target patches to exemplar patches in order of rising error until the budget is spent; returns the knee and the

@@ -1,9 +1,10 @@
 //! From coarse to fine (§3.4): on each level match and vote a few times, then go on from the doubled field.
 
+use super::finder::Nearest;
 use super::level::{Level, Problem};
 use super::report::{LevelReport, Report, Usage, energy, guide_error};
 use super::retrieve::retrieve;
-use super::{Input, Mode, Output, Params, Publish, greedy};
+use super::{Finder, Input, Mode, Output, Params, Publish, greedy};
 use crate::error::{Error, Result};
 use crate::image::Image;
 use crate::image::colour::srgb_to_linear;
@@ -117,15 +118,9 @@ pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Pu
 
 /// Each target patch's nearest exemplar patch.
 fn nearest(level: &Level, field: &mut Field, params: &Params, round: usize, job: Job) -> Result<()> {
-    let search = level.forward();
-    search.rescore(field, job.part(0.0, 0.1), |i| level.wanted.contains_index(i))?;
-    for k in 0..params.sweeps {
-        let job =
-            job.part(0.1 + 0.9 * k as f64 / params.sweeps as f64, 0.1 + 0.9 * (k + 1) as f64 / params.sweeps as f64);
-        let sweep = Sweep { index: (round * 100 + k) as u64, reach: 64, fresh: 4 };
-        search.sweep(field, sweep, job, |i| level.wanted.contains_index(i))?;
-    }
-    Ok(())
+    let wanted = |i: usize| level.wanted.contains_index(i);
+    level.forward().rescore(field, job.part(0.0, 0.1), wanted)?;
+    Nearest::new(level, params, job.part(0.1, 0.2))?.forward(field, round as u64, job.part(0.2, 1.0), wanted)
 }
 
 /// A field that follows the guides only; among equals the same relative position wins, so that equal guides give the
@@ -138,6 +133,8 @@ fn by_guides_alone(problem: &Problem, params: &Params, seed: u64, job: Job) -> R
     search.rescore(&mut field, job.part(0.0, 0.05), wanted)?;
     if level.wanted.len().saturating_mul(level.allowed.len()) <= EXHAUSTIVE {
         search.exhaustive(&mut field, job.part(0.05, 1.0), wanted)?;
+    } else if params.finder == Finder::Table {
+        Nearest::new(&level, params, job.part(0.05, 0.4))?.forward(&mut field, 0, job.part(0.4, 1.0), wanted)?;
     } else {
         let reach = level.allowed.width.max(level.allowed.height);
         for k in 0..8 {

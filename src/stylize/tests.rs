@@ -56,6 +56,8 @@ fn equal_guides_give_the_artwork_back_to_the_bit_in_every_mode() {
             assert!(output.image == art, "{mode:?} {w} x {h}");
             assert!(output.report.guide_error.data.iter().all(|&e| e == 0.0));
         }
+        let table = Params { finder: Finder::Table, ..Params::default() };
+        assert!(stylise(&input(&art, &[guide(&a, &a)]), &table).unwrap().image == art);
         // Nothing but the position tells the patches apart.
         let flat = Image::from_fn(w, h, |_, _| [0.3]).unwrap();
         let output = stylise(&input(&art, &[guide(&flat, &flat)]), &Params::default()).unwrap();
@@ -71,6 +73,7 @@ fn results_do_not_depend_on_the_number_of_threads() {
         Params { levels: 3, iterations: 2, ..Params::default() },
         Params { mode: Mode::Nearest, levels: 3, iterations: 2, ..Params::default() },
         Params { preview: true, levels: 2, iterations: 1, ..Params::default() },
+        Params { finder: Finder::Table, levels: 2, iterations: 1, ..Params::default() },
     ] {
         let with = |threads: usize| {
             Pool::new(threads).unwrap().run(|| stylise(&input(&art, &[guide(&a, &b)]), &params)).unwrap()
@@ -199,6 +202,12 @@ fn extremes_have_an_answer() {
         for guide_weight in [0.0, 1e6] {
             finite(stylise(&input(&art, &[guide(&a, &a)]), &Params { guide_weight, ..params.clone() }).unwrap());
         }
+    }
+    let table = Params { finder: Finder::Table, ..Params::default() };
+    for (w, h) in [(1, 1), (3, 2), (150, 4)] {
+        let b = scene(w, h, 2.0, 2.0, 3.0);
+        finite(stylise(&input(&art, &[guide(&a, &b)]), &table).unwrap());
+        finite(stylise(&input(&artwork(&b), &[guide(&b, &a)]), &table).unwrap());
     }
     // Forty channels.
     let wide =
