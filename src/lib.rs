@@ -17,6 +17,11 @@ pub mod relight;
 pub mod render;
 pub mod segment;
 
+#[cfg(feature = "stylize")]
+pub mod patch;
+#[cfg(feature = "stylize")]
+pub mod stylize;
+
 pub mod demo;
 pub mod transfer;
 

@@ -1,0 +1,115 @@
+//! Which patches of an image may be used.
+
+use super::field::pack;
+use crate::error::Result;
+use crate::image::try_vec;
+
+/// A set of patches of one image.
+#[derive(Clone, Debug)]
+pub struct Domain {
+    /// Patches along x and y.
+    pub width: usize,
+    pub height: usize,
+    member: Vec<bool>,
+    /// The members, in the order of the image unless some were removed and [`Domain::compact`] not called yet.
+    list: Vec<u32>,
+    count: usize,
+}
+
+impl Domain {
+    /// All patches of width `patch` of an image of `width × height` pixels whose pixels all satisfy `all`, or of which
+    /// one satisfies it if `any`.
+    pub fn new(width: usize, height: usize, patch: usize, mask: Option<&[bool]>, any: bool) -> Result<Self> {
+        let (w, h) = (width + 1 - patch, height + 1 - patch);
+        let mut member = try_vec(w * h, true)?;
+        if let Some(mask) = mask {
+            // Two running counts, along x and then along y.
+            let mut along_x = try_vec(w * height, 0u32)?;
+            for (out, row) in along_x.chunks_exact_mut(w).zip(mask.chunks_exact(width)) {
+                let mut sum = row[..patch - 1].iter().filter(|&&m| m).count() as u32;
+                for (x, o) in out.iter_mut().enumerate() {
+                    sum += u32::from(row[x + patch - 1]);
+                    *o = sum;
+                    sum -= u32::from(row[x]);
+                }
+            }
+            let wanted = if any { 1 } else { (patch * patch) as u32 };
+            for y in 0..h {
+                for x in 0..w {
+                    let sum: u32 = (y..y + patch).map(|row| along_x[row * w + x]).sum();
+                    member[y * w + x] = sum >= wanted;
+                }
+            }
+        }
+        let mut domain = Self { width: w, height: h, member, list: Vec::new(), count: 0 };
+        domain.compact();
+        Ok(domain)
+    }
+
+    pub fn len(&self) -> usize {
+        self.count
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.count == 0
+    }
+
+    #[inline]
+    pub fn contains(&self, x: usize, y: usize) -> bool {
+        self.member[y * self.width + x]
+    }
+
+    #[inline]
+    pub fn contains_index(&self, index: usize) -> bool {
+        self.member[index]
+    }
+
+    /// Removes a member; it stays in the list of [`Domain::members`] until [`Domain::compact`].
+    pub fn remove(&mut self, index: usize) {
+        self.count -= usize::from(self.member[index]);
+        self.member[index] = false;
+    }
+
+    pub fn compact(&mut self) {
+        self.list.clear();
+        let width = self.width;
+        let members = self.member.iter().enumerate().filter(|(_, m)| **m);
+        self.list.extend(members.map(|(i, _)| pack(i % width, i / width)));
+        self.count = self.list.len();
+    }
+
+    /// Positions of the members.
+    pub fn members(&self) -> &[u32] {
+        &self.list
+    }
+
+    /// The domain with the members for which `keep` holds.
+    pub fn filtered(&self, keep: impl Fn(usize) -> bool) -> Self {
+        let mut out = self.clone();
+        out.member.iter_mut().enumerate().for_each(|(i, m)| *m = *m && keep(i));
+        out.compact();
+        out
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn masks_select_patches_that_lie_inside_or_touch() {
+        // One pixel of a 7 × 6 image is set: 9 patches of width 3 touch it, all others avoid it.
+        let mut mask = vec![false; 42];
+        mask[3 * 7 + 3] = true;
+        assert_eq!(Domain::new(7, 6, 3, Some(&mask), true).unwrap().len(), 9);
+        mask.iter_mut().for_each(|m| *m = !*m);
+        let mut inside = Domain::new(7, 6, 3, Some(&mask), false).unwrap();
+        assert_eq!(inside.len(), 5 * 4 - 9);
+        assert_eq!(inside.members().len(), inside.len());
+        inside.remove(0);
+        inside.remove(0);
+        assert_eq!(inside.len(), 10);
+        assert!(!inside.contains(0, 0));
+        assert_eq!(Domain::new(7, 6, 3, None, false).unwrap().len(), 20);
+    }
+}

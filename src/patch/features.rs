@@ -1,0 +1,94 @@
+//! Images quantised for matching.
+
+use crate::error::Result;
+use crate::image::try_vec;
+
+/// Samples per pixel are padded to a multiple of this: half an AVX2 register of `i16`.
+pub const LANES: usize = 8;
+
+/// Interleaved 16-bit channels, each multiplied by the square root of its weight, so that a plain sum of squared
+/// differences is the weighted one of Eq. 1.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Features {
+    pub width: usize,
+    pub height: usize,
+    /// Samples per pixel, a multiple of [`LANES`]; those beyond the channels are 0.
+    pub lanes: usize,
+    pub data: Vec<i16>,
+}
+
+impl Features {
+    pub fn new(width: usize, height: usize, channels: usize) -> Result<Self> {
+        let lanes = channels.div_ceil(LANES) * LANES;
+        Ok(Self { width, height, lanes, data: try_vec(width * height * lanes, 0)? })
+    }
+
+    pub fn row_len(&self) -> usize {
+        self.width * self.lanes
+    }
+
+    /// Writes `values`, in `[0, 1]`, into consecutive channels of each pixel of a row.
+    pub fn set_row(&mut self, y: usize, first: usize, quantisers: &[Quantiser], values: &[f32]) {
+        let (start, len, lanes) = (y * self.row_len(), self.row_len(), self.lanes);
+        for (pixel, v) in
+            self.data[start..start + len].chunks_exact_mut(lanes).zip(values.chunks_exact(quantisers.len()))
+        {
+            for ((out, q), v) in pixel[first..].iter_mut().zip(quantisers).zip(v) {
+                *out = q.quantise(*v);
+            }
+        }
+    }
+}
+
+/// What turns a value in `[0, 1]` into a weighted integer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Quantiser {
+    scale: f32,
+}
+
+impl Quantiser {
+    /// Quantisers for channels of the given weights (≥ 0, at least one positive), as fine as a patch of width `patch`
+    /// allows: the largest possible sum of squared differences stays below 2³¹.
+    pub fn for_weights(weights: &[f64], patch: usize) -> Vec<Self> {
+        let unit = Self::unit(weights, patch);
+        weights.iter().map(|w| Self { scale: (w.sqrt() * unit).min(32_000.0) as f32 }).collect()
+    }
+
+    /// Integer that a value of 1 at weight 1 becomes.
+    pub fn unit(weights: &[f64], patch: usize) -> f64 {
+        let total: f64 = weights.iter().sum();
+        // Rounding can lengthen each difference by one step; two per cent leave room for that.
+        (0.98 * f64::from(i32::MAX) / ((patch * patch) as f64 * total)).sqrt()
+    }
+
+    pub fn quantise(self, value: f32) -> i16 {
+        (value.clamp(0.0, 1.0) * self.scale).round() as i16
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_largest_patch_distance_fits_for_any_number_of_channels_and_weights() {
+        for (channels, patch, weight) in [(1, 1, 1.0), (3, 5, 1e6), (64, 15, 0.3), (64, 33, 1e-6)] {
+            let mut weights = vec![weight; channels];
+            weights[0] = 1.0;
+            let worst: u64 = Quantiser::for_weights(&weights, patch)
+                .iter()
+                .map(|q| (q.quantise(1.0) as u64).pow(2) * (patch * patch) as u64)
+                .sum();
+            assert!(worst < 1 << 31, "{channels} {patch}: {worst}");
+        }
+    }
+
+    #[test]
+    fn squared_steps_keep_the_ratio_of_the_weights() {
+        let q = Quantiser::for_weights(&[1.0, 4.0, 0.0], 5);
+        let square = |q: Quantiser| f64::from(q.quantise(1.0)).powi(2);
+        assert!((square(q[1]) / square(q[0]) - 4.0).abs() < 0.01);
+        assert_eq!(q[2].quantise(1.0), 0);
+        assert_eq!(q[1].quantise(f32::NAN), 0);
+    }
+}

@@ -1,0 +1,112 @@
+//! The nearest-neighbour field.
+
+use super::domain::Domain;
+use crate::error::Result;
+use crate::image::try_vec;
+
+/// A patch without a match.
+pub const NONE: u32 = u32::MAX;
+
+/// A position in one integer.
+#[inline]
+pub fn pack(x: usize, y: usize) -> u32 {
+    (y as u32) << 16 | x as u32
+}
+
+#[inline]
+pub fn unpack(position: u32) -> (usize, usize) {
+    ((position & 0xffff) as usize, (position >> 16) as usize)
+}
+
+/// For each patch of one image its match in another, and their distance.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Field {
+    /// Patches along x and y.
+    pub width: usize,
+    pub height: usize,
+    /// Packed positions, or [`NONE`].
+    pub at: Vec<u32>,
+    /// Distances; `u32::MAX` marks a match that is only a hint of where to look.
+    pub error: Vec<u32>,
+}
+
+impl Field {
+    pub fn new(width: usize, height: usize) -> Result<Self> {
+        Ok(Self { width, height, at: try_vec(width * height, NONE)?, error: try_vec(width * height, u32::MAX)? })
+    }
+
+    /// Hints at the same relative position in an image with `base` patches.
+    pub fn proportional(width: usize, height: usize, base: &Domain) -> Result<Self> {
+        let mut field = Self::new(width, height)?;
+        for (i, at) in field.at.iter_mut().enumerate() {
+            *at = pack((i % width) * base.width / width, (i / width) * base.height / height);
+        }
+        Ok(field)
+    }
+
+    /// The field at twice the resolution, as hints: twice the coarse match plus the parity of the pixel, moved inside
+    /// `base`. The border, where the finer image has more patches than twice the coarse one, continues its neighbour.
+    pub fn upsample(&self, width: usize, height: usize, base: &Domain) -> Result<Self> {
+        let mut field = Self::new(width, height)?;
+        for (i, at) in field.at.iter_mut().enumerate() {
+            let (x, y) = (i % width, i / width);
+            let (cx, cy) = ((x / 2).min(self.width - 1), (y / 2).min(self.height - 1));
+            let coarse = self.at[cy * self.width + cx];
+            if coarse != NONE {
+                let (px, py) = unpack(coarse);
+                *at = pack((2 * px + x - 2 * cx).min(base.width - 1), (2 * py + y - 2 * cy).min(base.height - 1));
+            }
+        }
+        Ok(field)
+    }
+
+    /// The field from matches back to patches, as hints: where several patches share a match the closest one is
+    /// taken, among equals the first.
+    pub fn invert(&self, base: &Domain) -> Result<Self> {
+        let mut inverse = Self::new(base.width, base.height)?;
+        for (i, (&at, &error)) in self.at.iter().zip(&self.error).enumerate() {
+            if at != NONE && error != u32::MAX {
+                let (px, py) = unpack(at);
+                let j = py * base.width + px;
+                if error < inverse.error[j] {
+                    inverse.error[j] = error;
+                    inverse.at[j] = pack(i % self.width, i / self.width);
+                }
+            }
+        }
+        Ok(inverse)
+    }
+
+    /// Sum of the distances of matched patches.
+    pub fn energy(&self) -> f64 {
+        self.error.iter().filter(|&&e| e != u32::MAX).map(|&e| f64::from(e)).sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn identity_survives_upsampling_to_odd_sizes_and_inversion() {
+        for (w, h) in [(6usize, 5usize), (7, 4), (1, 1), (13, 9)] {
+            // Patches of width 5 in images of (w + 4) × (h + 4) pixels, halved: the coarse image has fewer patches.
+            let (cw, ch) = (((w + 4) / 2).saturating_sub(4).max(1), ((h + 4) / 2).saturating_sub(4).max(1));
+            let coarse_base = Domain::new(cw, ch, 1, None, false).unwrap();
+            let base = Domain::new(w, h, 1, None, false).unwrap();
+            let coarse = Field::proportional(cw, ch, &coarse_base).unwrap();
+            let mut fine = coarse.upsample(w, h, &base).unwrap();
+            assert!(fine.at.iter().enumerate().all(|(i, &at)| at == pack(i % w, i / w)));
+            fine.error.fill(1);
+            assert_eq!(fine.invert(&base).unwrap(), fine);
+        }
+    }
+
+    #[test]
+    fn inversion_keeps_the_closest_and_among_equals_the_first() {
+        let base = Domain::new(2, 1, 1, None, false).unwrap();
+        let field = Field { width: 4, height: 1, at: vec![0, 0, 0, NONE], error: vec![5, 3, 3, 1] };
+        let inverse = field.invert(&base).unwrap();
+        assert_eq!((inverse.at, inverse.error), (vec![1, NONE], vec![3, u32::MAX]));
+    }
+}

@@ -1,0 +1,131 @@
+//! Distance between two patches, with early exit; the one file of this engine with `unsafe` code.
+//!
+//! Both versions add the same integers in 32 bits and stop after the same row, so they agree to the bit. [`Quantiser`]
+//! (see `features.rs`) keeps the sum below 2³¹.
+//!
+//! [`Quantiser`]: super::Quantiser
+
+/// The instructions to compute with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kernel {
+    Portable,
+    #[cfg(target_arch = "x86_64")]
+    Avx2,
+}
+
+/// One patch: samples of its image from its top-left pixel on, and the samples from one row to the next.
+#[derive(Clone, Copy)]
+pub struct Patch<'a> {
+    pub samples: &'a [i16],
+    pub row_len: usize,
+}
+
+impl Kernel {
+    /// The fastest kernel of this machine.
+    pub fn detect() -> Self {
+        #[cfg(target_arch = "x86_64")]
+        if std::arch::is_x86_feature_detected!("avx2") {
+            return Self::Avx2;
+        }
+        Self::Portable
+    }
+
+    /// Sum of squared differences over `rows` rows of `run` samples (a multiple of 8). Stops after a row that brings it
+    /// to `limit` or more.
+    #[inline]
+    pub fn distance(self, a: Patch, b: Patch, run: usize, rows: usize, limit: u32) -> u32 {
+        match self {
+            Self::Portable => portable(a, b, run, rows, limit),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2 => {
+                let end = |p: &Patch| (rows - 1) * p.row_len + run;
+                assert!(rows > 0 && run % 8 == 0 && end(&a) <= a.samples.len() && end(&b) <= b.samples.len());
+                // SAFETY: `Avx2` is only made by `detect`, after it found AVX2 (a caller can name the variant, but has
+                // no reason to); the line above keeps every load inside its slice.
+                unsafe { avx2(a, b, run, rows, limit) }
+            }
+        }
+    }
+}
+
+fn portable(a: Patch, b: Patch, run: usize, rows: usize, limit: u32) -> u32 {
+    let mut total = 0u32;
+    for row in 0..rows {
+        let (i, j) = (row * a.row_len, row * b.row_len);
+        for (&x, &y) in a.samples[i..i + run].iter().zip(&b.samples[j..j + run]) {
+            let d = i32::from(x) - i32::from(y);
+            total += (d * d) as u32;
+        }
+        if total >= limit {
+            break;
+        }
+    }
+    total
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+unsafe fn avx2(a: Patch, b: Patch, run: usize, rows: usize, limit: u32) -> u32 {
+    use std::arch::x86_64::*;
+    let mut sums = _mm256_setzero_si256();
+    let mut total = 0;
+    for row in 0..rows {
+        // SAFETY: the caller checked that `rows` rows of `run` samples, a multiple of 8, lie inside both slices.
+        unsafe {
+            let mut x = a.samples.as_ptr().add(row * a.row_len);
+            let mut y = b.samples.as_ptr().add(row * b.row_len);
+            for _ in 0..run / 16 {
+                let d = _mm256_sub_epi16(_mm256_loadu_si256(x.cast()), _mm256_loadu_si256(y.cast()));
+                sums = _mm256_add_epi32(sums, _mm256_madd_epi16(d, d));
+                x = x.add(16);
+                y = y.add(16);
+            }
+            if run % 16 != 0 {
+                let d = _mm_sub_epi16(_mm_loadu_si128(x.cast()), _mm_loadu_si128(y.cast()));
+                sums = _mm256_add_epi32(sums, _mm256_zextsi128_si256(_mm_madd_epi16(d, d)));
+            }
+        }
+        // Add the eight lanes.
+        let half = _mm_add_epi32(_mm256_castsi256_si128(sums), _mm256_extracti128_si256::<1>(sums));
+        let pair = _mm_add_epi32(half, _mm_unpackhi_epi64(half, half));
+        let one = _mm_add_epi32(pair, _mm_shuffle_epi32::<1>(pair));
+        total = _mm_cvtsi128_si32(one) as u32;
+        if total >= limit {
+            break;
+        }
+    }
+    total
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rng::Rng;
+
+    #[test]
+    fn simd_and_portable_agree_to_the_bit_with_and_without_early_exit() {
+        let mut rng = Rng::new(3, &[]);
+        for case in 0..200 {
+            let (lanes, w, width) = (8 * (1 + case % 5), 1 + case % 9, 12);
+            let mut image = || -> Vec<i16> { (0..width * width * lanes).map(|_| rng.below(180) as i16).collect() };
+            let (a, b) = (image(), image());
+            let a = Patch { samples: &a[lanes..], row_len: width * lanes };
+            let b = Patch { samples: &b[..], row_len: width * lanes };
+            let full = portable(a, b, w * lanes, w, u32::MAX);
+            for limit in [0, full / 2, full, full + 1, u32::MAX] {
+                let want = portable(a, b, w * lanes, w, limit);
+                assert_eq!(Kernel::detect().distance(a, b, w * lanes, w, limit), want);
+                assert_eq!(want < limit, full < limit);
+            }
+        }
+    }
+
+    #[test]
+    fn the_largest_differences_do_not_overflow() {
+        let a = vec![9267i16; 25 * 16];
+        let mut b = vec![0i16; 25 * 16];
+        b.iter_mut().enumerate().for_each(|(i, v)| *v = if i % 16 == 0 { 0 } else { 9267 });
+        let (a, b) = (Patch { samples: &a, row_len: 80 }, Patch { samples: &b, row_len: 80 });
+        assert_eq!(Kernel::detect().distance(a, b, 80, 5, u32::MAX), 25 * 9267 * 9267);
+    }
+}

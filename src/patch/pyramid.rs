@@ -1,0 +1,54 @@
+//! Resolution levels, each half of the next.
+
+use crate::error::Result;
+use crate::image::{Image, pyramid};
+use crate::job::Job;
+
+/// Side of an image `level` halvings down; never below 1.
+pub fn level_size(side: usize, level: usize) -> usize {
+    (side >> level).max(1)
+}
+
+/// Levels that keep the shorter of all sides at `smallest` pixels or more; at least 1, at most `wanted`.
+pub fn level_count(shortest_side: usize, smallest: usize, wanted: usize) -> usize {
+    (1..wanted.max(1)).take_while(|&l| level_size(shortest_side, l) >= smallest).count() + 1
+}
+
+/// Half the image: 2 × 2 averages (area averages where a side is odd).
+pub fn halve(image: &Image, job: Job) -> Result<Image> {
+    pyramid::resize(image, level_size(image.width, 1), level_size(image.height, 1), job)
+}
+
+/// Half the mask: set where all the pixels under it are, or where one is if `any`.
+pub fn halve_mask(mask: &[bool], width: usize, height: usize, any: bool) -> Vec<bool> {
+    let (w, h) = (level_size(width, 1), level_size(height, 1));
+    let span = |i: usize, n: usize, of: usize| i * of / n..((i + 1) * of).div_ceil(n);
+    (0..w * h)
+        .map(|i| {
+            let mut below =
+                span(i / w, h, height).flat_map(|y| span(i % w, w, width).map(move |x| mask[y * width + x]));
+            if any { below.any(|m| m) } else { below.all(|m| m) }
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn levels_stop_before_the_image_is_smaller_than_asked() {
+        assert_eq!(level_count(912, 25, 6), 6);
+        assert_eq!(level_count(912, 25, 20), 6);
+        assert_eq!(level_count(912, 25, 3), 3);
+        assert_eq!(level_count(1, 25, 6), 1);
+        assert_eq!((level_size(5, 1), level_size(1, 4)), (2, 1));
+    }
+
+    #[test]
+    fn masks_shrink_by_all_or_any() {
+        let mask = [true, true, false, true, true, true, false, false, false];
+        assert_eq!(halve_mask(&mask, 3, 3, false), [false]);
+        assert_eq!(halve_mask(&mask, 3, 3, true), [true]);
+    }
+}

@@ -1,0 +1,176 @@
+//! The error budget (§3.3, Eq. 4): which matches are good enough to be used.
+//!
+//! The sorted matching errors, both axes scaled to `[0, 1]`, follow a hyperbola `f(x) = 1 / (a - b x)`. Its knee, where
+//! `f′ = 1`, parts feasible from forced matches. `f′ = b f²`, so the knee is where `a - b x = √b`:
+//! `k = a/b - √(1/b)`. The paper prints a plus sign, which lies beyond the pole at `a/b`.
+//!
+//! Where no hyperbola fits, as when most exemplar patches have no place left and the curve is a step (Fig. 7), the knee is
+//! the point farthest below the diagonal. A curve that never runs below it has no knee: flat errors are all feasible.
+
+/// Fewer errors than this have no shape to fit.
+const FEWEST: usize = 8;
+/// Points of the sorted curve that are fitted.
+const SAMPLES: usize = 256;
+
+/// Least share of the variance that a hyperbola must explain.
+const FIT: f64 = 0.8;
+/// A curve that runs less than this below the diagonal has no knee.
+const SAG: f64 = 0.01;
+
+/// The hyperbola `1 / (a - b x)`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hyperbola {
+    pub a: f64,
+    pub b: f64,
+}
+
+impl Hyperbola {
+    /// The knee, if it lies inside the data and left of the pole.
+    pub fn knee(self) -> Option<f64> {
+        let pole = self.a / self.b;
+        let knee = pole - (1.0 / self.b).sqrt();
+        (self.b > 0.0 && pole > 1.0 && knee > 0.0 && knee < 1.0).then_some(knee)
+    }
+
+    /// Share of the variance of `points` that it explains.
+    fn explained(self, points: &[(f64, f64)]) -> f64 {
+        let mean = points.iter().map(|p| p.1).sum::<f64>() / points.len() as f64;
+        let variance: f64 = points.iter().map(|p| (p.1 - mean).powi(2)).sum();
+        let rest: f64 = points.iter().map(|p| (p.1 - 1.0 / (self.a - self.b * p.0)).powi(2)).sum();
+        1.0 - rest / variance
+    }
+
+    /// Fits sorted points `(x, y)` in the unit square.
+    ///
+    /// `1/y = a - b x` is linear; weighting by `y⁴` makes its least squares those of `y` itself to first order. Three
+    /// Gauss-Newton steps on `y` follow. `None` where the points have no slope.
+    pub fn fit(points: &[(f64, f64)]) -> Option<Self> {
+        let points = || points.iter().filter(|p| p.1 > 0.0);
+        let mut fit = solve(points().map(|&(x, y)| ([y * y, -x * y * y], y)))?;
+        for _ in 0..3 {
+            // df/da = -f², df/db = x f².
+            let step = solve(points().map(|&(x, y)| {
+                let f = 1.0 / (fit.a - fit.b * x);
+                ([-f * f, x * f * f], y - f)
+            }));
+            match step {
+                Some(d) if (fit.a + d.a - fit.b - d.b) > 0.0 && fit.a + d.a > 0.0 => {
+                    fit = Self { a: fit.a + d.a, b: fit.b + d.b };
+                }
+                _ => break,
+            }
+        }
+        (fit.a.is_finite() && fit.b.is_finite()).then_some(fit)
+    }
+}
+
+/// Least squares for two unknowns: rows of coefficients and right-hand sides.
+fn solve(rows: impl Iterator<Item = ([f64; 2], f64)>) -> Option<Hyperbola> {
+    let (mut m, mut r) = ([0.0; 3], [0.0; 2]);
+    for ([p, q], v) in rows {
+        m[0] += p * p;
+        m[1] += p * q;
+        m[2] += q * q;
+        r[0] += p * v;
+        r[1] += q * v;
+    }
+    let det = m[0] * m[2] - m[1] * m[1];
+    (det > 1e-12 * m[0] * m[2])
+        .then(|| Hyperbola { a: (m[2] * r[0] - m[1] * r[1]) / det, b: (m[0] * r[1] - m[1] * r[0]) / det })
+}
+
+/// What may be spent on matches.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Budget {
+    /// Share of the matches left of the knee; 1 where there is none and all are feasible.
+    pub knee: f64,
+    /// Sum of the errors left of the knee: T of Eq. 4.
+    pub total: f64,
+}
+
+/// The budget of ascending `errors`. Flat or few errors, and errors without a knee, are all feasible.
+pub fn budget(errors: &[u32]) -> Budget {
+    let sum = |errors: &[u32]| errors.iter().map(|&e| f64::from(e)).sum();
+    let all = || Budget { knee: 1.0, total: f64::INFINITY };
+    let (n, worst) = (errors.len(), errors.last().copied().unwrap_or(0));
+    if n < FEWEST || worst == 0 || errors[0] == worst {
+        return all();
+    }
+    let samples = SAMPLES.min(n);
+    let points: Vec<(f64, f64)> = (0..samples)
+        .map(|s| {
+            let i = (2 * s + 1) * n / (2 * samples);
+            ((i as f64 + 0.5) / n as f64, f64::from(errors[i]) / f64::from(worst))
+        })
+        .collect();
+    // A hyperbola through (1, 1) with a knee runs below the diagonal there, by (1 - √(1/b))².
+    let knee = farthest_below_diagonal(&points).map(|farthest| {
+        let hyperbola = Hyperbola::fit(&points).filter(|f| f.explained(&points) >= FIT);
+        hyperbola.and_then(Hyperbola::knee).unwrap_or(farthest)
+    });
+    match knee {
+        Some(knee) => Budget { knee, total: sum(&errors[..(knee * n as f64).ceil() as usize]) },
+        None => all(),
+    }
+}
+
+fn farthest_below_diagonal(points: &[(f64, f64)]) -> Option<f64> {
+    let farthest = points.iter().max_by(|p, q| (p.0 - p.1).total_cmp(&(q.0 - q.1)))?;
+    (farthest.0 - farthest.1 > SAG).then_some(farthest.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn curve(n: usize, f: impl Fn(f64) -> f64) -> Vec<u32> {
+        (0..n).map(|i| (f((i as f64 + 0.5) / n as f64) * 1e9) as u32).collect()
+    }
+
+    #[test]
+    fn a_hyperbola_is_recovered_and_its_knee_has_slope_one() {
+        for (a, b) in [(21.0, 20.0), (3.0, 2.0), (101.0, 100.0)] {
+            let points: Vec<_> = (0..200).map(|i| i as f64 / 200.0).map(|x| (x, 1.0 / (a - b * x))).collect();
+            let fit = Hyperbola::fit(&points).unwrap();
+            assert!((fit.a - a).abs() < 1e-6 * a && (fit.b - b).abs() < 1e-6 * b, "{fit:?}");
+            if let Some(k) = fit.knee() {
+                let f = |x: f64| 1.0 / (a - b * x);
+                assert!(((f(k + 1e-6) - f(k - 1e-6)) / 2e-6 - 1.0).abs() < 1e-4);
+            }
+        }
+        assert!((Hyperbola { a: 21.0, b: 20.0 }.knee().unwrap() - 0.826_393_2).abs() < 1e-6);
+    }
+
+    #[test]
+    fn the_budget_is_the_sum_left_of_the_knee() {
+        let errors = curve(10_000, |x| 1.0 / (21.0 - 20.0 * x));
+        let budget = budget(&errors);
+        assert!((budget.knee - 0.826).abs() < 0.01, "{budget:?}");
+        let accepted = errors.iter().scan(0.0, |sum, &e| {
+            *sum += f64::from(e);
+            Some(*sum)
+        });
+        let count = accepted.take_while(|&s| s <= budget.total).count();
+        assert!((count as f64 - budget.knee * 1e4).abs() < 2.0);
+    }
+
+    #[test]
+    fn curves_without_a_knee_are_accepted_whole() {
+        for errors in [vec![], vec![5], vec![1, 2, 3, 4, 5, 6, 900], vec![0; 100], vec![7; 100]] {
+            assert_eq!(budget(&errors).total, f64::INFINITY, "{errors:?}");
+        }
+        // Concave: the slope falls. One outlier in a flat curve: no hyperbola, but nothing breaks.
+        assert_eq!(budget(&curve(1000, |x| x.sqrt())).knee, 1.0);
+        let mut outlier = vec![10u32; 1000];
+        outlier[999] = u32::MAX - 1;
+        let b = budget(&outlier);
+        assert!(b.knee > 0.0 && b.knee <= 1.0 && b.total >= 0.0);
+        // A step: a fifth fits, the rest is forced (Fig. 7).
+        let step = curve(1000, |x| if x < 0.2 { 0.01 } else { 0.9 + 0.1 * x });
+        assert!((super::budget(&step).knee - 0.2).abs() < 0.01);
+        // Most are perfect.
+        let mut zeros = vec![0u32; 1000];
+        zeros[990..].iter_mut().enumerate().for_each(|(i, e)| *e = 1 + i as u32);
+        assert!(budget(&zeros).knee > 0.9);
+    }
+}

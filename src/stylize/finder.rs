@@ -1,0 +1,89 @@
+//! How nearest patches are found: PatchMatch, or a table that is not.
+
+use super::level::Level;
+use super::{Finder, Params};
+use crate::error::Result;
+use crate::job::Job;
+use crate::patch::{Domain, Field, Means, Search, Sweep, Table};
+
+/// Patches of the table compared with each patch.
+const TRIES: usize = 24;
+
+/// What the searches of one iteration share.
+pub(super) struct Nearest<'a> {
+    level: &'a Level<'a>,
+    sweeps: usize,
+    tables: Option<Tables>,
+}
+
+struct Tables {
+    source_means: Means,
+    target_means: Means,
+    source: Table,
+    target: Table,
+}
+
+impl<'a> Nearest<'a> {
+    pub fn new(level: &'a Level, params: &Params, job: Job) -> Result<Self> {
+        let tables = match params.finder {
+            Finder::PatchMatch => None,
+            Finder::Table => {
+                let source_means = Means::new(&level.source, level.problem.patch, job)?;
+                let target_means = Means::new(&level.target, level.problem.patch, job)?;
+                Some(Tables {
+                    source: Table::new(&source_means, &level.allowed, job)?,
+                    target: Table::new(&target_means, &level.wanted, job)?,
+                    source_means,
+                    target_means,
+                })
+            }
+        };
+        Ok(Self { level, sweeps: params.sweeps, tables })
+    }
+
+    /// Improves the matches of target patches among exemplar patches; `index` numbers the call.
+    pub fn forward(
+        &self,
+        field: &mut Field,
+        index: u64,
+        job: Job,
+        active: impl Fn(usize) -> bool + Sync,
+    ) -> Result<()> {
+        let search = self.level.forward();
+        match &self.tables {
+            None => self.sweep(&search, field, Sweep { index, reach: 64, fresh: 4 }, job, active),
+            Some(t) => search.look_up(field, &t.source, &t.target_means, TRIES, job, active),
+        }
+    }
+
+    /// Improves the matches of exemplar patches among the `free` target patches.
+    pub fn reverse(
+        &self,
+        field: &mut Field,
+        free: &Domain,
+        index: u64,
+        job: Job,
+        active: impl Fn(usize) -> bool + Sync,
+    ) -> Result<()> {
+        let search = self.level.reverse(free);
+        match &self.tables {
+            None => self.sweep(&search, field, Sweep { index, reach: 32, fresh: 2 }, job, active),
+            Some(t) => search.look_up(field, &t.target, &t.source_means, TRIES, job, active),
+        }
+    }
+
+    fn sweep(
+        &self,
+        search: &Search,
+        field: &mut Field,
+        first: Sweep,
+        job: Job,
+        active: impl Fn(usize) -> bool + Sync,
+    ) -> Result<()> {
+        for k in 0..self.sweeps {
+            let job = job.part(k as f64 / self.sweeps as f64, (k + 1) as f64 / self.sweeps as f64);
+            search.sweep(field, Sweep { index: 100 * first.index + k as u64, ..first }, job, &active)?;
+        }
+        Ok(())
+    }
+}

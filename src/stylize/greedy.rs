@@ -1,0 +1,62 @@
+//! Hertzmann et al., "Image Analogies" (2001), for comparison: pixels are set once, in scan order.
+
+use super::level::Level;
+use crate::error::Result;
+use crate::image::Image;
+use crate::job::Job;
+use crate::patch::{Field, NONE, pack, unpack};
+
+/// How much worse a coherent match may be on the finest level (κ of Hertzmann et al., §3.2).
+const COHERENCE: f64 = 5.0;
+
+/// Sets every patch centre to the match that is nearest, or to one that continues a neighbour already set if it is
+/// nearly as near. In scan order, hence on one thread.
+pub(super) fn run(level: &mut Level, field: &mut Field, picture: &mut Image, depth: usize, job: Job) -> Result<()> {
+    let patch = level.problem.patch;
+    let half = patch / 2;
+    let tolerance = 1.0 + COHERENCE * 0.5f64.powi(depth as i32);
+    let style = &level.problem.style;
+    for y in 0..field.height {
+        job.check()?;
+        for x in 0..field.width {
+            let i = y * field.width + x;
+            if !level.wanted.contains_index(i) || field.at[i] == NONE {
+                continue;
+            }
+            let search = level.forward();
+            let (mut px, mut py) = unpack(field.at[i]);
+            let nearest = search.distance(x, y, px, py, u32::MAX);
+            let mut limit = (f64::from(nearest) * tolerance).min(f64::from(u32::MAX)) as u32;
+
+            // Continue the neighbours set so far: the row above and the pixel to the left.
+            for (dx, dy) in [(-1isize, 0isize), (-1, -1), (0, -1), (1, -1)] {
+                let (nx, ny) = (x as isize + dx, y as isize + dy);
+                if nx < 0 || ny < 0 || nx as usize >= field.width {
+                    continue;
+                }
+                let neighbour = field.at[ny as usize * field.width + nx as usize];
+                let (sx, sy) = unpack(neighbour);
+                let (cx, cy) = (sx as isize - dx, sy as isize - dy);
+                if neighbour == NONE
+                    || cx < 0
+                    || cx as usize >= level.allowed.width
+                    || cy as usize >= level.allowed.height
+                    || !level.allowed.contains(cx as usize, cy as usize)
+                {
+                    continue;
+                }
+                let distance = search.distance(x, y, cx as usize, cy as usize, limit);
+                if distance < limit {
+                    (limit, px, py) = (distance, cx as usize, cy as usize);
+                }
+            }
+            field.at[i] = pack(px, py);
+            field.error[i] = search.distance(x, y, px, py, u32::MAX);
+            let colour = style.pixel(px + half, py + half);
+            picture.pixel_mut(x + half, y + half).copy_from_slice(colour);
+            level.set_pixel(x + half, y + half, colour);
+        }
+        job.report((y + 1) as f64 / field.height as f64);
+    }
+    Ok(())
+}

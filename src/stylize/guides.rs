@@ -1,0 +1,138 @@
+//! Guides: channel pairs of exemplar and target, brought to `[0, 1]` on a common scale.
+
+use crate::error::{Error, Result};
+use crate::exec;
+use crate::image::Image;
+use crate::image::colour::linear_to_srgb;
+use crate::job::Job;
+
+/// What the numbers of a guide mean.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Range {
+    /// Linear light, ≥ 0: rendered buffers. Compared as it would look on a screen: scaled so that the 99.9th percentile
+    /// of exemplar and target together is white, if it lies beyond white, then sRGB-encoded and clipped, so that a
+    /// highlight of a million counts as white and does not outvote the rest.
+    Light,
+    /// Data without a curve: normals, object codes, edge maps. The joint range of all channels is mapped onto `[0, 1]`.
+    Data,
+}
+
+/// One property of the scene, drawn for the exemplar and for the target.
+#[derive(Clone, Copy)]
+pub struct Guide<'a> {
+    pub source: &'a Image,
+    pub target: &'a Image,
+    /// Weight against the other guides, in `[0, 1e6]`.
+    pub weight: f32,
+    pub range: Range,
+}
+
+/// All guides side by side.
+pub(super) struct Channels {
+    pub source: Image,
+    pub target: Image,
+    /// Weight of each channel: a guide's weight is divided among its channels, and all sum to 1 (or 0).
+    pub weights: Vec<f64>,
+    /// Pixels with a sample that is NaN or infinite.
+    pub broken_source: Vec<bool>,
+    pub broken_target: Vec<bool>,
+}
+
+impl Channels {
+    pub fn new(guides: &[Guide], job: Job) -> Result<Self> {
+        let first = guides.first().ok_or_else(|| Error::argument("guides is empty; give at least one pair"))?;
+        let count: usize = guides.iter().map(|g| g.source.channels).sum();
+        if count > 60 {
+            return Err(Error::argument(format!("the guides have {count} channels; there may be 1 to 60 in all")));
+        }
+        let mut source = Image::new(first.source.width, first.source.height, count)?;
+        let mut target = Image::new(first.target.width, first.target.height, count)?;
+        let total: f64 = guides.iter().map(|g| f64::from(g.weight)).sum();
+        let mut weights = Vec::with_capacity(count);
+        for (i, guide) in guides.iter().enumerate() {
+            guide.check(i, first)?;
+            let channels = guide.source.channels;
+            let normalise = guide.normalisation(job)?;
+            for (from, into) in [(guide.source, &mut source), (guide.target, &mut target)] {
+                let offset = weights.len();
+                exec::for_rows(&mut into.data, from.width * count, job, |y, row| {
+                    for (o, v) in row.chunks_exact_mut(count).zip(from.row(y).chunks_exact(channels)) {
+                        o[offset..offset + channels].iter_mut().zip(v).for_each(|(o, v)| *o = normalise.apply(*v));
+                    }
+                })?;
+            }
+            let weight = if total > 0.0 { f64::from(guide.weight) / total / channels as f64 } else { 0.0 };
+            weights.extend(std::iter::repeat_n(weight, channels));
+        }
+        let broken_source = clear_broken(&mut source);
+        let broken_target = clear_broken(&mut target);
+        Ok(Self { source, target, weights, broken_source, broken_target })
+    }
+}
+
+/// Replaces samples that are no numbers by 0 and says which pixels had one.
+fn clear_broken(image: &mut Image) -> Vec<bool> {
+    let channels = image.channels;
+    let clear = |pixel: &mut [f32]| {
+        let broken = pixel.iter().any(|v| !v.is_finite());
+        pixel.iter_mut().filter(|v| !v.is_finite()).for_each(|v| *v = 0.0);
+        broken
+    };
+    image.data.chunks_exact_mut(channels).map(clear).collect()
+}
+
+/// A scale and offset, then perhaps the sRGB curve. NaN and infinity pass through, to be found later.
+struct Normalisation {
+    offset: f32,
+    scale: f32,
+    curve: bool,
+}
+
+impl Normalisation {
+    fn apply(&self, v: f32) -> f32 {
+        if !v.is_finite() {
+            return v;
+        }
+        let v = ((v - self.offset) * self.scale).clamp(0.0, 1.0);
+        if self.curve { linear_to_srgb(v) } else { v }
+    }
+}
+
+impl Guide<'_> {
+    fn check(&self, index: usize, first: &Guide) -> Result<()> {
+        let name = |side: &str| format!("guides[{index}].{side}");
+        if !(0.0..=1e6).contains(&self.weight) {
+            return Err(Error::argument(format!("{} is {}; it must lie in [0, 1000000]", name("weight"), self.weight)));
+        }
+        if self.source.channels != self.target.channels {
+            return Err(Error::argument(format!(
+                "{} has {} channels and {} {}; they must have the same number",
+                name("source"),
+                self.source.channels,
+                name("target"),
+                self.target.channels
+            )));
+        }
+        first.source.check_same_size("guides[0].source", self.source, &name("source"))?;
+        first.target.check_same_size("guides[0].target", self.target, &name("target"))
+    }
+
+    fn normalisation(&self, job: Job) -> Result<Normalisation> {
+        job.check()?;
+        let finite = || self.source.data.iter().chain(&self.target.data).copied().filter(|v| v.is_finite());
+        let (low, high) = finite().fold((f32::MAX, f32::MIN), |(l, h), v| (l.min(v), h.max(v)));
+        Ok(match self.range {
+            Range::Data if high > low => Normalisation { offset: low, scale: 1.0 / (high - low), curve: false },
+            Range::Data => Normalisation { offset: 0.0, scale: 0.0, curve: false },
+            Range::Light if high <= 1.0 => Normalisation { offset: 0.0, scale: 1.0, curve: true },
+            Range::Light => {
+                // The percentile, over at most a million samples: white must not hang on single pixels.
+                let step = ((self.source.data.len() + self.target.data.len()) >> 20).max(1);
+                let mut values: Vec<f32> = finite().step_by(step).collect();
+                let rank = (values.len() - 1) * 999 / 1000;
+                let white = values.select_nth_unstable_by(rank, f32::total_cmp).1.max(1.0);
+                Normalisation { offset: 0.0, scale: 1.0 / white, curve: true }
+            }
+        })
+    }
+}

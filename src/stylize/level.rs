@@ -1,0 +1,225 @@
+//! One resolution of the problem, quantised for matching.
+
+use super::guides::Channels;
+use super::{Input, Params, check_side, pca};
+use crate::error::{Error, Result};
+use crate::image::Image;
+use crate::image::colour::linear_to_srgb;
+use crate::job::Job;
+use crate::patch::{Domain, Features, Kernel, Quantiser, Search, halve, halve_mask};
+
+/// The problem at one resolution, in floats: what the next coarser one is made from.
+pub(super) struct Problem {
+    pub patch: usize,
+    /// Artwork, encoded for display.
+    pub style: Image,
+    pub guides: Channels,
+    /// Pixels patches may be taken from.
+    pub source_mask: Option<Vec<bool>>,
+    /// Pixels to make.
+    pub target_mask: Option<Vec<bool>>,
+    /// Encoded colours outside `target_mask`.
+    pub known: Option<Image>,
+    /// Pixels of the exemplar and of the target that were no numbers.
+    pub broken: (usize, usize),
+}
+
+impl Problem {
+    pub fn new(input: &Input, params: &Params, job: Job) -> Result<Self> {
+        let artwork = input.artwork;
+        check_side("artwork", artwork)?;
+        if ![1, 3, 4].contains(&artwork.channels) {
+            return Err(Error::argument(format!("artwork has {} channels; it must have 1, 3 or 4", artwork.channels)));
+        }
+        let mut guides = Channels::new(input.guides, job)?;
+        check_side("guides[0].target", &guides.target)?;
+        artwork.check_same_size("artwork", &guides.source, "guides[0].source")?;
+        let mut style = artwork.clone();
+        let mut source_mask = mask("source_mask", input.source_mask, &guides.source)?;
+        let target_mask = mask("target_mask", input.target_mask, &guides.target)?;
+
+        // Exemplar pixels that are no numbers are masked out.
+        let broken: Vec<bool> = (style.data.chunks_exact(style.channels))
+            .zip(&guides.broken_source)
+            .map(|(p, &b)| b || p.iter().any(|v| !v.is_finite()))
+            .collect();
+        let counts = (broken.iter().filter(|b| **b).count(), guides.broken_target.iter().filter(|b| **b).count());
+        if counts.0 > 0 {
+            let mask = source_mask.get_or_insert_with(|| vec![true; broken.len()]);
+            mask.iter_mut().zip(&broken).for_each(|(m, b)| *m &= !b);
+        }
+        style.data.iter_mut().for_each(|v| *v = if v.is_finite() { linear_to_srgb(*v) } else { 0.0 });
+        let known = input.known.map(|known| encode_known(known, &guides.target, artwork.channels)).transpose()?;
+
+        if params.preview {
+            pca::compress(&mut guides, job)?;
+        }
+        let sides = [style.width, style.height, guides.target.width, guides.target.height];
+        let shortest = sides.into_iter().min().unwrap_or(1);
+        let patch = if params.patch <= shortest { params.patch } else { (shortest - 1) | 1 };
+        let whole = Self { patch, style, guides, source_mask, target_mask, known, broken: counts };
+        if params.preview && shortest >= 2 * patch { whole.halve(job) } else { Ok(whole) }
+    }
+
+    /// Shortest side of exemplar and target.
+    pub fn shortest_side(&self) -> usize {
+        let (s, t) = (&self.style, &self.guides.target);
+        s.width.min(s.height).min(t.width).min(t.height)
+    }
+
+    /// Whether it is of the artwork's own size: a preview is not.
+    pub fn is_of(&self, artwork: &Image) -> bool {
+        (self.style.width, self.style.height) == (artwork.width, artwork.height)
+    }
+
+    /// What is known of the target, else black; encoded for display.
+    pub fn blank_picture(&self) -> Result<Image> {
+        match &self.known {
+            Some(known) => Ok(known.clone()),
+            None => Image::new(self.guides.target.width, self.guides.target.height, self.style.channels),
+        }
+    }
+
+    /// The problem at half the resolution.
+    pub fn halve(&self, job: Job) -> Result<Self> {
+        let (source, target) = (&self.guides.source, &self.guides.target);
+        let shrink_mask = |mask: &Option<Vec<bool>>, of: &Image, any: bool| {
+            mask.as_ref().map(|m| halve_mask(m, of.width, of.height, any))
+        };
+        let mut source_mask = shrink_mask(&self.source_mask, source, false);
+        // A region thinner than two pixels must not vanish.
+        if source_mask.as_ref().is_some_and(|m| !m.contains(&true)) {
+            source_mask = shrink_mask(&self.source_mask, source, true);
+        }
+        Ok(Self {
+            patch: self.patch,
+            style: halve(&self.style, job)?,
+            source_mask,
+            target_mask: shrink_mask(&self.target_mask, target, true),
+            known: self.known.as_ref().map(|k| halve(k, job)).transpose()?,
+            guides: Channels {
+                source: halve(source, job)?,
+                target: halve(target, job)?,
+                weights: self.guides.weights.clone(),
+                broken_source: Vec::new(),
+                broken_target: Vec::new(),
+            },
+            broken: self.broken,
+        })
+    }
+}
+
+/// Reads a mask of the size of `of`.
+fn mask(name: &str, mask: Option<&Image>, of: &Image) -> Result<Option<Vec<bool>>> {
+    let Some(mask) = mask else { return Ok(None) };
+    mask.check_same_size(name, of, "the guides of its side")?;
+    if mask.channels != 1 {
+        return Err(Error::argument(format!("{name} has {} channels; it must have 1", mask.channels)));
+    }
+    let set: Vec<bool> = mask.data.iter().map(|&v| v > 0.5).collect();
+    if !set.contains(&true) {
+        return Err(Error::degenerate(format!("{name} is empty: no pixel is above 0.5")));
+    }
+    Ok(Some(set))
+}
+
+fn encode_known(known: &Image, target: &Image, channels: usize) -> Result<Image> {
+    known.check_same_size("known", target, "guides[0].target")?;
+    if known.channels != channels {
+        return Err(Error::argument(format!(
+            "known has {} channels and the artwork {channels}; they must have the same number",
+            known.channels
+        )));
+    }
+    let mut encoded = known.clone();
+    encoded.data.iter_mut().for_each(|v| *v = if v.is_finite() { linear_to_srgb(*v) } else { 0.0 });
+    Ok(encoded)
+}
+
+/// The problem at one resolution, in integers.
+pub(super) struct Level<'a> {
+    pub problem: &'a Problem,
+    pub source: Features,
+    pub target: Features,
+    /// Exemplar patches that may be used and target patches that need one.
+    pub allowed: Domain,
+    pub wanted: Domain,
+    colours: Vec<Quantiser>,
+    /// Squared integer step of a difference of 1 at weight 1.
+    unit: f64,
+    pub kernel: Kernel,
+    pub seed: u64,
+}
+
+impl<'a> Level<'a> {
+    /// Quantises guides (and the artwork unless its weight `colour` is 0).
+    pub fn new(problem: &'a Problem, params: &Params, colour: f64, seed: u64) -> Result<Self> {
+        let (style, guides) = (&problem.style, &problem.guides);
+        let channels = style.channels;
+        let mut weights = vec![colour / channels as f64; channels];
+        weights.extend(guides.weights.iter().map(|w| w * f64::from(params.guide_weight)));
+        // Without colours and guides there is nothing to compare: any match is as good as another.
+        if weights.iter().all(|&w| w == 0.0) {
+            weights[channels] = f64::MIN_POSITIVE;
+        }
+        let unit = Quantiser::unit(&weights, problem.patch).powi(2);
+        let mut quantisers = Quantiser::for_weights(&weights, problem.patch);
+        let guide_quantisers = quantisers.split_off(channels);
+
+        let mut source = Features::new(style.width, style.height, weights.len())?;
+        let mut target = Features::new(guides.target.width, guides.target.height, weights.len())?;
+        for y in 0..source.height {
+            source.set_row(y, 0, &quantisers, style.row(y));
+            source.set_row(y, channels, &guide_quantisers, guides.source.row(y));
+        }
+        for y in 0..target.height {
+            target.set_row(y, channels, &guide_quantisers, guides.target.row(y));
+        }
+        let allowed = Domain::new(source.width, source.height, problem.patch, problem.source_mask.as_deref(), false)?;
+        // A region thinner than a patch: patches that touch it are better than none.
+        let allowed = if allowed.is_empty() {
+            Domain::new(source.width, source.height, problem.patch, problem.source_mask.as_deref(), true)?
+        } else {
+            allowed
+        };
+        let wanted = Domain::new(target.width, target.height, problem.patch, problem.target_mask.as_deref(), true)?;
+        Ok(Self { problem, source, target, allowed, wanted, colours: quantisers, unit, kernel: Kernel::detect(), seed })
+    }
+
+    /// Takes over the colours of the picture so far.
+    pub fn set_picture(&mut self, picture: &Image) {
+        for y in 0..self.target.height {
+            self.target.set_row(y, 0, &self.colours, picture.row(y));
+        }
+    }
+
+    /// Takes over the colour of one pixel.
+    pub fn set_pixel(&mut self, x: usize, y: usize, colour: &[f32]) {
+        let start = (y * self.target.width + x) * self.target.lanes;
+        for ((out, q), v) in self.target.data[start..].iter_mut().zip(&self.colours).zip(colour) {
+            *out = q.quantise(*v);
+        }
+    }
+
+    /// What a distance of 1 per pixel of a patch, in the units of Eq. 1 with channels in `[0, 1]`, comes to.
+    pub fn unit(&self) -> f64 {
+        (self.problem.patch * self.problem.patch) as f64 * self.unit
+    }
+
+    /// Search from target patches for exemplar patches.
+    pub fn forward(&self) -> Search<'_> {
+        Search {
+            query: &self.target,
+            base: &self.source,
+            allowed: &self.allowed,
+            patch: self.problem.patch,
+            kernel: self.kernel,
+            seed: self.seed,
+        }
+    }
+
+    /// Search from exemplar patches for target patches among `free`.
+    pub fn reverse<'b>(&'b self, free: &'b Domain) -> Search<'b> {
+        Search { query: &self.source, base: &self.target, allowed: free, seed: !self.seed, ..self.forward() }
+    }
+}

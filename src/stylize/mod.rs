@@ -1,0 +1,191 @@
+//! Stylisation guided by illumination: Fišer et al., "StyLit: Illumination-Guided Example-Based Stylization of 3D
+//! Renderings" (SIGGRAPH 2016), §3.3-3.4.
+//!
+//! An exemplar scene was rendered as guides A and painted as artwork A′; a target scene is rendered as guides B. From
+//! coarse to fine, patches of A′ are matched to places in the target by colour so far and by guides (Eq. 1), overlapping
+//! patches are averaged (Algorithm 1), and so on. What sets StyLit apart is how matches are made: each exemplar patch
+//! looks for its place in the target, not the other way round, so that no patch is overused and texture does not wash
+//! out; and it does so under an error budget, so that none is forced into a place where it does not belong
+//! ([`budget`](self), [`retrieve`](self)).
+//!
+//! `guides` normalises, `level` quantises one resolution, `retrieve` matches under the budget, `budget` fits the knee,
+//! `finder` searches,
+//! `schedule` goes from coarse to fine, `study` follows changes of the artwork, `greedy` is Hertzmann's algorithm for comparison, `report` measures.
+//!
+//! Colours are compared and averaged as they are encoded for display (sRGB), which is how paint is looked at.
+//!
+//! Not modelled: rotation of strokes along the target's shapes, and the time dimension of a sequence.
+//!
+//! Covered by patents in the US (StyLit: US 9,881,413 and 10,176,624; patch usage: US 9,905,054; PatchMatch:
+//! US 8,861,869, 8,571,328 and 8,625,927); hence the Cargo feature `stylize`, which a distributor can leave out.
+
+mod budget;
+mod finder;
+mod greedy;
+mod guides;
+mod level;
+mod pca;
+mod report;
+mod retrieve;
+mod schedule;
+mod study;
+
+#[cfg(test)]
+mod tests;
+
+pub use budget::{Budget, Hyperbola, budget};
+pub use guides::{Guide, Range};
+pub use report::{LevelReport, Report, Usage};
+pub use retrieve::Pass;
+pub use study::Study;
+
+use crate::error::{Error, Result, check_range};
+use crate::image::Image;
+use crate::job::Job;
+use crate::patch::{Field, MAX_SIDE, Vote};
+
+/// How matches are made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mode {
+    /// The paper's: reversed retrieval under an error budget.
+    Budget,
+    /// Reversed retrieval without a budget: every exemplar patch is used equally often (Jamriška et al. 2015).
+    Uniform,
+    /// Each target patch takes its nearest exemplar patch (Wexler et al. 2007, Kwatra et al. 2005).
+    Nearest,
+    /// One pass in scan order, by best or by most coherent match (Hertzmann et al. 2001).
+    Greedy,
+    /// Each pixel takes the exemplar pixel with the nearest guides; with normals as the guide, the Lit Sphere (Sloan et
+    /// al. 2001).
+    LitSphere,
+}
+
+/// How nearest patches are searched for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Finder {
+    /// PatchMatch.
+    PatchMatch,
+    /// A k-d tree over patch means: not PatchMatch.
+    Table,
+}
+
+#[derive(Clone, Copy)]
+pub struct Input<'a> {
+    /// The artwork A′, linear colour, aligned with the source side of the guides; 1, 3 or 4 channels.
+    pub artwork: &'a Image,
+    /// Pairs of A and B; at least one.
+    pub guides: &'a [Guide<'a>],
+    /// One channel; patches are only taken from where it is above 0.5. Absent: from everywhere.
+    pub source_mask: Option<&'a Image>,
+    /// One channel; only pixels above 0.5 are made, the others are taken from `known`, or black. Absent: all.
+    pub target_mask: Option<&'a Image>,
+    /// What the target shows outside its mask: matched against, never changed. Same channels as the artwork.
+    pub known: Option<&'a Image>,
+    /// A field of an earlier result for targets of the same size, to start from instead of from nothing.
+    pub previous: Option<&'a Field>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct Params {
+    pub mode: Mode,
+    pub finder: Finder,
+    /// Width of a patch in pixels, odd, in `[1, 33]`. Shrinks to the images where they are smaller.
+    pub patch: usize,
+    /// Weight μ of all guides together against the artwork's colours together, in `[0, 1e6]`.
+    pub guide_weight: f32,
+    /// Most resolution levels, each half of the next, in `[1, 16]`; fewer where the coarsest would be below 5 patches.
+    pub levels: usize,
+    /// EM iterations on each level, in `[1, 100]`.
+    pub iterations: usize,
+    /// EM iterations on the finest level, in `[1, 100]`.
+    pub finest_iterations: usize,
+    /// PatchMatch sweeps in a retrieval, in `[1, 100]`.
+    pub sweeps: usize,
+    /// Share of the target to cover under the budget before the rest is matched without, in `[0, 1]`.
+    pub coverage: f32,
+    /// Most retrieval passes in an iteration, in `[1, 1000]`.
+    pub passes: usize,
+    /// Sweeps of propagation after a retrieval, in `[0, 100]`: a target patch may continue its neighbour's match where that
+    /// is closer. 0 is the paper's assignment as it is.
+    pub settle: usize,
+    pub vote: Vote,
+    /// How the last picture is made from the last field.
+    pub final_vote: Vote,
+    /// Half resolution, guides compressed to their principal components: for watching while painting.
+    pub preview: bool,
+    pub seed: u64,
+}
+
+impl Default for Params {
+    fn default() -> Self {
+        Self {
+            mode: Mode::Budget,
+            finder: Finder::PatchMatch,
+            patch: 5,
+            guide_weight: 2.0,
+            levels: 6,
+            iterations: 6,
+            finest_iterations: 2,
+            sweeps: 1,
+            coverage: 0.95,
+            passes: 12,
+            settle: 2,
+            vote: Vote::Weighted,
+            final_vote: Vote::Nearest,
+            preview: false,
+            seed: 1,
+        }
+    }
+}
+
+impl Params {
+    fn check(&self) -> Result<()> {
+        check_range("patch", self.patch, 1, 33)?;
+        if self.patch % 2 == 0 {
+            return Err(Error::argument(format!("patch is {}; it must be odd", self.patch)));
+        }
+        check_range("guide_weight", self.guide_weight, 0.0, 1e6)?;
+        check_range("levels", self.levels, 1, 16)?;
+        check_range("iterations", self.iterations, 1, 100)?;
+        check_range("finest_iterations", self.finest_iterations, 1, 100)?;
+        check_range("sweeps", self.sweeps, 1, 100)?;
+        check_range("coverage", self.coverage, 0.0, 1.0)?;
+        check_range("settle", self.settle, 0, 100)?;
+        check_range("passes", self.passes, 1, 1000)?;
+        Ok(())
+    }
+}
+
+#[derive(Clone, Debug)]
+pub struct Output {
+    /// The stylised target, linear colour.
+    pub image: Image,
+    /// The exemplar patch of each target patch.
+    pub field: Field,
+    pub report: Report,
+}
+
+/// Called with the picture so far (linear colour) after each level, coarsest first; the second argument says how many
+/// halvings the level is below the result.
+pub type Publish<'a> = &'a (dyn Fn(&Image, usize) + Sync);
+
+/// Stylises the target.
+pub fn run(input: &Input, params: &Params, job: Job) -> Result<Output> {
+    run_and_publish(input, params, &|_, _| (), job)
+}
+
+/// Stylises the target and shows a picture after each level.
+pub fn run_and_publish(input: &Input, params: &Params, publish: Publish, job: Job) -> Result<Output> {
+    params.check()?;
+    let problem = level::Problem::new(input, params, job.part(0.0, 0.03))?;
+    let output = schedule::run(&problem, input, params, publish, job.part(0.03, 1.0))?;
+    job.report(1.0);
+    Ok(output)
+}
+
+/// Largest accepted side.
+fn check_side(name: &str, image: &Image) -> Result<()> {
+    check_range(&format!("{name}.width"), image.width, 1, MAX_SIDE)?;
+    check_range(&format!("{name}.height"), image.height, 1, MAX_SIDE)?;
+    Ok(())
+}

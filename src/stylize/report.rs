@@ -1,0 +1,96 @@
+//! What a run did and how well: energy, coverage, patch usage, guide error.
+
+use super::level::{Level, Problem};
+use super::retrieve::Pass;
+use crate::error::Result;
+use crate::exec;
+use crate::image::{Image, try_vec};
+use crate::job::Job;
+use crate::patch::{Field, NONE, unpack};
+
+/// One resolution level.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LevelReport {
+    pub width: usize,
+    pub height: usize,
+    /// Eq. 3 per target patch and per pixel of it, after each iteration: mean weighted squared difference of channels in
+    /// `[0, 1]`, artwork counting 1 in all and guides μ.
+    pub energy: Vec<f64>,
+    /// Retrieval passes of each iteration.
+    pub passes: Vec<Vec<Pass>>,
+}
+
+/// How often exemplar patches are used in the result.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Usage {
+    /// Share of the allowed exemplar patches that are used.
+    pub used: f64,
+    /// Most uses of one patch.
+    pub most: u32,
+    /// Entropy of the usage in bits; at most log2 of the number of target patches.
+    pub entropy: f64,
+}
+
+#[derive(Clone, Debug)]
+pub struct Report {
+    /// Coarsest level first.
+    pub levels: Vec<LevelReport>,
+    pub usage: Usage,
+    /// One channel per target pixel: root mean square difference of the weighted guides between the target and what was
+    /// painted there, in `[0, 1]`. High where the exemplar has nothing that fits (Fig. 17).
+    pub guide_error: Image,
+    /// Width of patches that was used.
+    pub patch: usize,
+    /// Exemplar pixels left out because they are NaN or infinite, and target guide pixels taken as 0 for it.
+    pub broken_source: usize,
+    pub broken_target: usize,
+}
+
+impl Usage {
+    pub(super) fn of(field: &Field, level: &Level) -> Result<Self> {
+        let mut counts = try_vec(level.allowed.width * level.allowed.height, 0u32)?;
+        let mut total = 0u32;
+        for &at in field.at.iter().filter(|&&at| at != NONE) {
+            let (x, y) = unpack(at);
+            counts[y * level.allowed.width + x] += 1;
+            total += 1;
+        }
+        let used = counts.iter().filter(|&&c| c > 0);
+        let entropy = |c: u32| {
+            let p = f64::from(c) / f64::from(total);
+            -p * p.log2()
+        };
+        Ok(Self {
+            used: used.clone().count() as f64 / level.allowed.len().max(1) as f64,
+            most: used.clone().copied().max().unwrap_or(0),
+            entropy: used.map(|&c| entropy(c)).sum(),
+        })
+    }
+}
+
+/// Mean distance of matched patches, per pixel of a patch, in the units of Eq. 1 with channels in `[0, 1]`.
+pub(super) fn energy(field: &Field, level: &Level) -> f64 {
+    field.energy() / level.wanted.len().max(1) as f64 / level.unit()
+}
+
+/// The guide error of each pixel: that of the patch whose centre is nearest.
+pub(super) fn guide_error(field: &Field, problem: &Problem, job: Job) -> Result<Image> {
+    let (source, target) = (&problem.guides.source, &problem.guides.target);
+    let mut out = Image::new(target.width, target.height, 1)?;
+    let half = problem.patch / 2;
+    exec::for_rows(&mut out.data, target.width, job, |y, row| {
+        let fy = y.saturating_sub(half).min(field.height - 1);
+        for (x, error) in row.iter_mut().enumerate() {
+            let fx = x.saturating_sub(half).min(field.width - 1);
+            let at = field.at[fy * field.width + fx];
+            if at != NONE {
+                let (px, py) = unpack(at);
+                let (a, b) = (source.pixel(px + x - fx, py + y - fy), target.pixel(x, y));
+                let terms = a.iter().zip(b).zip(&problem.guides.weights);
+                let sum: f64 = terms.map(|((a, b), w)| w * f64::from(a - b).powi(2)).sum();
+                *error = sum.sqrt() as f32;
+            }
+        }
+    })?;
+    Ok(out)
+}

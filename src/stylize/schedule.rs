@@ -1,0 +1,230 @@
+//! From coarse to fine (§3.4): on each level match and vote a few times, then go on from the doubled field.
+
+use super::finder::Nearest;
+use super::level::{Level, Problem};
+use super::report::{LevelReport, Report, Usage, energy, guide_error};
+use super::retrieve::retrieve;
+use super::{Finder, Input, Mode, Output, Params, Publish, greedy};
+use crate::error::{Error, Result};
+use crate::image::Image;
+use crate::image::colour::srgb_to_linear;
+use crate::job::Job;
+use crate::patch::{Field, NONE, Sweep, Vote, level_count, origins, unpack, vote};
+use crate::rng::hash;
+
+/// Up to this many pairs of patches the first field is found by comparing all.
+const EXHAUSTIVE: usize = 1 << 24;
+
+pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Publish, job: Job) -> Result<Output> {
+    // Build the pyramid; the coarsest level keeps at least five patches' widths.
+    let levels = match (params.mode, input.previous) {
+        (Mode::LitSphere, _) | (_, Some(_)) => 1,
+        _ => level_count(problem.shortest_side(), 5 * problem.patch, params.levels),
+    };
+    let mut coarser: Vec<Problem> = Vec::new();
+    for _ in 1..levels {
+        let next = coarser.last().unwrap_or(problem).halve(job.part(0.0, 0.01))?;
+        coarser.push(next);
+    }
+
+    // A level costs four times the next coarser one.
+    let cost = |l: usize| 0.25f64.powi(l as i32);
+    let total: f64 = (0..levels).map(cost).sum();
+    let mut done = 0.0;
+    let mut reports = Vec::new();
+    let mut field: Option<Field> = input.previous.cloned();
+    for l in (0..levels).rev() {
+        let job = job.part(0.01 + 0.98 * done / total, 0.01 + 0.98 * (done + cost(l)) / total);
+        done += cost(l);
+        let problem = if l == 0 { problem } else { &coarser[l - 1] };
+        let seed = hash(params.seed, &[l as u64]);
+        let mut level = Level::new(problem, params, 1.0, seed)?;
+        if level.allowed.is_empty() {
+            return Err(Error::degenerate(
+                "no exemplar patch can be used: source_mask and pixels that are no numbers leave none".to_string(),
+            ));
+        }
+
+        // Start from the coarser field, or from guides alone.
+        let (width, height) = (level.wanted.width, level.wanted.height);
+        let mut current = match field.take() {
+            Some(coarse) if l + 1 < levels => coarse.upsample(width, height, &level.allowed)?,
+            Some(previous) => checked(previous, &level)?,
+            None => by_guides_alone(problem, params, seed, job.part(0.0, 0.1))?,
+        };
+        let mut picture = problem.blank_picture()?;
+        let how = if params.mode == Mode::LitSphere { Vote::Nearest } else { params.vote };
+        paint(&mut picture, &current, problem, &level, how, job.part(0.1, 0.12))?;
+
+        // Match and vote.
+        let iterations = match (params.mode, l) {
+            (Mode::LitSphere, _) => 0,
+            (Mode::Greedy, _) => 1,
+            (_, 0) => params.finest_iterations,
+            _ => params.iterations,
+        };
+        let mut report = LevelReport {
+            width: problem.guides.target.width,
+            height: problem.guides.target.height,
+            energy: Vec::new(),
+            passes: Vec::new(),
+        };
+        for k in 0..iterations {
+            let part = |from: f64, to: f64| {
+                let n = iterations as f64;
+                job.part(0.12 + 0.88 * (k as f64 + from) / n, 0.12 + 0.88 * (k as f64 + to) / n)
+            };
+            level.set_picture(&picture);
+            match params.mode {
+                Mode::Budget | Mode::Uniform => {
+                    report.passes.push(retrieve(&level, &mut current, params, k as u64, part(0.0, 0.9))?);
+                }
+                Mode::Nearest | Mode::LitSphere => nearest(&level, &mut current, params, k, part(0.0, 0.9))?,
+                Mode::Greedy => {
+                    nearest(&level, &mut current, params, k, part(0.0, 0.5))?;
+                    greedy::run(&mut level, &mut current, &mut picture, l, part(0.5, 0.9))?;
+                }
+            }
+            report.energy.push(energy(&current, &level));
+            let last = l == 0 && k + 1 == iterations;
+            let how = if params.mode == Mode::Greedy {
+                Vote::Nearest
+            } else if last {
+                params.final_vote
+            } else {
+                params.vote
+            };
+            paint(&mut picture, &current, problem, &level, how, part(0.9, 1.0))?;
+        }
+        reports.push(report);
+        publish(&decode(&picture), l);
+
+        if l == 0 {
+            let image = finish(&picture, &current, problem, input.artwork, input.known, job)?;
+            let report = Report {
+                levels: reports,
+                usage: Usage::of(&current, &level)?,
+                guide_error: guide_error(&current, problem, job)?,
+                patch: problem.patch,
+                broken_source: problem.broken.0,
+                broken_target: problem.broken.1,
+            };
+            return Ok(Output { image, field: current, report });
+        }
+        field = Some(current);
+    }
+    Err(Error::new(crate::error::ErrorKind::Internal, "the pyramid has no levels"))
+}
+
+/// Each target patch's nearest exemplar patch.
+fn nearest(level: &Level, field: &mut Field, params: &Params, round: usize, job: Job) -> Result<()> {
+    let wanted = |i: usize| level.wanted.contains_index(i);
+    level.forward().rescore(field, job.part(0.0, 0.1), wanted)?;
+    Nearest::new(level, params, job.part(0.1, 0.2))?.forward(field, round as u64, job.part(0.2, 1.0), wanted)
+}
+
+/// A field that follows the guides only; among equals the same relative position wins, so that equal guides give the
+/// identity.
+fn by_guides_alone(problem: &Problem, params: &Params, seed: u64, job: Job) -> Result<Field> {
+    let level = Level::new(problem, params, 0.0, seed)?;
+    let search = level.forward();
+    let wanted = |i: usize| level.wanted.contains_index(i);
+    let mut field = Field::proportional(level.wanted.width, level.wanted.height, &level.allowed)?;
+    search.rescore(&mut field, job.part(0.0, 0.05), wanted)?;
+    if level.wanted.len().saturating_mul(level.allowed.len()) <= EXHAUSTIVE {
+        search.exhaustive(&mut field, job.part(0.05, 1.0), wanted)?;
+    } else if params.finder == Finder::Table {
+        Nearest::new(&level, params, job.part(0.05, 0.4))?.forward(&mut field, 0, job.part(0.4, 1.0), wanted)?;
+    } else {
+        let reach = level.allowed.width.max(level.allowed.height);
+        for k in 0..8 {
+            let sweep = Sweep { index: k, reach, fresh: 16 };
+            search.sweep(&mut field, sweep, job.part(0.05 + 0.11 * k as f64, 0.05 + 0.11 * (k + 1) as f64), wanted)?;
+        }
+    }
+    Ok(field)
+}
+
+/// A field from outside: of the right size, and its matches inside the exemplar.
+fn checked(field: Field, level: &Level) -> Result<Field> {
+    let (width, height) = (level.wanted.width, level.wanted.height);
+    if (field.width, field.height) != (width, height)
+        || field.at.len() != width * height
+        || field.error.len() != width * height
+    {
+        return Err(Error::argument(format!(
+            "previous is a field of {} x {} patches; this target has {width} x {height}",
+            field.width, field.height
+        )));
+    }
+    let outside = |&at: &u32| {
+        let (x, y) = unpack(at);
+        at != NONE && (x >= level.allowed.width || y >= level.allowed.height)
+    };
+    if field.at.iter().any(outside) {
+        return Err(Error::argument("previous has matches outside the exemplar".to_string()));
+    }
+    Ok(field)
+}
+
+/// Votes, and puts back what is known.
+pub(super) fn paint(
+    picture: &mut Image,
+    field: &Field,
+    problem: &Problem,
+    level: &Level,
+    how: Vote,
+    job: Job,
+) -> Result<()> {
+    vote(picture, field, &problem.style, &level.allowed, problem.patch, how, job)?;
+    restore_known(picture, problem);
+    Ok(())
+}
+
+fn restore_known(picture: &mut Image, problem: &Problem) {
+    if let (Some(mask), Some(known)) = (&problem.target_mask, &problem.known) {
+        let channels = picture.channels;
+        let pixels = picture.data.chunks_exact_mut(channels).zip(known.data.chunks_exact(channels));
+        pixels.zip(mask).filter(|(_, made)| !**made).for_each(|((p, k), _)| p.copy_from_slice(k));
+    }
+}
+
+fn decode(picture: &Image) -> Image {
+    let mut out = picture.clone();
+    out.data.iter_mut().for_each(|v| *v = srgb_to_linear(*v));
+    out
+}
+
+/// The result in linear colour. Pixels that all patches agree on, and known ones, are copied and not decoded, so that
+/// they are the artwork's to the bit.
+pub(super) fn finish(
+    picture: &Image,
+    field: &Field,
+    problem: &Problem,
+    artwork: &Image,
+    known: Option<&Image>,
+    job: Job,
+) -> Result<Image> {
+    let mut image = decode(picture);
+    if !problem.is_of(artwork) {
+        return Ok(image);
+    }
+    let channels = image.channels;
+    let origins = origins(image.width, image.height, field, problem.patch, job)?;
+    for (pixel, &origin) in image.data.chunks_exact_mut(channels).zip(&origins) {
+        if origin != NONE {
+            let (x, y) = unpack(origin);
+            pixel.copy_from_slice(artwork.pixel(x, y));
+        }
+    }
+    if let Some(mask) = &problem.target_mask {
+        for (i, (pixel, made)) in image.data.chunks_exact_mut(channels).zip(mask).enumerate() {
+            match known {
+                _ if *made => {}
+                Some(known) => pixel.copy_from_slice(&known.data[i * channels..(i + 1) * channels]),
+                None => pixel.fill(0.0),
+            }
+        }
+    }
+    Ok(image)
+}

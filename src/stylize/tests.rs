@@ -1,0 +1,329 @@
+use super::*;
+use crate::error::ErrorKind;
+use crate::exec::Pool;
+use crate::job::Monitor;
+use crate::rng::Rng;
+use std::sync::Mutex;
+
+/// A lit ball on a ground, as one guide of three channels.
+fn scene(width: usize, height: usize, cx: f32, cy: f32, radius: f32) -> Image {
+    Image::from_fn(width, height, |x, y| {
+        let (dx, dy) = ((x as f32 - cx) / radius, (y as f32 - cy) / radius);
+        let inside = 1.0 - dx * dx - dy * dy;
+        if inside > 0.0 {
+            let light = (0.6 * inside.sqrt() - 0.5 * dx - 0.6 * dy).max(0.05);
+            [light.min(1.0), light.powi(8).min(1.0), 1.0]
+        } else {
+            [0.5 + 0.3 * y as f32 / height as f32, 0.0, 0.0]
+        }
+    })
+    .unwrap()
+}
+
+/// Hatching whose direction and contrast follow the light, with grain.
+fn artwork(guide: &Image) -> Image {
+    Image::from_fn(guide.width, guide.height, |x, y| {
+        let g = guide.pixel(x, y);
+        let mut rng = Rng::new(5, &[x as u64, y as u64]);
+        let stroke = if g[2] > 0.5 { (x + 2 * y) % 7 } else { (2 * x + 5 * y) % 9 } as f32 / 9.0;
+        let v = 0.5 * g[0] + 0.3 * stroke + 0.2 * rng.next_f32();
+        [v.min(1.0), 0.7 * v + 0.2 * g[2], 0.4 + 0.3 * g[1]]
+    })
+    .unwrap()
+}
+
+fn guide<'a>(source: &'a Image, target: &'a Image) -> Guide<'a> {
+    Guide { source, target, weight: 1.0, range: Range::Light }
+}
+
+fn input<'a>(artwork: &'a Image, guides: &'a [Guide<'a>]) -> Input<'a> {
+    Input { artwork, guides, source_mask: None, target_mask: None, known: None, previous: None }
+}
+
+fn stylise(input: &Input, params: &Params) -> Result<Output> {
+    run(input, params, Monitor::default().job())
+}
+
+const MODES: [Mode; 5] = [Mode::Budget, Mode::Uniform, Mode::Nearest, Mode::Greedy, Mode::LitSphere];
+
+#[test]
+fn equal_guides_give_the_artwork_back_to_the_bit_in_every_mode() {
+    for (w, h) in [(61, 47), (40, 33)] {
+        let a = scene(w, h, 30.0, 20.0, 14.0);
+        let art = artwork(&a);
+        for mode in MODES {
+            let output = stylise(&input(&art, &[guide(&a, &a)]), &Params { mode, ..Params::default() }).unwrap();
+            assert!(output.image == art, "{mode:?} {w} x {h}");
+            assert!(output.report.guide_error.data.iter().all(|&e| e == 0.0));
+        }
+        let table = Params { finder: Finder::Table, ..Params::default() };
+        assert!(stylise(&input(&art, &[guide(&a, &a)]), &table).unwrap().image == art);
+        // Nothing but the position tells the patches apart.
+        let flat = Image::from_fn(w, h, |_, _| [0.3]).unwrap();
+        let output = stylise(&input(&art, &[guide(&flat, &flat)]), &Params::default()).unwrap();
+        assert!(output.image == art);
+    }
+}
+
+#[test]
+fn results_do_not_depend_on_the_number_of_threads() {
+    let (a, b) = (scene(90, 70, 40.0, 30.0, 22.0), scene(101, 83, 60.0, 45.0, 30.0));
+    let art = artwork(&a);
+    for params in [
+        Params { levels: 3, iterations: 2, ..Params::default() },
+        Params { mode: Mode::Nearest, levels: 3, iterations: 2, ..Params::default() },
+        Params { preview: true, levels: 2, iterations: 1, ..Params::default() },
+        Params { finder: Finder::Table, levels: 2, iterations: 1, ..Params::default() },
+    ] {
+        let with = |threads: usize| {
+            Pool::new(threads).unwrap().run(|| stylise(&input(&art, &[guide(&a, &b)]), &params)).unwrap()
+        };
+        let (one, three) = (with(1), with(3));
+        assert!(one.image == three.image && one.field == three.field, "{params:?}");
+        assert_eq!(one.report.levels, three.report.levels);
+    }
+}
+
+/// The wash-out of §2: under equal guides, smooth patches are near everything and nearest patches overuse them.
+#[test]
+fn the_budget_uses_more_of_the_exemplar_and_keeps_more_texture_than_nearest_patches() {
+    let a = Image::from_fn(90, 60, |_, y| [0.2 + 0.6 * y as f32 / 60.0]).unwrap();
+    let b = Image::from_fn(110, 80, |x, y| [0.2 + 0.6 * ((x + 2 * y) % 113) as f32 / 113.0]).unwrap();
+    // Grain that grows from left to right.
+    let art = Image::from_fn(90, 60, |x, y| {
+        let grain = (Rng::new(2, &[(x / 2) as u64, y as u64]).next_f32() - 0.5) * x as f32 / 90.0;
+        [0.5 + 0.8 * grain, 0.4 + 0.3 * grain, 0.5]
+    })
+    .unwrap();
+    let with = |mode| stylise(&input(&art, &[guide(&a, &b)]), &Params { mode, ..Params::default() }).unwrap();
+    let (budget, nearest) = (with(Mode::Budget), with(Mode::Nearest));
+    let (rich, poor) = (budget.report.usage, nearest.report.usage);
+    assert!(rich.used > 1.1 * poor.used && rich.entropy > poor.entropy, "{rich:?} {poor:?}");
+    // Mean squared difference of horizontal neighbours.
+    let power = |image: &Image| {
+        let differences = image.data.chunks_exact(3 * image.width).flat_map(|row| {
+            row.chunks_exact(3).zip(row[3..].chunks_exact(3)).map(|(p, q)| f64::from(p[0] - q[0]).powi(2))
+        });
+        differences.sum::<f64>() / image.data.len() as f64
+    };
+    let (kept, washed) = (power(&budget.image) / power(&art), power(&nearest.image) / power(&art));
+    assert!(kept > 1.1 * washed, "{kept} {washed}");
+}
+
+/// Fig. 7: the target has four times the exemplar's highlight. Uniform usage must fill it with something else; the
+/// budget uses the highlight again.
+#[test]
+fn a_highlight_larger_than_the_exemplars_is_filled_with_highlight() {
+    let half = |share: f32| Image::from_fn(60, 60, |x, _| [if (x as f32) < 60.0 * share { 0.9 } else { 0.1 }]).unwrap();
+    let (a, b) = (half(0.2), half(0.8));
+    let art = Image::from_fn(60, 60, |x, y| {
+        let grain = 0.1 * Rng::new(1, &[x as u64, y as u64]).next_f32();
+        if x < 12 { [0.9 - grain, 0.8, 0.1] } else { [0.1 + grain, 0.1, 0.8] }
+    })
+    .unwrap();
+    let wrong = |mode| {
+        let params = Params { mode, settle: 0, levels: 3, ..Params::default() };
+        let output = stylise(&input(&art, &[guide(&a, &b)]), &params).unwrap();
+        (0..60 * 60).filter(|i| i % 60 < 46 && output.image.data[3 * i] < 0.5).count()
+    };
+    assert_eq!(wrong(Mode::Budget), 0);
+    assert!(wrong(Mode::Uniform) > 600, "{}", wrong(Mode::Uniform));
+}
+
+#[test]
+fn energy_per_iteration_falls_for_nearest_patches() {
+    let (a, b) = (scene(80, 64, 40.0, 30.0, 22.0), scene(80, 64, 30.0, 34.0, 18.0));
+    let art = artwork(&a);
+    let params =
+        Params { mode: Mode::Nearest, levels: 1, finest_iterations: 6, vote: Vote::Plain, ..Params::default() };
+    let output = stylise(&input(&art, &[guide(&a, &b)]), &params).unwrap();
+    // Matching lowers Eq. 3 for a picture, and the mean lowers it for a field.
+    let energy = &output.report.levels[0].energy;
+    assert!(energy.windows(2).all(|w| w[1] <= w[0] * (1.0 + 1e-3)), "{energy:?}");
+}
+
+#[test]
+fn masks_keep_patches_out_and_pixels_unchanged() {
+    let (a, b) = (scene(64, 48, 30.0, 22.0, 15.0), scene(64, 48, 34.0, 25.0, 15.0));
+    let mut art = artwork(&a);
+    // Poison the left third of the exemplar, mask it, and make only the right half of the target.
+    for y in 0..48 {
+        for x in 0..20 {
+            art.pixel_mut(x, y).copy_from_slice(&[0.0, 10.0, 0.0]);
+        }
+    }
+    let allowed = Image::from_fn(64, 48, |x, _| [f32::from(u8::from(x >= 20))]).unwrap();
+    let wanted = Image::from_fn(64, 48, |x, _| [f32::from(u8::from(x >= 32))]).unwrap();
+    let known = Image::from_fn(64, 48, |x, y| [0.1, 0.2, (x + y) as f32 / 200.0]).unwrap();
+    for mode in MODES {
+        let guides = [guide(&a, &b)];
+        let masked = Input { source_mask: Some(&allowed), target_mask: Some(&wanted), ..input(&art, &guides) };
+        let params = Params { mode, levels: 3, iterations: 2, ..Params::default() };
+        let image = stylise(&Input { known: Some(&known), ..masked }, &params).unwrap().image;
+        let black = stylise(&masked, &params).unwrap().image;
+        for y in 0..48 {
+            for x in 0..64 {
+                if x < 32 {
+                    assert_eq!(image.pixel(x, y), known.pixel(x, y));
+                    assert_eq!(black.pixel(x, y), [0.0; 3]);
+                } else {
+                    assert!(image.pixel(x, y)[1] < 1.5 && image.pixel(x, y)[0] > 0.0, "{mode:?} {x} {y}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn extremes_have_an_answer() {
+    let a = scene(33, 21, 15.0, 10.0, 8.0);
+    let art = artwork(&a);
+    let finite = |output: Output| {
+        assert_eq!(output.image.count_non_finite(), 0);
+        output
+    };
+    for mode in MODES {
+        let params = Params { mode, ..Params::default() };
+        // Targets and exemplars of one pixel, thinner than a patch, and much larger or smaller than the other.
+        for (w, h) in [(1, 1), (1, 40), (3, 2), (5, 5), (150, 4)] {
+            let b = scene(w, h, 2.0, 2.0, 3.0);
+            finite(stylise(&input(&art, &[guide(&a, &b)]), &params).unwrap());
+            finite(stylise(&input(&artwork(&b), &[guide(&b, &a)]), &params).unwrap());
+        }
+        // One highlight of a million must not outvote the rest.
+        let mut hot = a.clone();
+        hot.pixel_mut(15, 10)[0] = 1e6;
+        let output = finite(stylise(&input(&art, &[guide(&hot, &a)]), &params).unwrap());
+        let same = output.image.data.iter().zip(&art.data).filter(|(x, y)| x == y).count();
+        assert!(mode == Mode::Uniform || same * 10 > art.data.len() * 8, "{mode:?} {same}");
+        // No weight, and nothing but weight.
+        let guides = [Guide { weight: 0.0, ..guide(&a, &a) }];
+        finite(stylise(&input(&art, &guides), &params).unwrap());
+        for guide_weight in [0.0, 1e6] {
+            finite(stylise(&input(&art, &[guide(&a, &a)]), &Params { guide_weight, ..params.clone() }).unwrap());
+        }
+    }
+    let table = Params { finder: Finder::Table, ..Params::default() };
+    for (w, h) in [(1, 1), (3, 2), (150, 4)] {
+        let b = scene(w, h, 2.0, 2.0, 3.0);
+        finite(stylise(&input(&art, &[guide(&a, &b)]), &table).unwrap());
+        finite(stylise(&input(&artwork(&b), &[guide(&b, &a)]), &table).unwrap());
+    }
+    // Forty channels.
+    let wide =
+        |s: f32| Image::from_fn(33, 21, |x, y| std::array::from_fn::<f32, 40, _>(|c| ((x * c + y) % 9) as f32 * s));
+    let (wa, wb) = (wide(0.1).unwrap(), wide(0.09).unwrap());
+    for preview in [false, true] {
+        let guides = [Guide { range: Range::Data, ..guide(&wa, &wb) }];
+        finite(stylise(&input(&art, &guides), &Params { preview, ..Params::default() }).unwrap());
+    }
+}
+
+#[test]
+fn values_that_are_no_numbers_are_left_out_and_counted() {
+    let (mut a, mut b) = (scene(40, 30, 20.0, 15.0, 10.0), scene(40, 30, 22.0, 15.0, 10.0));
+    let mut art = artwork(&a);
+    a.pixel_mut(3, 3)[1] = f32::NAN;
+    b.pixel_mut(30, 7)[0] = f32::INFINITY;
+    art.pixel_mut(10, 20)[2] = f32::NAN;
+    let output = stylise(&input(&art, &[guide(&a, &b)]), &Params::default()).unwrap();
+    assert_eq!((output.report.broken_source, output.report.broken_target), (2, 1));
+    assert_eq!(output.image.count_non_finite(), 0);
+    a.data.fill(f32::NAN);
+    assert_eq!(stylise(&input(&art, &[guide(&a, &b)]), &Params::default()).unwrap_err().kind, ErrorKind::Degenerate);
+}
+
+#[test]
+fn contradictions_are_named() {
+    let (a, b) = (scene(40, 30, 20.0, 15.0, 10.0), scene(50, 30, 22.0, 15.0, 10.0));
+    let art = artwork(&a);
+    let two = Image::new(50, 30, 2).unwrap();
+    let empty = Image::new(40, 30, 1).unwrap();
+    let guides = [guide(&a, &b)];
+    let good = input(&art, &guides);
+    let fails = |input: &Input, params: &Params, word: &str| {
+        let error = stylise(input, params).unwrap_err();
+        assert!(error.message.contains(word), "{error}");
+    };
+    let default = Params::default();
+    fails(&input(&art, &[]), &default, "guides");
+    fails(&input(&art, &[guide(&a, &two)]), &default, "channels");
+    fails(&input(&art, &[guide(&b, &a)]), &default, "artwork");
+    fails(&input(&art, &[guide(&a, &b), guide(&b, &b)]), &default, "guides[1].source");
+    fails(&input(&art, &[Guide { weight: f32::NAN, ..guide(&a, &b) }]), &default, "weight");
+    fails(&Input { source_mask: Some(&empty), ..good }, &default, "source_mask");
+    fails(&Input { source_mask: Some(&two), ..good }, &default, "source_mask");
+    fails(&Input { known: Some(&two), ..good }, &default, "known");
+    for params in [
+        Params { patch: 4, ..default.clone() },
+        Params { patch: 35, ..default.clone() },
+        Params { levels: 0, ..default.clone() },
+        Params { iterations: 0, ..default.clone() },
+        Params { guide_weight: f32::INFINITY, ..default.clone() },
+        Params { coverage: -0.1, ..default.clone() },
+    ] {
+        assert_eq!(stylise(&good, &params).unwrap_err().kind, ErrorKind::InvalidArgument);
+    }
+}
+
+#[test]
+fn each_level_is_published_progress_ends_at_one_and_cancel_is_obeyed() {
+    let (a, b) = (scene(100, 80, 50.0, 40.0, 25.0), scene(100, 80, 45.0, 35.0, 22.0));
+    let art = artwork(&a);
+    let guides = [guide(&a, &b)];
+    let monitor = Monitor::default();
+    let seen = Mutex::new(Vec::new());
+    let publish = |image: &Image, depth: usize| seen.lock().unwrap().push((image.width, depth));
+    run_and_publish(&input(&art, &guides), &Params::default(), &publish, monitor.job()).unwrap();
+    assert_eq!(*seen.lock().unwrap(), [(50, 1), (100, 0)]);
+    assert_eq!(monitor.progress(), 1.0);
+
+    let monitor = Monitor::default();
+    let stop = |_: &Image, _: usize| monitor.cancel();
+    let error = run_and_publish(&input(&art, &guides), &Params::default(), &stop, monitor.job()).unwrap_err();
+    assert_eq!(error.kind, ErrorKind::Cancelled);
+    assert!(monitor.progress() < 1.0);
+}
+
+#[test]
+fn an_earlier_field_is_a_start_and_is_checked() {
+    let (a, b) = (scene(60, 50, 30.0, 25.0, 15.0), scene(60, 50, 27.0, 25.0, 15.0));
+    let art = artwork(&a);
+    let guides = [guide(&a, &b)];
+    let first = stylise(&input(&art, &guides), &Params::default()).unwrap();
+    let again = stylise(&Input { previous: Some(&first.field), ..input(&art, &guides) }, &Params::default()).unwrap();
+    let energy = |o: &Output| *o.report.levels.last().unwrap().energy.last().unwrap();
+    assert!(energy(&again) <= energy(&first) * 1.1, "{} {}", energy(&again), energy(&first));
+    let mut broken = first.field.clone();
+    broken.at[7] = crate::patch::pack(59, 49);
+    let wrong_size = crate::patch::Field::new(10, 10).unwrap();
+    for field in [&broken, &wrong_size] {
+        let error = stylise(&Input { previous: Some(field), ..input(&art, &guides) }, &Params::default()).unwrap_err();
+        assert!(error.message.contains("previous"));
+    }
+}
+
+#[test]
+fn a_study_follows_its_artwork_where_it_changed_and_nowhere_else() {
+    let (a, b) = (scene(80, 60, 40.0, 30.0, 18.0), scene(80, 60, 36.0, 30.0, 18.0));
+    let mut art = artwork(&a);
+    let guides = [guide(&a, &b)];
+    for preview in [false, true] {
+        let params = Params { levels: 2, iterations: 2, preview, ..Params::default() };
+        let (mut study, before) = Study::new(&input(&art, &guides), &params, Monitor::default().job()).unwrap();
+        let whole = stylise(&input(&art, &guides), &params).unwrap();
+        assert!(before.image == whole.image);
+
+        // Paint the ball green; the ground stays as it was.
+        let changed = Image::from_fn(80, 60, |x, y| [a.pixel(x, y)[2]]).unwrap();
+        for (p, _) in art.data.chunks_exact_mut(3).zip(&changed.data).filter(|(_, c)| **c > 0.5) {
+            p.copy_from_slice(&[0.0, 1.0, 0.0]);
+        }
+        let after = study.repaint(&art, &changed, Monitor::default().job()).unwrap();
+        let scale = if preview { 2 } else { 1 };
+        let (ball, corner) = (after.pixel(36 / scale, 30 / scale), (4 / scale, 4 / scale));
+        assert!(ball[1] > 0.9 && ball[0] < 0.1, "{ball:?}");
+        assert_eq!(after.pixel(corner.0, corner.1), before.image.pixel(corner.0, corner.1));
+        assert!(study.repaint(&b, &before.image, Monitor::default().job()).is_err());
+    }
+}

@@ -1,0 +1,95 @@
+//! The real pair of a painted ball and a rendered golem (ebsynth's StyLit example), at a quarter of its size.
+
+#![cfg(feature = "stylize")]
+
+use luxfer::image::Image;
+use luxfer::image::io::{Encoding, load};
+use luxfer::image::pyramid::resize;
+use luxfer::job::Monitor;
+use luxfer::stylize::{Guide, Input, Mode, Output, Params, Range, run};
+use std::path::PathBuf;
+
+const SIZE: (usize, usize) = (300, 228);
+const GUIDES: [&str; 4] = ["fullgi", "dirdif", "dirspc", "indirb"];
+
+struct Pair {
+    artwork: Image,
+    guides: Vec<(Image, Image)>,
+}
+
+/// The pair, or `None` where there is no test data, which is an error in CI.
+fn pair() -> Option<Pair> {
+    let root = std::env::var("LUXFER_TEST_DATA").unwrap_or_else(|_| "../shared/data".to_string());
+    let folder = PathBuf::from(root).join("stylit/ebsynth_stylit");
+    if !folder.exists() {
+        assert!(std::env::var("CI").is_err(), "{} is missing", folder.display());
+        eprintln!("skipped: {} is missing", folder.display());
+        return None;
+    }
+    let read = |name: String| {
+        let image = load(&folder.join(name), Encoding::Srgb).unwrap().to_rgb().unwrap();
+        resize(&image, SIZE.0, SIZE.1, Monitor::default().job()).unwrap()
+    };
+    Some(Pair {
+        artwork: read("source_style.png".into()),
+        guides: GUIDES.iter().map(|g| (read(format!("source_{g}.png")), read(format!("target_{g}.png")))).collect(),
+    })
+}
+
+fn stylise(pair: &Pair, params: &Params) -> Output {
+    let guides: Vec<Guide> = (pair.guides.iter())
+        .map(|(source, target)| Guide { source, target, weight: 1.0, range: Range::Light })
+        .collect();
+    let input = Input {
+        artwork: &pair.artwork,
+        guides: &guides,
+        source_mask: None,
+        target_mask: None,
+        known: None,
+        previous: None,
+    };
+    run(&input, params, Monitor::default().job()).unwrap()
+}
+
+/// Power of the encoded green channel's Laplacian.
+fn texture(image: &Image) -> f64 {
+    let green = |x: usize, y: usize| f64::from(luxfer::image::colour::linear_to_srgb(image.pixel(x, y)[1]));
+    let mut sum = 0.0;
+    for y in 1..image.height - 1 {
+        for x in 1..image.width - 1 {
+            let around = green(x - 1, y) + green(x + 1, y) + green(x, y - 1) + green(x, y + 1);
+            sum += (around - 4.0 * green(x, y)).powi(2);
+        }
+    }
+    sum / (image.width * image.height) as f64
+}
+
+#[test]
+fn the_budget_beats_plain_em_on_usage_and_texture_at_like_energy() {
+    let Some(pair) = pair() else { return };
+    let budget = stylise(&pair, &Params::default());
+    let nearest = stylise(&pair, &Params { mode: Mode::Nearest, sweeps: 3, ..Params::default() });
+    let energy = |o: &Output| *o.report.levels.last().unwrap().energy.last().unwrap();
+    let (rich, poor) = (budget.report.usage, nearest.report.usage);
+    assert!(rich.used > poor.used + 0.05 && rich.entropy > poor.entropy, "{rich:?} {poor:?}");
+    assert!(energy(&budget) < 1.3 * energy(&nearest), "{} {}", energy(&budget), energy(&nearest));
+    let (kept, washed) = (texture(&budget.image), texture(&nearest.image));
+    assert!(kept > washed, "{kept} {washed} of {}", texture(&pair.artwork));
+    // Every pass covers more, and the guides are followed.
+    for passes in budget.report.levels.iter().flat_map(|l| &l.passes) {
+        assert!(passes.windows(2).all(|w| w[1].coverage >= w[0].coverage));
+        assert!(passes.last().unwrap().coverage > 0.9, "{passes:?}");
+    }
+    let guide = &budget.report.guide_error.data;
+    let rms = (guide.iter().map(|v| f64::from(v * v)).sum::<f64>() / guide.len() as f64).sqrt();
+    assert!(rms < 0.05, "{rms}");
+}
+
+#[test]
+fn the_exemplars_own_guides_give_the_artwork_back() {
+    let Some(mut pair) = pair() else { return };
+    pair.guides.iter_mut().for_each(|(source, target)| *target = source.clone());
+    let output = stylise(&pair, &Params::default());
+    assert!(output.image == pair.artwork);
+    assert_eq!(output.report.usage.most, 1);
+}
