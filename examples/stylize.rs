@@ -30,6 +30,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             Some(("iterations", v)) => params.iterations = v.parse()?,
             Some(("finest", v)) => params.finest_iterations = v.parse()?,
             Some(("sweeps", v)) => params.sweeps = v.parse()?,
+            Some(("preset", v)) => {
+                params = match v {
+                    "paper" => Params::paper(),
+                    "fast" => Params::fast(),
+                    "preview" => Params::preview(),
+                    _ => return Err(format!("unknown preset {v}").into()),
+                }
+            }
             Some(("finder", v)) => {
                 params.finder = match v {
                     "patchmatch" => Finder::PatchMatch,

@@ -1,7 +1,9 @@
 //! Images quantised for matching.
 
 use crate::error::Result;
-use crate::image::try_vec;
+use crate::exec;
+use crate::image::{Image, try_vec};
+use crate::job::Job;
 
 /// Samples per pixel are padded to a multiple of this: half an AVX2 register of `i16`.
 pub const LANES: usize = 8;
@@ -27,16 +29,16 @@ impl Features {
         self.width * self.lanes
     }
 
-    /// Writes `values`, in `[0, 1]`, into consecutive channels of each pixel of a row.
-    pub fn set_row(&mut self, y: usize, first: usize, quantisers: &[Quantiser], values: &[f32]) {
-        let (start, len, lanes) = (y * self.row_len(), self.row_len(), self.lanes);
-        for (pixel, v) in
-            self.data[start..start + len].chunks_exact_mut(lanes).zip(values.chunks_exact(quantisers.len()))
-        {
-            for ((out, q), v) in pixel[first..].iter_mut().zip(quantisers).zip(v) {
-                *out = q.quantise(*v);
+    /// Quantises the channels of `image`, in `[0, 1]`, into consecutive channels of this one from `first` on.
+    pub fn fill(&mut self, first: usize, quantisers: &[Quantiser], image: &Image, job: Job) -> Result<()> {
+        let (lanes, row_len) = (self.lanes, self.row_len());
+        exec::for_rows(&mut self.data, row_len, job, |y, row| {
+            for (pixel, values) in row.chunks_exact_mut(lanes).zip(image.row(y).chunks_exact(quantisers.len())) {
+                for ((out, q), v) in pixel[first..].iter_mut().zip(quantisers).zip(values) {
+                    *out = q.quantise(*v);
+                }
             }
-        }
+        })
     }
 }
 

@@ -157,18 +157,20 @@ impl Search<'_> {
 mod tests {
     use super::super::{Kernel, Quantiser};
     use super::*;
+    use crate::image::Image;
     use crate::job::Monitor;
     use crate::rng::Rng;
 
     #[test]
     fn patches_of_one_image_are_found_in_another_that_contains_them() {
         let quantisers = Quantiser::for_weights(&[1.0, 1.0], 5);
+        let job = Monitor::default();
         let mut base = Features::new(60, 50, 2).unwrap();
-        let mut rng = Rng::new(1, &[]);
-        for y in 0..50 {
-            let values: Vec<f32> = (0..120).map(|_| rng.next_f32()).collect();
-            base.set_row(y, 0, &quantisers, &values);
-        }
+        let noise = Image::from_fn(60, 50, |x, y| {
+            let mut rng = Rng::new(1, &[x as u64, y as u64]);
+            [rng.next_f32(), rng.next_f32()]
+        });
+        base.fill(0, &quantisers, &noise.unwrap(), job.job()).unwrap();
         // The query is a piece of the base.
         let mut query = Features::new(30, 20, 2).unwrap();
         for y in 0..20 {
@@ -177,7 +179,6 @@ mod tests {
             let to = y * query.row_len();
             query.data[to..to + row.len()].copy_from_slice(&row);
         }
-        let job = Monitor::default();
         let allowed = Domain::new(60, 50, 5, None, false).unwrap();
         let table = Table::new(&Means::new(&base, 5, job.job()).unwrap(), &allowed, job.job()).unwrap();
         let means = Means::new(&query, 5, job.job()).unwrap();

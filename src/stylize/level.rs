@@ -1,8 +1,9 @@
 //! One resolution of the problem, quantised for matching.
 
 use super::guides::Channels;
-use super::{Input, Params, check_side, pca};
+use super::{Input, Mode, Params, check_side, pca};
 use crate::error::{Error, Result};
+use crate::exec;
 use crate::image::Image;
 use crate::image::colour::linear_to_srgb;
 use crate::job::Job;
@@ -48,15 +49,20 @@ impl Problem {
             let mask = source_mask.get_or_insert_with(|| vec![true; broken.len()]);
             mask.iter_mut().zip(&broken).for_each(|(m, b)| *m &= !b);
         }
-        style.data.iter_mut().for_each(|v| *v = if v.is_finite() { linear_to_srgb(*v) } else { 0.0 });
-        let known = input.known.map(|known| encode_known(known, &guides.target, artwork.channels)).transpose()?;
+        encode(&mut style, job)?;
+        let known = input.known.map(|known| encode_known(known, &guides.target, artwork.channels, job)).transpose()?;
 
         if params.preview {
             pca::compress(&mut guides, job)?;
         }
         let sides = [style.width, style.height, guides.target.width, guides.target.height];
         let shortest = sides.into_iter().min().unwrap_or(1);
-        let patch = if params.patch <= shortest { params.patch } else { (shortest - 1) | 1 };
+        // The Lit Sphere looks up single pixels; elsewhere an odd width that fits.
+        let patch = match params.mode {
+            Mode::LitSphere => 1,
+            _ if params.patch <= shortest => params.patch,
+            _ => (shortest - 1) | 1,
+        };
         let whole = Self { patch, style, guides, source_mask, target_mask, known, broken: counts };
         if params.preview && shortest >= 2 * patch { whole.halve(job) } else { Ok(whole) }
     }
@@ -123,7 +129,17 @@ fn mask(name: &str, mask: Option<&Image>, of: &Image) -> Result<Option<Vec<bool>
     Ok(Some(set))
 }
 
-fn encode_known(known: &Image, target: &Image, channels: usize) -> Result<Image> {
+/// Encodes linear colours for display; what is no number becomes black.
+pub(super) fn encode(image: &mut Image, job: Job) -> Result<()> {
+    let row_len = image.row_len();
+    exec::for_rows(&mut image.data, row_len, job, |_, row| row.iter_mut().for_each(|v| *v = encoded(*v)))
+}
+
+pub(super) fn encoded(linear: f32) -> f32 {
+    if linear.is_finite() { linear_to_srgb(linear) } else { 0.0 }
+}
+
+fn encode_known(known: &Image, target: &Image, channels: usize, job: Job) -> Result<Image> {
     known.check_same_size("known", target, "guides[0].target")?;
     if known.channels != channels {
         return Err(Error::argument(format!(
@@ -132,7 +148,7 @@ fn encode_known(known: &Image, target: &Image, channels: usize) -> Result<Image>
         )));
     }
     let mut encoded = known.clone();
-    encoded.data.iter_mut().for_each(|v| *v = if v.is_finite() { linear_to_srgb(*v) } else { 0.0 });
+    encode(&mut encoded, job)?;
     Ok(encoded)
 }
 
@@ -153,7 +169,7 @@ pub(super) struct Level<'a> {
 
 impl<'a> Level<'a> {
     /// Quantises guides (and the artwork unless its weight `colour` is 0).
-    pub fn new(problem: &'a Problem, params: &Params, colour: f64, seed: u64) -> Result<Self> {
+    pub fn new(problem: &'a Problem, params: &Params, colour: f64, seed: u64, job: Job) -> Result<Self> {
         let (style, guides) = (&problem.style, &problem.guides);
         let channels = style.channels;
         let mut weights = vec![colour / channels as f64; channels];
@@ -168,13 +184,9 @@ impl<'a> Level<'a> {
 
         let mut source = Features::new(style.width, style.height, weights.len())?;
         let mut target = Features::new(guides.target.width, guides.target.height, weights.len())?;
-        for y in 0..source.height {
-            source.set_row(y, 0, &quantisers, style.row(y));
-            source.set_row(y, channels, &guide_quantisers, guides.source.row(y));
-        }
-        for y in 0..target.height {
-            target.set_row(y, channels, &guide_quantisers, guides.target.row(y));
-        }
+        source.fill(0, &quantisers, style, job.part(0.0, 0.2))?;
+        source.fill(channels, &guide_quantisers, &guides.source, job.part(0.2, 0.6))?;
+        target.fill(channels, &guide_quantisers, &guides.target, job.part(0.6, 1.0))?;
         let allowed = Domain::new(source.width, source.height, problem.patch, problem.source_mask.as_deref(), false)?;
         // A region thinner than a patch: patches that touch it are better than none.
         let allowed = if allowed.is_empty() {
@@ -187,10 +199,8 @@ impl<'a> Level<'a> {
     }
 
     /// Takes over the colours of the picture so far.
-    pub fn set_picture(&mut self, picture: &Image) {
-        for y in 0..self.target.height {
-            self.target.set_row(y, 0, &self.colours, picture.row(y));
-        }
+    pub fn set_picture(&mut self, picture: &Image, job: Job) -> Result<()> {
+        self.target.fill(0, &self.colours, picture, job)
     }
 
     /// Takes over the colour of one pixel.

@@ -139,6 +139,29 @@ impl Default for Params {
 }
 
 impl Params {
+    /// The paper's own settings: the budget's assignment as it is, plain averages, six of everything.
+    pub fn paper() -> Self {
+        Self {
+            finest_iterations: 6,
+            sweeps: 6,
+            passes: 64,
+            settle: 0,
+            vote: Vote::Plain,
+            final_vote: Vote::Plain,
+            ..Self::default()
+        }
+    }
+
+    /// Half the time of the default.
+    pub fn fast() -> Self {
+        Self { iterations: 3, finest_iterations: 1, ..Self::default() }
+    }
+
+    /// For watching while painting.
+    pub fn preview() -> Self {
+        Self { preview: true, iterations: 2, finest_iterations: 1, passes: 3, ..Self::default() }
+    }
+
     fn check(&self) -> Result<()> {
         check_range("patch", self.patch, 1, 33)?;
         if self.patch % 2 == 0 {

@@ -38,7 +38,7 @@ pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Pu
         done += cost(l);
         let problem = if l == 0 { problem } else { &coarser[l - 1] };
         let seed = hash(params.seed, &[l as u64]);
-        let mut level = Level::new(problem, params, 1.0, seed)?;
+        let mut level = Level::new(problem, params, 1.0, seed, job.part(0.0, 0.01))?;
         if level.allowed.is_empty() {
             return Err(Error::degenerate(
                 "no exemplar patch can be used: source_mask and pixels that are no numbers leave none".to_string(),
@@ -74,7 +74,7 @@ pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Pu
                 let n = iterations as f64;
                 job.part(0.12 + 0.88 * (k as f64 + from) / n, 0.12 + 0.88 * (k as f64 + to) / n)
             };
-            level.set_picture(&picture);
+            level.set_picture(&picture, part(0.0, 0.01))?;
             match params.mode {
                 Mode::Budget | Mode::Uniform => {
                     report.passes.push(retrieve(&level, &mut current, params, k as u64, part(0.0, 0.9))?);
@@ -86,15 +86,12 @@ pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Pu
                 }
             }
             report.energy.push(energy(&current, &level));
-            let last = l == 0 && k + 1 == iterations;
-            let how = if params.mode == Mode::Greedy {
-                Vote::Nearest
-            } else if last {
-                params.final_vote
-            } else {
-                params.vote
-            };
-            paint(&mut picture, &current, problem, &level, how, part(0.9, 1.0))?;
+            // The greedy mode paints as it goes.
+            let how = if l == 0 && k + 1 == iterations { params.final_vote } else { params.vote };
+            match params.mode {
+                Mode::Greedy => restore_known(&mut picture, problem),
+                _ => paint(&mut picture, &current, problem, &level, how, part(0.9, 1.0))?,
+            }
         }
         reports.push(report);
         publish(&decode(&picture), l);
@@ -126,7 +123,7 @@ fn nearest(level: &Level, field: &mut Field, params: &Params, round: usize, job:
 /// A field that follows the guides only; among equals the same relative position wins, so that equal guides give the
 /// identity.
 fn by_guides_alone(problem: &Problem, params: &Params, seed: u64, job: Job) -> Result<Field> {
-    let level = Level::new(problem, params, 0.0, seed)?;
+    let level = Level::new(problem, params, 0.0, seed, job.part(0.0, 0.01))?;
     let search = level.forward();
     let wanted = |i: usize| level.wanted.contains_index(i);
     let mut field = Field::proportional(level.wanted.width, level.wanted.height, &level.allowed)?;

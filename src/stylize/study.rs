@@ -1,12 +1,11 @@
 //! Shading study (§4.2): the artist goes on painting, and what was made from the changed part of the artwork is made
 //! anew, starting from the field of the last result. The cost of matching is that of the places concerned.
 
-use super::level::{Level, Problem};
+use super::level::{Level, Problem, encode, encoded};
 use super::schedule::{self, paint};
 use super::{Input, Output, Params};
 use crate::error::{Error, Result};
 use crate::image::Image;
-use crate::image::colour::linear_to_srgb;
 use crate::job::Job;
 use crate::patch::{Field, NONE, Sweep, halve, halve_mask, unpack};
 
@@ -33,13 +32,13 @@ impl Study {
         params.check()?;
         let problem = Problem::new(input, params, job.part(0.0, 0.03))?;
         let output = schedule::run(&problem, input, params, &|_, _| (), job.part(0.03, 1.0))?;
-        let mut encoded = input.artwork.clone();
-        encoded.data.iter_mut().for_each(|v| *v = encode(*v));
+        let mut display = input.artwork.clone();
+        encode(&mut display, job)?;
         let study = Self {
             problem,
             params: params.clone(),
             artwork: input.artwork.clone(),
-            encoded,
+            encoded: display,
             known: input.known.cloned(),
             field: output.field.clone(),
         };
@@ -63,7 +62,7 @@ impl Study {
         for i in (0..changed.len()).filter(|&i| changed[i]) {
             let pixel = i * channels..(i + 1) * channels;
             self.artwork.data[pixel.clone()].copy_from_slice(&artwork.data[pixel.clone()]);
-            self.encoded.data[pixel.clone()].iter_mut().zip(&artwork.data[pixel]).for_each(|(e, v)| *e = encode(*v));
+            self.encoded.data[pixel.clone()].iter_mut().zip(&artwork.data[pixel]).for_each(|(e, v)| *e = encoded(*v));
         }
         if self.problem.is_of(artwork) {
             self.problem.style.data.copy_from_slice(&self.encoded.data);
@@ -76,13 +75,9 @@ impl Study {
     }
 }
 
-fn encode(linear: f32) -> f32 {
-    if linear.is_finite() { linear_to_srgb(linear) } else { 0.0 }
-}
-
 /// Matches every target patch anew that shows a changed exemplar pixel, and returns the encoded picture.
 fn rematch(problem: &Problem, field: &mut Field, changed: &[bool], params: &Params, job: Job) -> Result<Image> {
-    let mut level = Level::new(problem, params, 1.0, params.seed)?;
+    let mut level = Level::new(problem, params, 1.0, params.seed, job.part(0.0, 0.05))?;
     let (patch, width) = (problem.patch, problem.style.width);
     let concerned: Vec<bool> = (field.at.iter().enumerate())
         .map(|(i, &at)| {
@@ -100,7 +95,7 @@ fn rematch(problem: &Problem, field: &mut Field, changed: &[bool], params: &Para
             let n = ROUNDS as f64;
             job.part(0.1 + 0.9 * (round as f64 + from) / n, 0.1 + 0.9 * (round as f64 + to) / n)
         };
-        level.set_picture(&picture);
+        level.set_picture(&picture, part(0.0, 0.05))?;
         let search = level.forward();
         search.rescore(field, part(0.0, 0.2), |i| concerned[i])?;
         let sweep = Sweep { index: round as u64, reach: REACH, fresh: 4 };

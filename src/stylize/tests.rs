@@ -72,7 +72,8 @@ fn results_do_not_depend_on_the_number_of_threads() {
     for params in [
         Params { levels: 3, iterations: 2, ..Params::default() },
         Params { mode: Mode::Nearest, levels: 3, iterations: 2, ..Params::default() },
-        Params { preview: true, levels: 2, iterations: 1, ..Params::default() },
+        Params { iterations: 1, finest_iterations: 2, passes: 4, ..Params::paper() },
+        Params::preview(),
         Params { finder: Finder::Table, levels: 2, iterations: 1, ..Params::default() },
     ] {
         let with = |threads: usize| {
@@ -309,7 +310,7 @@ fn a_study_follows_its_artwork_where_it_changed_and_nowhere_else() {
     let mut art = artwork(&a);
     let guides = [guide(&a, &b)];
     for preview in [false, true] {
-        let params = Params { levels: 2, iterations: 2, preview, ..Params::default() };
+        let params = if preview { Params::preview() } else { Params::fast() };
         let (mut study, before) = Study::new(&input(&art, &guides), &params, Monitor::default().job()).unwrap();
         let whole = stylise(&input(&art, &guides), &params).unwrap();
         assert!(before.image == whole.image);
