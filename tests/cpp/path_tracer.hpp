@@ -114,8 +114,8 @@ private:
             for (int axis = 0; axis < 2 && !mesh.uvs.empty(); ++axis)
                 uv[axis] += mesh.uvs[2 * std::size_t(corners[i]) + axis] * weight[i];
         }
-        const Vec a = mesh.corner(hit.hit.primID, 0), b = mesh.corner(hit.hit.primID, 1), c = mesh.corner(hit.hit.primID, 2);
-        point.normal = normalised(cross(b - a, c - a));
+        const Vec a = mesh.corner(hit.hit.primID, 0);
+        point.normal = normalised(cross(mesh.corner(hit.hit.primID, 1) - a, mesh.corner(hit.hit.primID, 2) - a));
         if (dot(point.normal, direction) > 0)
             point.normal = point.normal * -1;
         // A smooth normal means the axis; one that the viewer would see from behind is tilted until seen from the side.
