@@ -31,8 +31,9 @@ pub fn strokes(exemplar: &Exemplar, width: usize, height: usize) -> Result<Strok
         on_ceiling(lamp(2, 2) + grid.period * Vec2::new(-0.1, 0.5)),
     ];
     let not_plane = [
-        vec![Vec3::new(0.01, 2.3, 5.5), Vec3::new(0.01, 1.6, 3.5)],
-        vec![Vec3::new(5.39, 2.4, 4.0), Vec3::new(5.39, 1.5, 2.0)],
+        vec![Vec3::new(0.01, 2.5, 2.2), Vec3::new(0.01, 2.0, 1.2)],
+        vec![Vec3::new(5.39, 2.6, 5.0), Vec3::new(5.39, 2.5, 2.5)],
+        vec![Vec3::new(5.39, 2.2, 4.0), Vec3::new(5.39, 1.5, 2.0)],
         vec![Vec3::new(1.0, 2.4, 0.01), Vec3::new(4.4, 2.0, 0.01)],
         vec![Vec3::new(2.2, 0.0, 3.5), Vec3::new(2.6, 0.0, 2.0)],
     ];
