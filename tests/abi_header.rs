@@ -20,6 +20,7 @@ const GROUPS: &[&str] = &[
     "job",
     "scene",
     "scene_parts",
+    "scene_lights",
     "rectify",
     "features",
     "segment",
@@ -28,6 +29,7 @@ const GROUPS: &[&str] = &[
     "relight",
     "transfer",
     "transfer_results",
+    "demo_photo",
 ];
 
 #[test]
@@ -290,6 +292,8 @@ layouts! {
     luxfer_mesh_params: struct_size material name vertex_count positions position_stride normals normal_stride uvs
         uv_stride triangle_count indices index_stride;
     luxfer_camera_params: struct_size fov_y position target up reserved;
+    luxfer_demo_photo_params: struct_size width height samples seed;
+    luxfer_light_params: struct_size kind position direction intensity inner_angle outer_angle reserved;
     luxfer_features_params: struct_size near_plane far_plane normal_radius;
     luxfer_features_report: struct_size depth_source depth_confidence replaced_pixels;
     luxfer_segment_params: struct_size samples_per_class channels reserved ridge seed;
