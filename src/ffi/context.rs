@@ -17,7 +17,7 @@
 use super::guard::{enter, guard, lock};
 use super::handle::{self, Handle, Owned, tag};
 use super::params::{self, Versioned};
-use super::pointer::{Out, set_optional};
+use super::pointer::{Out, copy_text};
 use super::status::luxfer_status;
 use crate::error::{Error, ErrorKind, Result};
 use crate::exec::Pool;
@@ -188,24 +188,8 @@ pub unsafe extern "C" fn luxfer_context_last_error(
     needed: *mut usize,
 ) -> luxfer_status {
     enter(context, |object| {
-        if buffer.is_null() && capacity > 0 {
-            return Err(Error::argument(format!("buffer is NULL; it must have capacity = {capacity} bytes")));
-        }
         let messages = lock(&object.context().messages);
         let message = messages.by_thread.get(&thread::current().id()).map_or("", |(_, text)| text.as_str());
-        // Cut between characters, never inside one.
-        let mut len = message.len().min(capacity.saturating_sub(1));
-        while !message.is_char_boundary(len) {
-            len -= 1;
-        }
-        if capacity > 0 {
-            // SAFETY: not null; `len` + 1 <= `capacity` bytes, which the caller says are writable.
-            unsafe {
-                std::ptr::copy_nonoverlapping(message.as_ptr(), buffer.cast(), len);
-                buffer.add(len).write(0);
-            }
-        }
-        set_optional(needed, message.len() + 1);
-        Ok(())
+        copy_text(message, buffer, capacity, needed)
     })
 }

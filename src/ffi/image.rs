@@ -188,6 +188,18 @@ impl Pixels {
         Arc::new(Self { context: context.clone(), source: Source::Own(Arc::new(image), charge) })
     }
 
+    /// An image that the library makes at the caller's request, counted in the budget before it is made.
+    pub(super) fn counted(
+        context: &Arc<Context>,
+        width: usize,
+        height: usize,
+        channels: usize,
+        make: impl FnOnce() -> Result<Image>,
+    ) -> Result<Arc<Self>> {
+        let charge = context.charge(cost(width, height, channels))?;
+        Ok(Self::own(context, make()?, charge))
+    }
+
     /// An image inside a result, shared with it.
     pub(super) fn part<O: Send + Sync + 'static>(
         context: &Arc<Context>,

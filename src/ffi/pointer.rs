@@ -42,6 +42,28 @@ pub(super) fn text<'a>(text: *const c_char, name: &str) -> Result<&'a str> {
     })
 }
 
+/// Copies a text into the caller's `capacity` bytes with a zero at its end, cut if need be; tells the capacity for all of
+/// it, unless `needed` is null.
+pub(super) fn copy_text(text: &str, buffer: *mut c_char, capacity: usize, needed: *mut usize) -> Result<()> {
+    if buffer.is_null() && capacity > 0 {
+        return Err(Error::argument(format!("buffer is NULL; it must have capacity = {capacity} bytes")));
+    }
+    // Cut between characters, never inside one.
+    let mut len = text.len().min(capacity.saturating_sub(1));
+    while !text.is_char_boundary(len) {
+        len -= 1;
+    }
+    if capacity > 0 {
+        // SAFETY: not null; `len` + 1 <= `capacity` bytes, which the caller says are writable.
+        unsafe {
+            std::ptr::copy_nonoverlapping(text.as_ptr(), buffer.cast(), len);
+            buffer.add(len).write(0);
+        }
+    }
+    set_optional(needed, text.len() + 1);
+    Ok(())
+}
+
 /// `len` bytes in the caller's memory.
 pub(super) fn bytes<'a>(data: *const u8, len: usize, name: &str) -> Result<&'a [u8]> {
     check_region(data, len, name)?;

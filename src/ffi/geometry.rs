@@ -1,0 +1,87 @@
+//! Plane geometry
+//!
+//! Maps between two views of a plane, as 3 x 3 matrices of homogeneous points, row by row. Points are in pixels, x right,
+//! y down, the top-left pixel's centre at (0.5, 0.5). These calls return when they are done.
+
+use super::context::luxfer_context;
+use super::guard::enter;
+use super::handle::{self, Owned};
+use super::image::{Pixels, luxfer_image};
+use super::pointer::{Out, bytes, bytes_mut};
+use super::status::luxfer_status;
+use crate::error::{Error, Result, check_range};
+use crate::geometry::Homography;
+use crate::image::MAX_SIDE;
+use crate::job::Monitor;
+use crate::rectify;
+use glam::{DMat3, DVec2};
+
+/// Finds the map that takes four points to four points: from and to hold x and y of each, homography receives its nine
+/// entries, of unit Frobenius norm. Any thread.
+/// LUXFER_DEGENERATE if three of the points lie on one line, coincide or are not finite.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_homography_from_corners(
+    context: *mut luxfer_context,
+    from: *const f64,
+    to: *const f64,
+    homography: *mut f64,
+) -> luxfer_status {
+    enter(context, |_| {
+        let out = bytes_mut(homography.cast(), 9 * size_of::<f64>(), "homography")?;
+        let found = Homography::from_corners(corners(from, "from")?, corners(to, "to")?)?;
+        for (place, value) in out.chunks_exact_mut(size_of::<f64>()).zip(found.0.transpose().to_cols_array()) {
+            place.copy_from_slice(&value.to_ne_bytes());
+        }
+        Ok(())
+    })
+}
+
+/// Makes an image of width x height pixels, each in [1, 65536], whose pixel at p is that of the source at to_source(p), nine
+/// entries; 0 where that is outside the source. Interpolated where the source is magnified, averaged over the pixel's
+/// footprint where it is minified. Takes some milliseconds for each megapixel. The caller releases *warped. Any thread.
+/// LUXFER_INVALID_ARGUMENT if an entry is not finite or a size out of range; LUXFER_OUT_OF_MEMORY beyond the memory budget.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_image_warp(
+    source: *mut luxfer_image,
+    to_source: *const f64,
+    width: u32,
+    height: u32,
+    warped: *mut *mut luxfer_image,
+) -> luxfer_status {
+    enter(source, |object| {
+        let out = Out::new(warped, "warped")?;
+        let map = Homography(DMat3::from_cols_array(&numbers(to_source, "to_source")?).transpose());
+        let (width, height) = (width as usize, height as usize);
+        check_range("width", width, 1, MAX_SIDE)?;
+        check_range("height", height, 1, MAX_SIDE)?;
+        let source = object.image();
+        let image = Pixels::counted(object.context(), width, height, source.channels, || {
+            let monitor = Monitor::default();
+            object.context().pool.run(|| rectify::warp(source, &map, width, height, monitor.job()))
+        })?;
+        out.set(handle::give(image));
+        Ok(())
+    })
+}
+
+fn corners(place: *const f64, name: &str) -> Result<[DVec2; 4]> {
+    let values: [f64; 8] = numbers(place, name)?;
+    let points = std::array::from_fn(|i| DVec2::new(values[2 * i], values[2 * i + 1]));
+    if points.iter().all(|p: &DVec2| p.is_finite()) {
+        Ok(points)
+    } else {
+        Err(Error::degenerate(format!("{name} is {values:?}; every coordinate must be finite")))
+    }
+}
+
+/// `N` numbers of the caller's, at any alignment.
+fn numbers<const N: usize>(place: *const f64, name: &str) -> Result<[f64; N]> {
+    let bytes = bytes(place.cast(), N * size_of::<f64>(), name)?;
+    let mut numbers = [0.0; N];
+    for (number, raw) in numbers.iter_mut().zip(bytes.chunks_exact(size_of::<f64>())) {
+        let mut word = [0; size_of::<f64>()];
+        word.copy_from_slice(raw);
+        *number = f64::from_ne_bytes(word);
+    }
+    Ok(numbers)
+}

@@ -1,0 +1,104 @@
+//! Scene queries
+//!
+//! What the library itself sees in a scene: the nearest hits of rays. These calls return when they are done.
+
+use super::guard::enter;
+use super::handle::Owned;
+use super::pointer::{bytes, bytes_mut};
+use super::scene::luxfer_scene;
+use super::status::luxfer_status;
+use crate::error::{Error, Result};
+use crate::exec;
+use crate::job::Monitor;
+use crate::render::World;
+use crate::scene::accel::Ray;
+use glam::Vec3;
+
+/// No mesh, no texture.
+pub const LUXFER_NONE: u32 = 0xFFFF_FFFF;
+
+/// A half-line. An element of arrays, so it will never change.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_ray {
+    /// Where it starts, in metres.
+    pub origin: [f32; 3],
+    /// Where it goes; need not be of unit length, but not 0.
+    pub direction: [f32; 3],
+    /// Hits lie at distances in (0, t_max), in units of direction; may be infinite.
+    pub t_max: f32,
+}
+
+/// Where a ray meets a scene. An element of arrays, so it will never change.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_hit {
+    /// Distance in units of the ray's direction; infinite for a miss.
+    pub t: f32,
+    /// Index of the mesh; LUXFER_NONE for a miss.
+    pub mesh: u32,
+    /// Index of the triangle in its mesh; LUXFER_NONE for a miss.
+    pub triangle: u32,
+    /// Barycentric coordinate of the triangle's second corner.
+    pub u: f32,
+    /// Barycentric coordinate of the triangle's third corner.
+    pub v: f32,
+}
+
+/// Rays that are one piece of work.
+const BLOCK: usize = 4096;
+
+/// Finds the nearest hits of count rays, all surfaces taken as opaque and two-sided; equal distances are decided by the
+/// lower mesh and triangle. Rays that are not finite or have no direction hit nothing. The first call after a change of the
+/// scene, and after it was loaded, makes it ready for tracing. Any thread.
+/// LUXFER_INVALID_ARGUMENT if the scene is not valid, the message tells where.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_scene_intersect(
+    scene: *mut luxfer_scene,
+    rays: *const luxfer_ray,
+    count: usize,
+    hits: *mut luxfer_hit,
+) -> luxfer_status {
+    enter(scene, |object| {
+        if count == 0 {
+            return Ok(());
+        }
+        let rays = bytes(rays.cast(), size_of_all::<luxfer_ray>(count)?, "rays")?;
+        let hits = bytes_mut(hits.cast(), size_of_all::<luxfer_hit>(count)?, "hits")?;
+        let snapshot = object.snapshot();
+        let monitor = Monitor::default();
+        let blocks = object.context().pool.run(|| {
+            let world = object.world(&snapshot, monitor.job().part(0.0, 0.5))?;
+            exec::map(count.div_ceil(BLOCK), monitor.job().part(0.5, 1.0), |i| {
+                let block = rays.chunks(BLOCK * size_of::<luxfer_ray>()).nth(i).unwrap_or_default();
+                block.chunks_exact(size_of::<luxfer_ray>()).map(|ray| nearest(&world, ray)).collect::<Vec<_>>()
+            })
+        })?;
+        for (place, hit) in hits.chunks_exact_mut(size_of::<luxfer_hit>()).zip(blocks.into_iter().flatten()) {
+            place.copy_from_slice(bytemuck::cast_slice(&hit));
+        }
+        Ok(())
+    })
+}
+
+/// The fields of the hit of a ray, as words in the order of `luxfer_hit`.
+fn nearest(world: &World, ray: &[u8]) -> [u32; 5] {
+    let mut fields = [0.0f32; 7];
+    for (field, raw) in fields.iter_mut().zip(ray.chunks_exact(4)) {
+        *field = f32::from_ne_bytes([raw[0], raw[1], raw[2], raw[3]]);
+    }
+    let [ox, oy, oz, dx, dy, dz, t_max] = fields;
+    let ray = Ray { origin: Vec3::new(ox, oy, oz), direction: Vec3::new(dx, dy, dz), t_max };
+    match world.accel().closest(&ray, |_| true) {
+        Some(hit) => {
+            let (mesh, triangle) = world.locate(hit.triangle);
+            [hit.t.to_bits(), mesh, triangle, hit.u.to_bits(), hit.v.to_bits()]
+        }
+        None => [f32::INFINITY.to_bits(), LUXFER_NONE, LUXFER_NONE, 0, 0],
+    }
+}
+
+fn size_of_all<T>(count: usize) -> Result<usize> {
+    let size = count.checked_mul(size_of::<T>());
+    size.ok_or_else(|| Error::argument(format!("count is {count}; that is more than the address space holds")))
+}
