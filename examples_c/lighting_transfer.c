@@ -136,10 +136,11 @@ static void generate_input(luxfer_transfer *transfer, luxfer_image **photo, luxf
 
 /* Gives a scene without lights one at its camera, so that there is something to see. */
 static void add_headlight(luxfer_scene *scene) {
-    luxfer_scene_counts counts = {sizeof counts};
+    luxfer_scene_counts counts;
     luxfer_camera_params camera;
     luxfer_light_params light;
     int i;
+    counts.struct_size = sizeof counts;
     check(luxfer_scene_get_counts(scene, &counts), "scene");
     if (counts.lights > 0) return;
     check(luxfer_camera_params_init(&camera, sizeof camera), "camera");
@@ -174,7 +175,8 @@ static void write_luminaires(const options *o, luxfer_transfer *transfer, unsign
     if (!file) exit(1);
     fprintf(file, "x_m,y_m,z_m,length_m,width_m,area_m2,red_cd_m2,green_cd_m2,blue_cd_m2,flux_lm\n");
     for (i = 0; i < count; i++) {
-        luxfer_fixture f = {sizeof f};
+        luxfer_fixture f;
+        f.struct_size = sizeof f;
         check(luxfer_transfer_get_fixture(transfer, i, &f), "fixture");
         fprintf(file, "%.4f,%.4f,%.4f,%.4f,%.4f,%.5f,%.2f,%.2f,%.2f,%.2f\n", f.position[0], f.position[1], f.position[2],
                 f.size[0], f.size[1], f.area, f.radiance[0], f.radiance[1], f.radiance[2], f.flux);
@@ -223,11 +225,13 @@ int main(int argc, char **argv) {
     luxfer_transfer *transfer = NULL;
     luxfer_transfer_params params;
     luxfer_render_params render;
-    luxfer_transfer_report report = {sizeof report};
-    luxfer_relight_report solution = {sizeof solution};
+    luxfer_transfer_report report;
+    luxfer_relight_report solution;
     luxfer_image *photo = NULL, *lit = NULL, *emission = NULL, *before, *white;
     luxfer_scene *scene = NULL, *lit_scene = NULL, *white_scene = NULL;
     luxfer_job *job = NULL;
+    report.struct_size = sizeof report;
+    solution.struct_size = sizeof solution;
     check(luxfer_context_create(NULL, &context), "context");
     check(luxfer_transfer_create(context, &transfer), "transfer");
     if (o.photo) load_input(&o, transfer, &photo, &scene);

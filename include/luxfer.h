@@ -642,6 +642,263 @@ luxfer_status luxfer_scene_get_camera(luxfer_scene *scene,
                                       luxfer_camera_params *params);
 
 /* ====================================================================================================================
+ * Lights of a scene
+ *
+ * Lights without a surface: points, spots, and the parallel light of something far away. Lights with a surface are
+ * materials that emit.
+ * ==================================================================================================================== */
+
+/** A kind of light: a LUXFER_LIGHT_ value. */
+typedef int32_t luxfer_light_kind;
+
+/** A light without a surface. Fill it with luxfer_light_params_init. */
+typedef struct luxfer_light_params {
+    /** sizeof(luxfer_light_params), set by luxfer_light_params_init. */
+    uint32_t struct_size;
+    /** LUXFER_LIGHT_ value; default LUXFER_LIGHT_POINT. */
+    luxfer_light_kind kind;
+    /** Where a point or a spot stands, in metres; default (0, 0, 0). */
+    float position[3];
+    /** Where a spot or a directional light shines; any length but 0; default (0, -1, 0). */
+    float direction[3];
+    /**
+     * Luminous intensity per channel in cd, on the axis of a spot; of a directional light the illuminance in lux on a
+     * surface that faces it. Each >= 0; default (1, 1, 1).
+     */
+    float intensity[3];
+    /** Half the angle of a spot's cone of full intensity, in radians, in [0, outer_angle]; default 0. */
+    float inner_angle;
+    /** Half the angle of a spot's whole cone, in radians, in (0, pi / 2]; default pi / 4. */
+    float outer_angle;
+    /** Must be 0. */
+    uint32_t reserved;
+} luxfer_light_params;
+
+/** Shines the same in every direction. */
+#define LUXFER_LIGHT_POINT 0
+
+/** Shines in a cone. */
+#define LUXFER_LIGHT_SPOT 1
+
+/** Shines from infinitely far away. */
+#define LUXFER_LIGHT_DIRECTIONAL 2
+
+/**
+ * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+ */
+luxfer_status luxfer_light_params_init(luxfer_light_params *params,
+                                       size_t size);
+
+/**
+ * Adds a light; *index, unless NULL, becomes its index. params may be NULL for the defaults. Any thread.
+ * LUXFER_INVALID_ARGUMENT if a value is out of range.
+ */
+luxfer_status luxfer_scene_add_light(luxfer_scene *scene,
+                                     const luxfer_light_params *params,
+                                     uint32_t *index);
+
+/* ====================================================================================================================
+ * Scene queries
+ *
+ * What the library itself sees in a scene: the nearest hits of rays. These calls return when they are done.
+ * ==================================================================================================================== */
+
+/** No mesh, no texture. */
+#define LUXFER_NONE 4294967295
+
+/** A half-line. An element of arrays, so it will never change. */
+typedef struct luxfer_ray {
+    /** Where it starts, in metres. */
+    float origin[3];
+    /** Where it goes; need not be of unit length, but not 0. */
+    float direction[3];
+    /** Hits lie at distances in (0, t_max), in units of direction; may be infinite. */
+    float t_max;
+} luxfer_ray;
+
+/** Where a ray meets a scene. An element of arrays, so it will never change. */
+typedef struct luxfer_hit {
+    /** Distance in units of the ray's direction; infinite for a miss. */
+    float t;
+    /** Index of the mesh; LUXFER_NONE for a miss. */
+    uint32_t mesh;
+    /** Index of the triangle in its mesh; LUXFER_NONE for a miss. */
+    uint32_t triangle;
+    /** Barycentric coordinate of the triangle's second corner. */
+    float u;
+    /** Barycentric coordinate of the triangle's third corner. */
+    float v;
+} luxfer_hit;
+
+/**
+ * Finds the nearest hits of count rays, all surfaces taken as opaque and two-sided; equal distances are decided by the
+ * lower mesh and triangle. Rays that are not finite or have no direction hit nothing. The first call after a change of the
+ * scene, and after it was loaded, makes it ready for tracing. Any thread.
+ * LUXFER_INVALID_ARGUMENT if the scene is not valid, the message tells where.
+ */
+luxfer_status luxfer_scene_intersect(luxfer_scene *scene,
+                                     const luxfer_ray *rays,
+                                     size_t count,
+                                     luxfer_hit *hits);
+
+/* ====================================================================================================================
+ * Scene read-back
+ *
+ * What a scene holds, element by element: meshes, materials and the textures they use. Together with the counts of
+ * luxfer_scene_get_counts a host can copy a whole scene.
+ * ==================================================================================================================== */
+
+/** A mesh of a scene. Set struct_size before the call. */
+typedef struct luxfer_mesh_info {
+    /** sizeof(luxfer_mesh_info), set by the caller. */
+    uint32_t struct_size;
+    /** Index of its material. */
+    uint32_t material;
+    /** Number of vertices. */
+    size_t vertex_count;
+    /** Number of triangles. */
+    size_t triangle_count;
+    /** 1 if it has a normal for each vertex, 0 if its faces are flat. */
+    uint32_t has_normals;
+    /** Sum of 1 if it has the first set of texture coordinates and 2 if it has the second. */
+    uint32_t uv_sets;
+} luxfer_mesh_info;
+
+/** What a material uses a texture for: a LUXFER_TEXTURE_ value. */
+typedef int32_t luxfer_texture_role;
+
+/** How a texture continues beyond its edges: a LUXFER_WRAP_ value. */
+typedef int32_t luxfer_wrap;
+
+/** A texture as a material uses it. Set struct_size before the call. */
+typedef struct luxfer_texture_use {
+    /** sizeof(luxfer_texture_use), set by the caller. */
+    uint32_t struct_size;
+    /** Index of the texture; LUXFER_NONE if there is none, and what follows is 0. */
+    uint32_t texture;
+    /** Which of the mesh's sets of texture coordinates it is looked up with, 0 or 1. */
+    uint32_t uv_set;
+    /** LUXFER_WRAP_ value, along u. */
+    luxfer_wrap wrap_u;
+    /** LUXFER_WRAP_ value, along v. */
+    luxfer_wrap wrap_v;
+    /** Two rows of three, applied to (u, v, 1) before the look-up. */
+    float transform[6];
+} luxfer_texture_use;
+
+/** Multiplies the base colour. */
+#define LUXFER_TEXTURE_BASE_COLOR 0
+
+/** Green multiplies the roughness, blue the metallic share. */
+#define LUXFER_TEXTURE_METALLIC_ROUGHNESS 1
+
+/** Normals in tangent space. */
+#define LUXFER_TEXTURE_NORMAL 2
+
+/** Multiplies the emission; looked up without interpolation. */
+#define LUXFER_TEXTURE_EMISSION 3
+
+/** It repeats. */
+#define LUXFER_WRAP_REPEAT 0
+
+/** Its border goes on. */
+#define LUXFER_WRAP_CLAMP 1
+
+/** It repeats, every other one mirrored. */
+#define LUXFER_WRAP_MIRROR 2
+
+/**
+ * Tells what a mesh has. Any thread.
+ * LUXFER_NOT_FOUND if there is no such mesh.
+ */
+luxfer_status luxfer_scene_get_mesh(luxfer_scene *scene, uint32_t index, luxfer_mesh_info *info);
+
+/**
+ * Copies the name of a mesh into buffer, as luxfer_context_last_error does a message. Any thread.
+ * LUXFER_NOT_FOUND if there is no such mesh.
+ */
+luxfer_status luxfer_scene_get_mesh_name(luxfer_scene *scene,
+                                         uint32_t index,
+                                         char *buffer,
+                                         size_t capacity,
+                                         size_t *needed);
+
+/**
+ * Copies a mesh into the caller's packed arrays, of which any may be NULL: positions and normals, three floats for each
+ * vertex, and indices, three for each triangle. The capacities are in vertices and triangles. Any thread.
+ * LUXFER_NOT_FOUND if there is no such mesh, or it has no normals where they are asked for; LUXFER_INVALID_ARGUMENT if a
+ * capacity is too small.
+ */
+luxfer_status luxfer_scene_read_mesh(luxfer_scene *scene,
+                                     uint32_t index,
+                                     size_t vertex_capacity,
+                                     float *positions,
+                                     float *normals,
+                                     size_t triangle_capacity,
+                                     uint32_t *indices);
+
+/**
+ * Copies a set of texture coordinates, 0 or 1, into the caller's packed array of two floats for each vertex; capacity is
+ * in vertices. Any thread.
+ * LUXFER_NOT_FOUND if there is no such mesh or it has no such set; LUXFER_INVALID_ARGUMENT if the capacity is too small.
+ */
+luxfer_status luxfer_scene_read_mesh_uvs(luxfer_scene *scene,
+                                         uint32_t index,
+                                         uint32_t uv_set,
+                                         size_t capacity,
+                                         float *uvs);
+
+/**
+ * Reads a material; set params->struct_size before the call. Its name becomes NULL. Any thread.
+ * LUXFER_NOT_FOUND if there is no such material.
+ */
+luxfer_status luxfer_scene_get_material(luxfer_scene *scene, uint32_t index, luxfer_material_params *params);
+
+/**
+ * Tells which texture a material uses for a purpose, and how; role is a LUXFER_TEXTURE_ value. Any thread.
+ * LUXFER_NOT_FOUND if there is no such material; LUXFER_INVALID_ARGUMENT for another role.
+ */
+luxfer_status luxfer_scene_get_material_texture(luxfer_scene *scene,
+                                                uint32_t material_index,
+                                                luxfer_texture_role role,
+                                                luxfer_texture_use *texture_use);
+
+/**
+ * Gets a texture as an image, linear. The caller releases *image. Any thread.
+ * LUXFER_NOT_FOUND if there is no such texture.
+ */
+luxfer_status luxfer_scene_get_texture(luxfer_scene *scene, uint32_t index, luxfer_image **image);
+
+/* ====================================================================================================================
+ * Plane geometry
+ *
+ * Maps between two views of a plane, as 3 x 3 matrices of homogeneous points, row by row. Points are in pixels, x right,
+ * y down, the top-left pixel's centre at (0.5, 0.5). These calls return when they are done.
+ * ==================================================================================================================== */
+
+/**
+ * Finds the map that takes four points to four points: from and to hold x and y of each, homography receives its nine
+ * entries, of unit Frobenius norm. Any thread.
+ * LUXFER_DEGENERATE if three of the points lie on one line, coincide or are not finite.
+ */
+luxfer_status luxfer_homography_from_corners(luxfer_context *context,
+                                             const double *from,
+                                             const double *to,
+                                             double *homography);
+
+/**
+ * Makes an image of width x height pixels, each in [1, 65536], whose pixel at p is that of the source at to_source(p), nine
+ * entries; 0 where that is outside the source. Interpolated where the source is magnified, averaged over the pixel's
+ * footprint where it is minified. Takes some milliseconds for each megapixel. The caller releases *warped. Any thread.
+ * LUXFER_INVALID_ARGUMENT if an entry is not finite or a size out of range; LUXFER_OUT_OF_MEMORY beyond the memory budget.
+ */
+luxfer_status luxfer_image_warp(luxfer_image *source,
+                                const double *to_source,
+                                uint32_t width,
+                                uint32_t height,
+                                luxfer_image **warped);
+
+/* ====================================================================================================================
  * Rectification
  *
  * From the straight lines of a photo to vanishing points and the camera, and, where a mask marks a plane, to that plane
@@ -1820,6 +2077,91 @@ luxfer_status luxfer_transfer_get_solution(luxfer_transfer *transfer, luxfer_rel
 luxfer_status luxfer_transfer_get_fixture(luxfer_transfer *transfer,
                                           uint32_t index,
                                           luxfer_fixture *fixture);
+
+/* ====================================================================================================================
+ * Demonstration
+ *
+ * Input that the library makes itself, for examples and tests: the same bits every time, nothing loaded from files.
+ * ==================================================================================================================== */
+
+/** A generated scene: a LUXFER_DEMO_ value. */
+typedef int32_t luxfer_demo;
+
+/** A furnished room without any light; its ceiling is the object "Ceiling". */
+#define LUXFER_DEMO_TARGET_ROOM 0
+
+/** An office under a grid of luminaires; camera 0 takes the photo. */
+#define LUXFER_DEMO_EXEMPLAR_ROOM 1
+
+/**
+ * Generates a scene; which is a LUXFER_DEMO_ value. The caller releases *scene. Any thread.
+ * LUXFER_INVALID_ARGUMENT for another value; LUXFER_OUT_OF_MEMORY beyond the memory budget.
+ */
+luxfer_status luxfer_demo_scene(luxfer_context *context, luxfer_demo which, luxfer_scene **scene);
+
+/* ====================================================================================================================
+ * Demonstration photo
+ *
+ * A photo of the generated office, as a camera would take it, and the strokes a user would paint on it: what a lighting
+ * transfer needs, without a file.
+ * ==================================================================================================================== */
+
+/** A photo in the making. See luxfer_demo_photo_create. */
+typedef struct luxfer_demo_photo luxfer_demo_photo;
+
+/** Settings of the photo. Fill them with luxfer_demo_photo_params_init. */
+typedef struct luxfer_demo_photo_params {
+    /** sizeof(luxfer_demo_photo_params), set by luxfer_demo_photo_params_init. */
+    uint32_t struct_size;
+    /** Width in pixels, in [16, 8192]; default 660. */
+    uint32_t width;
+    /** Height in pixels, in [16, 8192]; default 440. The camera is made for 3:2. */
+    uint32_t height;
+    /** Paths per pixel, in [2, 1048576]; default 12: few enough to leave some noise. */
+    uint32_t samples;
+    /** Seed of paths and noise; default 1. */
+    uint64_t seed;
+} luxfer_demo_photo_params;
+
+/** An image of the demonstration: a LUXFER_DEMO_PHOTO_ value. */
+typedef int32_t luxfer_demo_photo_image;
+
+/** The photo: linear RGB, 1 = display white; its lamps are clipped. */
+#define LUXFER_DEMO_PHOTO_PICTURE 0
+
+/** The strokes on it, in the colours of luxfer_segment_add_strokes_image. */
+#define LUXFER_DEMO_PHOTO_STROKES 1
+
+/**
+ * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+ */
+luxfer_status luxfer_demo_photo_params_init(luxfer_demo_photo_params *params,
+                                            size_t size);
+
+/** Creates the stage. The caller releases *demo. Any thread. */
+luxfer_status luxfer_demo_photo_create(luxfer_context *context, luxfer_demo_photo **demo);
+
+/**
+ * Starts a job that takes the photo. params may be NULL for the defaults. The caller releases *job. Any thread.
+ * LUXFER_INVALID_OPERATION if a job runs already; LUXFER_INVALID_ARGUMENT if a setting is out of range.
+ */
+luxfer_status luxfer_demo_photo_start(luxfer_demo_photo *demo,
+                                      const luxfer_demo_photo_params *params,
+                                      luxfer_job **job);
+
+/**
+ * Gets an image; which is a LUXFER_DEMO_PHOTO_ value. The caller releases *image. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded.
+ */
+luxfer_status luxfer_demo_photo_get_image(luxfer_demo_photo *demo,
+                                          luxfer_demo_photo_image which,
+                                          luxfer_image **image);
+
+/** Adds a reference. Any thread. */
+luxfer_status luxfer_demo_photo_retain(luxfer_demo_photo *demo);
+
+/** Gives a reference back; a job that runs goes on. Any thread. */
+luxfer_status luxfer_demo_photo_release(luxfer_demo_photo *demo);
 #ifdef __cplusplus
 }
 #endif
