@@ -642,6 +642,62 @@ luxfer_status luxfer_scene_get_camera(luxfer_scene *scene,
                                       luxfer_camera_params *params);
 
 /* ====================================================================================================================
+ * Lights of a scene
+ *
+ * Lights without a surface: points, spots, and the parallel light of something far away. Lights with a surface are
+ * materials that emit.
+ * ==================================================================================================================== */
+
+/** A kind of light: a LUXFER_LIGHT_ value. */
+typedef int32_t luxfer_light_kind;
+
+/** A light without a surface. Fill it with luxfer_light_params_init. */
+typedef struct luxfer_light_params {
+    /** sizeof(luxfer_light_params), set by luxfer_light_params_init. */
+    uint32_t struct_size;
+    /** LUXFER_LIGHT_ value; default LUXFER_LIGHT_POINT. */
+    luxfer_light_kind kind;
+    /** Where a point or a spot stands, in metres; default (0, 0, 0). */
+    float position[3];
+    /** Where a spot or a directional light shines; any length but 0; default (0, -1, 0). */
+    float direction[3];
+    /**
+     * Luminous intensity per channel in cd, on the axis of a spot; of a directional light the illuminance in lux on a
+     * surface that faces it. Each >= 0; default (1, 1, 1).
+     */
+    float intensity[3];
+    /** Half the angle of a spot's cone of full intensity, in radians, in [0, outer_angle]; default 0. */
+    float inner_angle;
+    /** Half the angle of a spot's whole cone, in radians, in (0, pi / 2]; default pi / 4. */
+    float outer_angle;
+    /** Must be 0. */
+    uint32_t reserved;
+} luxfer_light_params;
+
+/** Shines the same in every direction. */
+#define LUXFER_LIGHT_POINT 0
+
+/** Shines in a cone. */
+#define LUXFER_LIGHT_SPOT 1
+
+/** Shines from infinitely far away. */
+#define LUXFER_LIGHT_DIRECTIONAL 2
+
+/**
+ * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+ */
+luxfer_status luxfer_light_params_init(luxfer_light_params *params,
+                                       size_t size);
+
+/**
+ * Adds a light; *index, unless NULL, becomes its index. params may be NULL for the defaults. Any thread.
+ * LUXFER_INVALID_ARGUMENT if a value is out of range.
+ */
+luxfer_status luxfer_scene_add_light(luxfer_scene *scene,
+                                     const luxfer_light_params *params,
+                                     uint32_t *index);
+
+/* ====================================================================================================================
  * Scene queries
  *
  * What the library itself sees in a scene: the nearest hits of rays. These calls return when they are done.
@@ -2042,6 +2098,70 @@ typedef int32_t luxfer_demo;
  * LUXFER_INVALID_ARGUMENT for another value; LUXFER_OUT_OF_MEMORY beyond the memory budget.
  */
 luxfer_status luxfer_demo_scene(luxfer_context *context, luxfer_demo which, luxfer_scene **scene);
+
+/* ====================================================================================================================
+ * Demonstration photo
+ *
+ * A photo of the generated office, as a camera would take it, and the strokes a user would paint on it: what a lighting
+ * transfer needs, without a file.
+ * ==================================================================================================================== */
+
+/** A photo in the making. See luxfer_demo_photo_create. */
+typedef struct luxfer_demo_photo luxfer_demo_photo;
+
+/** Settings of the photo. Fill them with luxfer_demo_photo_params_init. */
+typedef struct luxfer_demo_photo_params {
+    /** sizeof(luxfer_demo_photo_params), set by luxfer_demo_photo_params_init. */
+    uint32_t struct_size;
+    /** Width in pixels, in [16, 8192]; default 660. */
+    uint32_t width;
+    /** Height in pixels, in [16, 8192]; default 440. The camera is made for 3:2. */
+    uint32_t height;
+    /** Paths per pixel, in [2, 1048576]; default 12: few enough to leave some noise. */
+    uint32_t samples;
+    /** Seed of paths and noise; default 1. */
+    uint64_t seed;
+} luxfer_demo_photo_params;
+
+/** An image of the demonstration: a LUXFER_DEMO_PHOTO_ value. */
+typedef int32_t luxfer_demo_photo_image;
+
+/** The photo: linear RGB, 1 = display white; its lamps are clipped. */
+#define LUXFER_DEMO_PHOTO_PICTURE 0
+
+/** The strokes on it, in the colours of luxfer_segment_add_strokes_image. */
+#define LUXFER_DEMO_PHOTO_STROKES 1
+
+/**
+ * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+ */
+luxfer_status luxfer_demo_photo_params_init(luxfer_demo_photo_params *params,
+                                            size_t size);
+
+/** Creates the stage. The caller releases *demo. Any thread. */
+luxfer_status luxfer_demo_photo_create(luxfer_context *context, luxfer_demo_photo **demo);
+
+/**
+ * Starts a job that takes the photo. params may be NULL for the defaults. The caller releases *job. Any thread.
+ * LUXFER_INVALID_OPERATION if a job runs already; LUXFER_INVALID_ARGUMENT if a setting is out of range.
+ */
+luxfer_status luxfer_demo_photo_start(luxfer_demo_photo *demo,
+                                      const luxfer_demo_photo_params *params,
+                                      luxfer_job **job);
+
+/**
+ * Gets an image; which is a LUXFER_DEMO_PHOTO_ value. The caller releases *image. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded.
+ */
+luxfer_status luxfer_demo_photo_get_image(luxfer_demo_photo *demo,
+                                          luxfer_demo_photo_image which,
+                                          luxfer_image **image);
+
+/** Adds a reference. Any thread. */
+luxfer_status luxfer_demo_photo_retain(luxfer_demo_photo *demo);
+
+/** Gives a reference back; a job that runs goes on. Any thread. */
+luxfer_status luxfer_demo_photo_release(luxfer_demo_photo *demo);
 #ifdef __cplusplus
 }
 #endif

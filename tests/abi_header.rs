@@ -20,6 +20,7 @@ const GROUPS: &[&str] = &[
     "job",
     "scene",
     "scene_parts",
+    "scene_lights",
     "query",
     "scene_read",
     "geometry",
@@ -32,6 +33,7 @@ const GROUPS: &[&str] = &[
     "transfer",
     "transfer_results",
     "demo",
+    "demo_photo",
 ];
 
 /// Structs that come in arrays: they carry no size, and never change.
@@ -302,6 +304,8 @@ layouts! {
     luxfer_hit: t mesh triangle u v;
     luxfer_mesh_info: struct_size material vertex_count triangle_count has_normals uv_sets;
     luxfer_texture_use: struct_size texture uv_set wrap_u wrap_v transform;
+    luxfer_demo_photo_params: struct_size width height samples seed;
+    luxfer_light_params: struct_size kind position direction intensity inner_angle outer_angle reserved;
     luxfer_features_params: struct_size near_plane far_plane normal_radius;
     luxfer_features_report: struct_size depth_source depth_confidence replaced_pixels;
     luxfer_segment_params: struct_size samples_per_class channels reserved ridge seed;

@@ -32,8 +32,8 @@ const ARROWS: &[(&str, &[&str])] = &[
     ),
 ];
 
-/// Files that may contain `unsafe` beside `ffi`: SIMD kernels.
-const UNSAFE: &[&str] = &["simd"];
+/// Files that may contain `unsafe` beside `ffi`: SIMD kernels, chosen at run time.
+const UNSAFE: &[&str] = &["scene/accel/mod.rs", "scene/accel/node.rs", "patch/kernel.rs"];
 
 /// Longest file that may be committed.
 const MAX_LINES: usize = 600;
@@ -95,8 +95,7 @@ fn every_part_uses_only_what_lies_below_it() {
 #[test]
 fn unsafe_stands_only_at_the_c_boundary_and_in_simd_kernels() {
     for (path, text) in sources() {
-        let name = path.file_stem().unwrap().to_string_lossy().to_string();
-        if part(&path) == "ffi" || part(&path) == "lib" || UNSAFE.iter().any(|u| name.contains(u)) {
+        if part(&path) == "ffi" || part(&path) == "lib" || UNSAFE.iter().any(|u| path.ends_with(u)) {
             continue;
         }
         let found = text.lines().find(|l| l.split("//").next().unwrap().split_whitespace().any(|w| w == "unsafe"));

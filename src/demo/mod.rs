@@ -17,7 +17,7 @@ mod strokes;
 
 pub use office::{Exemplar, LuminaireGrid, exemplar_room};
 pub use room::target_room;
-pub use strokes::strokes;
+pub use strokes::{drawing, strokes};
 
 use crate::error::Result;
 use crate::image::Image;

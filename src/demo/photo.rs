@@ -8,6 +8,7 @@ use crate::job::Job;
 use crate::render::{self, World};
 use crate::rng::Rng;
 use crate::scene::{Camera, Scene};
+use glam::Vec3;
 use std::sync::Arc;
 
 /// Standard deviation of the lens blur in pixels.
@@ -18,6 +19,8 @@ const GLARE: (f32, f32) = (0.03, 9.0);
 const VIGNETTE: f32 = 0.8;
 /// Electrons that white holds, and the read-out noise in electrons.
 const WELL: (f64, f64) = (6000.0, 12.0);
+/// How far the camera's white balance goes from the colour of the light towards white: as cameras do, not all the way.
+const WHITE_BALANCE: f32 = 0.6;
 /// Linear value the median of the picture is exposed to.
 const MEDIAN_EXPOSURE: f32 = 0.14;
 
@@ -32,7 +35,7 @@ pub struct Params {
 
 impl Default for Params {
     fn default() -> Self {
-        Self { width: 960, height: 640, samples: 64, seed: 1 }
+        Self { width: 660, height: 440, samples: 12, seed: 1 }
     }
 }
 
@@ -60,6 +63,12 @@ pub fn photograph(scene: Arc<Scene>, camera: &Camera, params: &Params, job: Job)
     levels.sort_by(f32::total_cmp);
     let exposure = MEDIAN_EXPOSURE / levels[levels.len() / 2].max(f32::MIN_POSITIVE);
 
+    // White balance: the mean of the room moves towards grey, its luminance stays.
+    let mean = film.beauty.data.chunks_exact(3).map(|p| Vec3::from_slice(p)).sum::<Vec3>();
+    let mean = (mean / luminance(mean).max(f32::MIN_POSITIVE)).max(Vec3::splat(1e-3));
+    let balance = mean.powf(-WHITE_BALANCE);
+    let balance = balance / luminance(mean * balance);
+
     // Sensor: vignetting, shot and read-out noise, saturation, 8 bits.
     let mut photo = Image::new(params.width, params.height, 3)?;
     let centre = [params.width as f32 / 2.0, params.height as f32 / 2.0];
@@ -71,7 +80,7 @@ pub fn photograph(scene: Arc<Scene>, camera: &Camera, params: &Params, job: Job)
             let mut rng = Rng::new(params.seed, &[x as u64, y as u64]);
             for (c, out) in pixel.iter_mut().enumerate() {
                 let light = (1.0 - GLARE.0) * sharp.pixel(x, y)[c] + GLARE.0 * glow.pixel(x, y)[c];
-                let electrons = f64::from((light * falloff * exposure).max(0.0)) * WELL.0;
+                let electrons = f64::from((light * falloff * exposure * balance[c]).max(0.0)) * WELL.0;
                 let noise = (electrons + WELL.1 * WELL.1).sqrt() * rng.normal();
                 let value = ((electrons + noise) / WELL.0).clamp(0.0, 1.0) as f32;
                 *out = srgb_to_linear((linear_to_srgb(value) * 255.0).round() / 255.0);

@@ -2,6 +2,7 @@
 
 use super::Exemplar;
 use crate::error::Result;
+use crate::image::Image;
 use crate::scene::Camera;
 use crate::segment::{Stroke, StrokeSet};
 use glam::{DVec2, Vec2, Vec3};
@@ -25,32 +26,49 @@ pub fn strokes(exemplar: &Exemplar, width: usize, height: usize) -> Result<Strok
     let half = Vec2::new(0.3, 0.0) * grid.size;
 
     // Ceiling: along it between two columns of lamps, and across between two rows. Not ceiling: walls, floor, furniture.
-    let along = [on_ceiling(between(0, 1)), on_ceiling(between(0, 3))];
-    let across = [
-        on_ceiling(lamp(0, 2) + grid.period * Vec2::new(0.1, 0.5)),
-        on_ceiling(lamp(2, 2) + grid.period * Vec2::new(-0.1, 0.5)),
-    ];
+    // No two strokes cross, so that one drawing can hold them all.
+    let along = |column: usize, row: usize| [on_ceiling(between(column, row)), on_ceiling(between(column, row + 1))];
+    let across = |column: usize, row: usize| {
+        let middle = Vec2::new(0.0, 0.5) * grid.period;
+        [on_ceiling(lamp(column, row) + middle), on_ceiling(between(column, row) + middle)]
+    };
     let not_plane = [
-        vec![Vec3::new(0.01, 2.3, 5.5), Vec3::new(0.01, 1.6, 3.5)],
-        vec![Vec3::new(5.39, 2.4, 4.0), Vec3::new(5.39, 1.5, 2.0)],
+        vec![Vec3::new(0.01, 2.5, 2.2), Vec3::new(0.01, 2.0, 1.2)],
+        vec![Vec3::new(5.39, 2.6, 5.0), Vec3::new(5.39, 2.5, 2.5)],
+        vec![Vec3::new(5.39, 2.2, 4.0), Vec3::new(5.39, 1.5, 2.0)],
         vec![Vec3::new(1.0, 2.4, 0.01), Vec3::new(4.4, 2.0, 0.01)],
         vec![Vec3::new(2.2, 0.0, 3.5), Vec3::new(2.6, 0.0, 2.0)],
     ];
     let mut set = StrokeSet::default();
-    set.plane.push(stroke(&along, true)?);
-    set.plane.push(stroke(&across, true)?);
+    set.plane.push(stroke(&along(0, 1), true)?);
+    set.plane.push(stroke(&across(1, 3), true)?);
     for points in &not_plane {
         set.plane.push(stroke(points, false)?);
     }
 
-    // Lights: across two lamps. Not lights: the same ceiling.
+    // Lights: across three lamps. Not lights: the same ceiling.
     for (column, row) in [(0, 2), (1, 1), (1, 3)] {
         let centre = lamp(column, row);
         set.lights.push(stroke(&[on_ceiling(centre - half), on_ceiling(centre + half)], true)?);
     }
-    set.lights.push(stroke(&along, false)?);
-    set.lights.push(stroke(&across, false)?);
+    set.lights.push(stroke(&along(1, 2), false)?);
+    set.lights.push(stroke(&across(0, 3), false)?);
     Ok(set)
+}
+
+/// All strokes in one drawing, in the colours that [`crate::segment::strokes::from_image`] reads.
+pub fn drawing(set: &StrokeSet, width: usize, height: usize) -> Result<Image> {
+    let mut image = Image::new(width, height, 3)?;
+    let colours = [(&set.plane, [Vec3::Y, Vec3::X]), (&set.lights, [Vec3::new(1.0, 1.0, 0.0), Vec3::Z])];
+    for (strokes, [positive, negative]) in colours {
+        for stroke in strokes {
+            let colour = if stroke.positive { positive } else { negative };
+            for &pixel in &stroke.pixels {
+                colour.write_to_slice(&mut image.data[3 * pixel as usize..]);
+            }
+        }
+    }
+    Ok(image)
 }
 
 /// Where a camera sees a point, in pixels; `None` behind it.
@@ -79,6 +97,16 @@ mod tests {
             let ray = camera.direction(pixel.x as f32 / 600.0, pixel.y as f32 / 400.0, 1.5);
             assert!(ray.normalize().dot((point - camera.position).normalize()) > 1.0 - 1e-6);
         }
+    }
+
+    #[test]
+    fn the_drawing_holds_every_stroke() {
+        let exemplar = super::super::exemplar_room().unwrap();
+        let set = strokes(&exemplar, 720, 480).unwrap();
+        let read = crate::segment::strokes::from_image(&drawing(&set, 720, 480).unwrap()).unwrap();
+        assert_eq!((read.plane.len(), read.lights.len()), (set.plane.len(), set.lights.len()));
+        let pixels = |s: &StrokeSet| s.plane.iter().chain(&s.lights).map(|s| s.pixels.len()).sum::<usize>();
+        assert_eq!(pixels(&read), pixels(&set));
     }
 
     #[test]

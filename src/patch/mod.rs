@@ -10,6 +10,11 @@
 //! A patch is named by its top-left pixel and always lies inside its image, so an image of `W × H` pixels has
 //! `(W - w + 1) × (H - w + 1)` patches of width `w`.
 //!
+//! What bounds it: on the real pair of `tests/real_stylize.rs` at 1200 × 912 with 16 channels, a third of the time goes into
+//! distances, a quarter into choosing candidates, a seventh into voting, a twentieth into sorting errors; the images
+//! take 32 bytes a pixel on each side and do not fit into a cache, but tiles do. A neighbour that continues the same
+//! match is no candidate, so the more coherent a field, the cheaper a sweep.
+//!
 //! Not modelled: rotated, mirrored, scaled or recoloured patches.
 
 mod domain;

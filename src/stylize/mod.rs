@@ -14,6 +14,11 @@
 //!
 //! Colours are compared and averaged as they are encoded for display (sRGB), which is how paint is looked at.
 //!
+//! Where the defaults leave the paper, it is because measuring said so (the golem at 600 × 456; `Params::paper` has the
+//! paper's own): letting patches settle after a retrieval brings Eq. 3 from 6.3e-3 to 2.4e-3, near the 2.0e-3 of plain EM;
+//! choosing the nearest vote at the end brings texture power from 0.85 to 0.93 of the exemplar's (plain EM: 0.78); further
+//! iterations and sweeps change both by less than a tenth.
+//!
 //! Not modelled: rotation of strokes along the target's shapes, and the time dimension of a sequence.
 //!
 //! Covered by patents in the US (StyLit: US 9,881,413 and 10,176,624; patch usage: US 9,905,054; PatchMatch:

@@ -1,0 +1,286 @@
+/* Copies the lighting of a photo onto a 3D scene.
+ *
+ *   lighting_transfer [PHOTO SCENE --surface NAME --strokes FILE] [--distance M] [--size WxH] [--samples N] [--out DIR]
+ *
+ * Without arguments it makes its own input: the photo of a generated office and a generated living room. FILE holds the
+ * strokes: an image of the photo's size (green: plane, red: not plane, yellow: light, blue: not light) or a text (.txt).
+ * Writes overview.png, emission.exr, render.exr, render.png, lit.glb, luminaires.csv and report.json into DIR.
+ */
+#include "luxfer.h"
+#include "overview.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#ifdef _WIN32
+#include <io.h>
+#define isatty _isatty
+#else
+int isatty(int file);
+#endif
+
+typedef struct options {
+    const char *photo, *scene, *surface, *strokes, *out;
+    double distance;
+    unsigned width, height, samples;
+} options;
+
+static luxfer_context *context;
+
+/* Ends the program with the library's own words if a call has failed. */
+static void check(luxfer_status status, const char *what) {
+    char message[1024] = "";
+    if (status == LUXFER_OK) return;
+    if (context) luxfer_context_last_error(context, message, sizeof message, NULL);
+    fprintf(stderr, "\n%s: %s (%s)\n", what, message, luxfer_status_name(status));
+    exit(1);
+}
+
+static int show_progress(void *title, double fraction) {
+    char bar[41];
+    int i, filled = (int)(fraction * 40);
+    for (i = 0; i < 40; i++) bar[i] = i < filled ? '#' : '.';
+    bar[40] = 0;
+    fprintf(stderr, "\r%-24s [%s] %3d %%%s", (const char *)title, bar, (int)(fraction * 100), fraction == 1 ? "\n" : "");
+    return 0;
+}
+
+/* Waits for a job, with a progress bar where somebody looks, and lets go of it. */
+static void finish(luxfer_job *job, const char *title) {
+    check(luxfer_job_wait(job, -1, isatty(2) ? show_progress : NULL, (void *)title), title);
+    check(luxfer_job_release(job), title);
+}
+
+static const char *path(const options *o, const char *name) {
+    static char buffer[4096];
+    if (snprintf(buffer, sizeof buffer, "%s/%s", o->out, name) >= (int)sizeof buffer) exit(2);
+    return buffer;
+}
+
+static options parse(int argc, char **argv) {
+    options o = {NULL, NULL, "Ceiling", NULL, ".", 1.2, 640, 360, 24};
+    int i;
+    for (i = 1; i < argc; i++) {
+        const char *arg = argv[i], *value = i + 1 < argc ? argv[i + 1] : NULL;
+        if (strncmp(arg, "--", 2) == 0 && value) i++;
+        if (strncmp(arg, "--", 2) != 0 && !o.photo) o.photo = arg;
+        else if (strncmp(arg, "--", 2) != 0 && !o.scene) o.scene = arg;
+        else if (!strcmp(arg, "--surface") && value) o.surface = value;
+        else if (!strcmp(arg, "--strokes") && value) o.strokes = value;
+        else if (!strcmp(arg, "--out") && value) o.out = value;
+        else if (!strcmp(arg, "--distance") && value) o.distance = atof(value);
+        else if (!strcmp(arg, "--samples") && value) o.samples = (unsigned)atoi(value);
+        else if (!strcmp(arg, "--size") && value && sscanf(value, "%ux%u", &o.width, &o.height) == 2) continue;
+        else {
+            fprintf(stderr, "cannot use %s; see the head of lighting_transfer.c\n", arg);
+            exit(2);
+        }
+    }
+    if (o.photo && !(o.scene && o.strokes)) {
+        fprintf(stderr, "a photo of your own needs a scene and --strokes\n");
+        exit(2);
+    }
+    return o;
+}
+
+static int ends_with(const char *text, const char *end) {
+    size_t n = strlen(text), m = strlen(end);
+    return n >= m && !strcmp(text + n - m, end);
+}
+
+/* A small text file in memory, ended with a zero. */
+static char *read_text(const char *name) {
+    FILE *file = fopen(name, "rb");
+    char *text = calloc(1, 1 << 20);
+    if (!file || !text || fread(text, 1, (1 << 20) - 1, file) == 0) {
+        fprintf(stderr, "cannot read %s\n", name);
+        exit(1);
+    }
+    fclose(file);
+    return text;
+}
+
+/* Photo, strokes and scene from the user's files. */
+static void load_input(const options *o, luxfer_transfer *transfer, luxfer_image **photo, luxfer_scene **scene) {
+    check(luxfer_image_load(context, o->photo, LUXFER_COLOUR_SRGB, photo), "photo");
+    check(luxfer_transfer_set_photo(transfer, *photo), "photo");
+    if (ends_with(o->strokes, ".txt")) {
+        char *text = read_text(o->strokes);
+        check(luxfer_transfer_add_strokes_text(transfer, text), "strokes");
+        free(text);
+    } else {
+        luxfer_image *drawing = NULL;
+        check(luxfer_image_load(context, o->strokes, LUXFER_COLOUR_SRGB, &drawing), "strokes");
+        check(luxfer_transfer_add_strokes_image(transfer, drawing), "strokes");
+        luxfer_image_release(drawing);
+    }
+    check(luxfer_scene_load(context, o->scene, scene), "scene");
+}
+
+/* The same from nothing. */
+static void generate_input(luxfer_transfer *transfer, luxfer_image **photo, luxfer_scene **scene) {
+    luxfer_demo_photo *demo = NULL;
+    luxfer_job *job = NULL;
+    luxfer_image *drawing = NULL;
+    check(luxfer_demo_photo_create(context, &demo), "demo");
+    check(luxfer_demo_photo_start(demo, NULL, &job), "demo");
+    finish(job, "photographing the office");
+    check(luxfer_demo_photo_get_image(demo, LUXFER_DEMO_PHOTO_PICTURE, photo), "demo photo");
+    check(luxfer_demo_photo_get_image(demo, LUXFER_DEMO_PHOTO_STROKES, &drawing), "demo strokes");
+    check(luxfer_transfer_set_photo(transfer, *photo), "photo");
+    check(luxfer_transfer_add_strokes_image(transfer, drawing), "strokes");
+    check(luxfer_demo_scene(context, LUXFER_DEMO_TARGET_ROOM, scene), "demo scene");
+    luxfer_image_release(drawing);
+    luxfer_demo_photo_release(demo);
+}
+
+/* Gives a scene without lights one at its camera, so that there is something to see. */
+static void add_headlight(luxfer_scene *scene) {
+    luxfer_scene_counts counts;
+    luxfer_camera_params camera;
+    luxfer_light_params light;
+    int i;
+    counts.struct_size = sizeof counts;
+    check(luxfer_scene_get_counts(scene, &counts), "scene");
+    if (counts.lights > 0) return;
+    check(luxfer_camera_params_init(&camera, sizeof camera), "camera");
+    check(luxfer_light_params_init(&light, sizeof light), "light");
+    check(luxfer_scene_get_camera(scene, 0, &camera), "camera");
+    for (i = 0; i < 3; i++) light.position[i] = camera.position[i], light.intensity[i] = 1500;
+    check(luxfer_scene_add_light(scene, &light, NULL), "light");
+}
+
+/* A quick picture of a scene through its first camera. */
+static luxfer_image *preview(const options *o, luxfer_scene *scene, unsigned samples, const char *title) {
+    luxfer_render *render = NULL;
+    luxfer_render_params params;
+    luxfer_job *job = NULL;
+    luxfer_image *image = NULL;
+    check(luxfer_render_params_init(&params, sizeof params), title);
+    params.width = o->width / 2;
+    params.height = o->height / 2;
+    params.samples = samples;
+    check(luxfer_render_create(context, &render), title);
+    check(luxfer_render_set_scene(render, scene), title);
+    check(luxfer_render_start(render, &params, &job), title);
+    finish(job, title);
+    check(luxfer_render_get_image(render, LUXFER_RENDER_BEAUTY, &image), title);
+    luxfer_render_release(render);
+    return image;
+}
+
+static void write_luminaires(const options *o, luxfer_transfer *transfer, unsigned count) {
+    FILE *file = fopen(path(o, "luminaires.csv"), "w");
+    unsigned i;
+    if (!file) exit(1);
+    fprintf(file, "x_m,y_m,z_m,length_m,width_m,area_m2,red_cd_m2,green_cd_m2,blue_cd_m2,flux_lm\n");
+    for (i = 0; i < count; i++) {
+        luxfer_fixture f;
+        f.struct_size = sizeof f;
+        check(luxfer_transfer_get_fixture(transfer, i, &f), "fixture");
+        fprintf(file, "%.4f,%.4f,%.4f,%.4f,%.4f,%.5f,%.2f,%.2f,%.2f,%.2f\n", f.position[0], f.position[1], f.position[2],
+                f.size[0], f.size[1], f.area, f.radiance[0], f.radiance[1], f.radiance[2], f.flux);
+    }
+    fclose(file);
+}
+
+/* NaN, which JSON lacks, stands for an error that is not known. */
+static void write_number(FILE *file, double value) {
+    if (value == value && value - value == 0) fprintf(file, "%.6g", value);
+    else fprintf(file, "null");
+}
+
+static void write_report(const options *o, const luxfer_transfer_report *r, const luxfer_relight_report *s) {
+    static const char *stages[8] = {"view", "features", "plane", "lights", "unwarp", "emission", "relight", "render"};
+    static const char *units[8] = {"radians",
+                                   "1 - trust in depth",
+                                   "share of wrong pixels",
+                                   "share of wrong pixels",
+                                   "unwarped pixels at a corner",
+                                   "relative share of lit area",
+                                   "relative 95 % half-width",
+                                   "relative standard error"};
+    double errors[8];
+    FILE *file = fopen(path(o, "report.json"), "w");
+    int i;
+    if (!file) exit(1);
+    errors[0] = r->view_error, errors[1] = 1 - r->depth_confidence, errors[2] = r->plane_error;
+    errors[3] = r->lights_error, errors[4] = r->unwarp_error, errors[5] = r->emission_error;
+    errors[6] = r->relight_error, errors[7] = r->render_error;
+    fprintf(file, "{\n  \"luxfer\": \"%s\",\n  \"stages\": {\n", luxfer_version_string());
+    for (i = 0; i < 8; i++) {
+        fprintf(file, "    \"%s\": {\"seconds\": %.4f, \"error\": ", stages[i], r->seconds[i]);
+        write_number(file, errors[i]);
+        fprintf(file, ", \"error_is\": \"%s\"}%s\n", units[i], i < 7 ? "," : "");
+    }
+    fprintf(file, "  },\n  \"target\": [%.6g, %.6g, %.6g],\n", r->target[0], r->target[1], r->target[2]);
+    fprintf(file, "  \"scale\": [%.6g, %.6g, %.6g],\n", s->scale[0], s->scale[1], s->scale[2]);
+    fprintf(file, "  \"half_width\": [%.6g, %.6g, %.6g],\n", s->half_width[0], s->half_width[1], s->half_width[2]);
+    fprintf(file, "  \"luminaires\": %u,\n  \"texel_m\": %.6g\n}\n", r->fixtures, r->texel_size);
+    fclose(file);
+}
+
+int main(int argc, char **argv) {
+    options o = parse(argc, argv);
+    luxfer_transfer *transfer = NULL;
+    luxfer_transfer_params params;
+    luxfer_render_params render;
+    luxfer_transfer_report report;
+    luxfer_relight_report solution;
+    luxfer_image *photo = NULL, *lit = NULL, *emission = NULL, *before, *white;
+    luxfer_scene *scene = NULL, *lit_scene = NULL, *white_scene = NULL;
+    luxfer_job *job = NULL;
+    report.struct_size = sizeof report;
+    solution.struct_size = sizeof solution;
+    check(luxfer_context_create(NULL, &context), "context");
+    check(luxfer_transfer_create(context, &transfer), "transfer");
+    if (o.photo) load_input(&o, transfer, &photo, &scene);
+    else generate_input(transfer, &photo, &scene);
+    check(luxfer_transfer_set_scene(transfer, scene, o.surface), "surface");
+
+    /* The whole transfer. */
+    check(luxfer_transfer_params_init(&params, sizeof params), "params");
+    check(luxfer_render_params_init(&render, sizeof render), "params");
+    render.width = o.width;
+    render.height = o.height;
+    render.samples = o.samples;
+    params.render = &render;
+    params.plane_distance = o.distance;
+    check(luxfer_transfer_start(transfer, LUXFER_STAGE_VIEW, LUXFER_STAGE_RENDER, &params, &job), "transfer");
+    finish(job, "transferring the lighting");
+
+    /* Its results. */
+    check(luxfer_transfer_get_image(transfer, LUXFER_TRANSFER_RENDER, &lit), "render");
+    check(luxfer_transfer_get_image(transfer, LUXFER_TRANSFER_EMISSION, &emission), "emission");
+    check(luxfer_transfer_get_scene(transfer, LUXFER_SCENE_LIT, &lit_scene), "lit scene");
+    check(luxfer_transfer_get_scene(transfer, LUXFER_SCENE_WHITE, &white_scene), "white scene");
+    check(luxfer_transfer_get_report(transfer, &report), "report");
+    check(luxfer_transfer_get_solution(transfer, &solution), "solution");
+    check(luxfer_image_save(lit, path(&o, "render.exr"), 1), "render.exr");
+    check(luxfer_image_save(lit, path(&o, "render.png"), 1 / params.white_luminance), "render.png");
+    check(luxfer_image_save(emission, path(&o, "emission.exr"), 1), "emission.exr");
+    check(luxfer_scene_export(lit_scene, path(&o, "lit.glb")), "lit.glb");
+    write_luminaires(&o, transfer, report.fixtures);
+    write_report(&o, &report, &solution);
+
+    /* What to compare it with: the scene before, under its own lights or a lamp at the camera, and in white light. */
+    add_headlight(scene);
+    before = preview(&o, scene, 8, "rendering it before");
+    white = preview(&o, white_scene, o.samples / 2 + 1, "rendering it in white");
+    check(overview_save(context, transfer, photo, before, white, lit, params.white_luminance, path(&o, "overview.png")),
+          "overview.png");
+    printf("%u luminaires; colour and intensity to +-%.2f %%; see %s\n", report.fixtures, 100 * report.relight_error,
+           path(&o, "overview.png"));
+
+    luxfer_image_release(white);
+    luxfer_image_release(before);
+    luxfer_image_release(emission);
+    luxfer_image_release(lit);
+    luxfer_scene_release(white_scene);
+    luxfer_scene_release(lit_scene);
+    luxfer_transfer_release(transfer);
+    luxfer_scene_release(scene);
+    luxfer_image_release(photo);
+    luxfer_context_release(context);
+    return 0;
+}

@@ -1,0 +1,147 @@
+//! Demonstration photo
+//!
+//! A photo of the generated office, as a camera would take it, and the strokes a user would paint on it: what a lighting
+//! transfer needs, without a file.
+
+use super::context::luxfer_context;
+use super::guard::{enter, guard};
+use super::handle::{self, Handle, Owned, tag};
+use super::image::{Pixels, luxfer_image};
+use super::job::luxfer_job;
+use super::params::{self, Versioned};
+use super::pointer::Out;
+use super::stage::Stage;
+use super::status::luxfer_status;
+use crate::demo::{self, photo};
+use crate::error::{Error, check_range};
+use crate::image::Image;
+use std::sync::Arc;
+
+/// A photo in the making. See luxfer_demo_photo_create.
+pub struct luxfer_demo_photo {
+    _opaque: [u8; 0],
+}
+
+/// An image of the demonstration: a LUXFER_DEMO_PHOTO_ value.
+pub type luxfer_demo_photo_image = i32;
+/// The photo: linear RGB, 1 = display white; its lamps are clipped.
+pub const LUXFER_DEMO_PHOTO_PICTURE: luxfer_demo_photo_image = 0;
+/// The strokes on it, in the colours of luxfer_segment_add_strokes_image.
+pub const LUXFER_DEMO_PHOTO_STROKES: luxfer_demo_photo_image = 1;
+
+/// Settings of the photo. Fill them with luxfer_demo_photo_params_init.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_demo_photo_params {
+    /// sizeof(luxfer_demo_photo_params), set by luxfer_demo_photo_params_init.
+    pub struct_size: u32,
+    /// Width in pixels, in [16, 8192]; default 660.
+    pub width: u32,
+    /// Height in pixels, in [16, 8192]; default 440. The camera is made for 3:2.
+    pub height: u32,
+    /// Paths per pixel, in [2, 1048576]; default 12: few enough to leave some noise.
+    pub samples: u32,
+    /// Seed of paths and noise; default 1.
+    pub seed: u64,
+}
+
+// SAFETY: plain integers.
+unsafe impl Versioned for luxfer_demo_photo_params {
+    const NAME: &'static str = "luxfer_demo_photo_params";
+    const SIZES: &'static [usize] = &[24];
+    fn defaults() -> Self {
+        let d = photo::Params::default();
+        Self { struct_size: 24, width: d.width as u32, height: d.height as u32, samples: d.samples, seed: d.seed }
+    }
+}
+
+/// The photo and the drawing of its strokes.
+pub(super) struct Taken {
+    picture: Image,
+    strokes: Image,
+}
+
+impl Handle for luxfer_demo_photo {
+    type Object = Stage<(), Taken>;
+    const TAG: u64 = tag(b"lux.demo");
+    const NAME: &'static str = "luxfer_demo_photo";
+}
+
+/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_demo_photo_params_init(
+    params: *mut luxfer_demo_photo_params,
+    size: usize,
+) -> luxfer_status {
+    guard(|| params::init(params, size))
+}
+
+/// Creates the stage. The caller releases *demo. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_demo_photo_create(
+    context: *mut luxfer_context,
+    demo: *mut *mut luxfer_demo_photo,
+) -> luxfer_status {
+    enter(context, |object| {
+        Out::new(demo, "demo")?.set(handle::give(Stage::new(object.context(), ())));
+        Ok(())
+    })
+}
+
+/// Starts a job that takes the photo. params may be NULL for the defaults. The caller releases *job. Any thread.
+/// LUXFER_INVALID_OPERATION if a job runs already; LUXFER_INVALID_ARGUMENT if a setting is out of range.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_demo_photo_start(
+    demo: *mut luxfer_demo_photo,
+    params: *const luxfer_demo_photo_params,
+    job: *mut *mut luxfer_job,
+) -> luxfer_status {
+    enter(demo, |stage| {
+        let p = params::read(params)?;
+        let (width, height) = (
+            check_range("demo.width", p.width, 16, 8192)? as usize,
+            check_range("demo.height", p.height, 16, 8192)? as usize,
+        );
+        let samples = check_range("demo.samples", p.samples, 2, 1 << 20)?;
+        let params = photo::Params { width, height, samples, seed: p.seed };
+        stage.start(job, move |(), _, job| {
+            let room = demo::exemplar_room()?;
+            let strokes = demo::drawing(&demo::strokes(&room, width, height)?, width, height)?;
+            let camera = room.scene.cameras[room.camera].clone();
+            let (picture, _) = photo::photograph(Arc::new(room.scene), &camera, &params, job)?;
+            Ok(Taken { picture, strokes })
+        })
+    })
+}
+
+/// Gets an image; which is a LUXFER_DEMO_PHOTO_ value. The caller releases *image. Any thread.
+/// LUXFER_NOT_READY before a job has succeeded.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_demo_photo_get_image(
+    demo: *mut luxfer_demo_photo,
+    which: luxfer_demo_photo_image,
+    image: *mut *mut luxfer_image,
+) -> luxfer_status {
+    enter(demo, |stage| {
+        let out = Out::new(image, "image")?;
+        let pick: fn(&Taken) -> &Image = match which {
+            LUXFER_DEMO_PHOTO_PICTURE => |t| &t.picture,
+            LUXFER_DEMO_PHOTO_STROKES => |t| &t.strokes,
+            _ => return Err(Error::argument(format!("which is {which}; it must be a LUXFER_DEMO_PHOTO_ value"))),
+        };
+        out.set(handle::give(Pixels::part(stage.context(), stage.output()?, pick)));
+        Ok(())
+    })
+}
+
+/// Adds a reference. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_demo_photo_retain(demo: *mut luxfer_demo_photo) -> luxfer_status {
+    handle::retain(demo)
+}
+
+/// Gives a reference back; a job that runs goes on. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_demo_photo_release(demo: *mut luxfer_demo_photo) -> luxfer_status {
+    handle::release(demo)
+}
