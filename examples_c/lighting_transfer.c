@@ -58,7 +58,7 @@ static const char *path(const options *o, const char *name) {
 }
 
 static options parse(int argc, char **argv) {
-    options o = {NULL, NULL, "Ceiling", NULL, ".", 1.2, 640, 360, 24};
+    options o = {NULL, NULL, "Ceiling", NULL, ".", 1.2, 640, 360, 16};
     int i;
     for (i = 1; i < argc; i++) {
         const char *arg = argv[i], *value = i + 1 < argc ? argv[i + 1] : NULL;
@@ -134,7 +134,7 @@ static void generate_input(luxfer_transfer *transfer, luxfer_image **photo, luxf
     luxfer_demo_photo_release(demo);
 }
 
-/* Gives a scene without lights one at its camera, so that there is something to see. */
+/* Gives a scene without lights one before its camera, so that there is something to see. */
 static void add_headlight(luxfer_scene *scene) {
     luxfer_scene_counts counts;
     luxfer_camera_params camera;
@@ -146,7 +146,10 @@ static void add_headlight(luxfer_scene *scene) {
     check(luxfer_camera_params_init(&camera, sizeof camera), "camera");
     check(luxfer_light_params_init(&light, sizeof light), "light");
     check(luxfer_scene_get_camera(scene, 0, &camera), "camera");
-    for (i = 0; i < 3; i++) light.position[i] = camera.position[i], light.intensity[i] = 1500;
+    for (i = 0; i < 3; i++) {
+        light.position[i] = camera.position[i] + 1.5f * (camera.target[i] - camera.position[i]);
+        light.intensity[i] = 400;
+    }
     check(luxfer_scene_add_light(scene, &light, NULL), "light");
 }
 
@@ -263,7 +266,7 @@ int main(int argc, char **argv) {
     write_luminaires(&o, transfer, report.fixtures);
     write_report(&o, &report, &solution);
 
-    /* What to compare it with: the scene before, under its own lights or a lamp at the camera, and in white light. */
+    /* What to compare it with: the scene before, under its own lights or a lamp before the camera, and in white light. */
     add_headlight(scene);
     before = preview(&o, scene, 8, "rendering it before");
     white = preview(&o, white_scene, o.samples / 2 + 1, "rendering it in white");

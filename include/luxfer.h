@@ -2113,9 +2113,9 @@ typedef struct luxfer_demo_photo luxfer_demo_photo;
 typedef struct luxfer_demo_photo_params {
     /** sizeof(luxfer_demo_photo_params), set by luxfer_demo_photo_params_init. */
     uint32_t struct_size;
-    /** Width in pixels, in [16, 8192]; default 660. */
+    /** Width in pixels, in [16, 8192]; default 600. */
     uint32_t width;
-    /** Height in pixels, in [16, 8192]; default 440. The camera is made for 3:2. */
+    /** Height in pixels, in [16, 8192]; default 400. The camera is made for 3:2. */
     uint32_t height;
     /** Paths per pixel, in [2, 1048576]; default 12: few enough to leave some noise. */
     uint32_t samples;

@@ -35,7 +35,7 @@ pub struct Params {
 
 impl Default for Params {
     fn default() -> Self {
-        Self { width: 660, height: 440, samples: 12, seed: 1 }
+        Self { width: 600, height: 400, samples: 12, seed: 1 }
     }
 }
 

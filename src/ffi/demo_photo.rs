@@ -35,9 +35,9 @@ pub const LUXFER_DEMO_PHOTO_STROKES: luxfer_demo_photo_image = 1;
 pub struct luxfer_demo_photo_params {
     /// sizeof(luxfer_demo_photo_params), set by luxfer_demo_photo_params_init.
     pub struct_size: u32,
-    /// Width in pixels, in [16, 8192]; default 660.
+    /// Width in pixels, in [16, 8192]; default 600.
     pub width: u32,
-    /// Height in pixels, in [16, 8192]; default 440. The camera is made for 3:2.
+    /// Height in pixels, in [16, 8192]; default 400. The camera is made for 3:2.
     pub height: u32,
     /// Paths per pixel, in [2, 1048576]; default 12: few enough to leave some noise.
     pub samples: u32,

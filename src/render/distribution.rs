@@ -7,6 +7,8 @@ use crate::image::try_vec;
 pub struct Distribution {
     /// `cumulative[i]` is the weight of the entries up to and including `i`.
     cumulative: Vec<f64>,
+    /// `guide[k]` is the entry where `u = k / guide.len()` falls: a search starts there (Chen and Asau 1974).
+    guide: Vec<u32>,
 }
 
 impl Distribution {
@@ -18,7 +20,16 @@ impl Distribution {
             sum += w;
             *c = sum;
         }
-        Ok(Self { cumulative })
+        let mut guide = try_vec(cumulative.len(), 0u32)?;
+        let mut index = 0;
+        for (k, g) in guide.iter_mut().enumerate() {
+            let target = k as f64 / cumulative.len() as f64 * sum;
+            while index + 1 < cumulative.len() && cumulative[index] <= target {
+                index += 1;
+            }
+            *g = index as u32;
+        }
+        Ok(Self { cumulative, guide })
     }
 
     pub fn len(&self) -> usize {
@@ -38,7 +49,13 @@ impl Distribution {
     /// must be one that has some.
     pub fn sample(&self, u: f64) -> (usize, f64) {
         let target = u * self.total();
-        let index = self.cumulative.partition_point(|&c| c <= target).min(self.cumulative.len() - 1);
+        // Between the guides on either side; rounding may put the target just outside, so the ends are one wider.
+        let k = ((u * self.guide.len() as f64) as usize).min(self.guide.len() - 1);
+        let low = (self.guide[k] as usize).saturating_sub(1);
+        let high =
+            self.guide.get(k + 1).map_or(self.cumulative.len(), |&g| (g as usize + 1).min(self.cumulative.len()));
+        let within = self.cumulative[low..high].partition_point(|&c| c <= target);
+        let index = (low + within).min(self.cumulative.len() - 1);
         let before = if index == 0 { 0.0 } else { self.cumulative[index - 1] };
         let width = self.cumulative[index] - before;
         (index, if width > 0.0 { ((target - before) / width).min(1.0 - f64::EPSILON) } else { 0.0 })
@@ -48,6 +65,20 @@ impl Distribution {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_guide_finds_what_a_search_of_the_whole_table_finds() {
+        let mut rng = crate::rng::Rng::new(1, &[]);
+        for len in [1, 2, 7, 1000] {
+            let table =
+                Distribution::new((0..len).map(|i| if i % 3 == 1 { 0.0 } else { rng.next_f64().powi(8) })).unwrap();
+            for i in 0..10_000 {
+                let u = if i < 1000 { f64::from(i) / 1000.0 } else { rng.next_f64() };
+                let whole = table.cumulative.partition_point(|&c| c <= u * table.total()).min(len - 1);
+                assert_eq!(table.sample(u).0, whole, "{len} entries at {u}");
+            }
+        }
+    }
 
     #[test]
     fn entries_come_in_proportion_and_none_without_weight() {

@@ -57,8 +57,8 @@ impl Texture {
 
 fn wrap_index(i: f32, size: usize, wrap: Wrap) -> usize {
     // Beyond 2^24 a float cannot tell neighbouring texels apart; NaN becomes 0.
-    let i = i.clamp(-16_777_216.0, 16_777_216.0) as i64;
-    let n = size as i64;
+    let i = i.clamp(-16_777_216.0, 16_777_216.0) as i32;
+    let n = size as i32;
     let wrapped = match wrap {
         Wrap::Repeat => i.rem_euclid(n),
         Wrap::Clamp => i.clamp(0, n - 1),
