@@ -6,7 +6,9 @@
 // - each pixel, Welch's t-test: at 1 % corrected for the number of pixels (Šidák), 99.75 % of the pixels are accepted;
 // - the share of pixels rejected at an uncorrected 1 % lies in its binomial 99.9 % interval: not more than chance rejects
 //   (a small error everywhere would), and not fewer (a variance that is stated too large would hide one);
-// - the mean of the image, Welch's t-test at 0.1 %: sees a common factor that no single pixel does.
+// - the mean of the image, Welch's t-test at 0.1 %: sees a common factor that no single pixel does;
+// - the variance that the library states for each pixel, against the scatter among its images: over all pixels the two
+//   differ by chance alone, at 0.1 %.
 // The seeds are fixed, so a pass is a pass every time.
 //
 // `path_tracer_check FACTOR` makes the harness's lamps brighter by a factor, for seeing that the check notices.
@@ -26,11 +28,20 @@ constexpr std::size_t PIXELS = std::size_t(WIDTH) * HEIGHT;
 // One image: three channels for each pixel.
 using Picture = std::vector<float>;
 
-std::vector<Picture> render_with_library(const LitRoom &room) {
+Picture read_render(luxfer_render *render, luxfer_render_image which) {
+    luxfer_image *image = nullptr;
+    CHECK_OK(luxfer_render_get_image(render, which, &image));
+    Picture picture = read_image(image).pixels;
+    CHECK_OK(luxfer_image_release(image));
+    return picture;
+}
+
+// Images, and the variances that the library states for them.
+std::pair<std::vector<Picture>, std::vector<Picture>> render_with_library(const LitRoom &room) {
     luxfer_render *render = nullptr;
     CHECK_OK(luxfer_render_create(room.context, &render));
     CHECK_OK(luxfer_render_set_scene(render, room.scene));
-    std::vector<Picture> pictures;
+    std::vector<Picture> pictures, variances;
     for (std::uint32_t i = 0; i < REPLICATES; ++i) {
         luxfer_render_params params;
         CHECK_OK(luxfer_render_params_init(&params, sizeof params));
@@ -42,13 +53,11 @@ std::vector<Picture> render_with_library(const LitRoom &room) {
         CHECK_OK(luxfer_render_start(render, &params, &job));
         CHECK_OK(luxfer_job_wait(job, -1, nullptr, nullptr));
         CHECK_OK(luxfer_job_release(job));
-        luxfer_image *image = nullptr;
-        CHECK_OK(luxfer_render_get_image(render, LUXFER_RENDER_BEAUTY, &image));
-        pictures.push_back(read_image(image).pixels);
-        CHECK_OK(luxfer_image_release(image));
+        pictures.push_back(read_render(render, LUXFER_RENDER_BEAUTY));
+        variances.push_back(read_render(render, LUXFER_RENDER_VARIANCE));
     }
     CHECK_OK(luxfer_render_release(render));
-    return pictures;
+    return {pictures, variances};
 }
 
 std::vector<Picture> render_with_harness(const PathTracer &tracer) {
@@ -118,6 +127,26 @@ void compare(const std::vector<Picture> &library, const std::vector<Picture> &ha
     CHECK(image_p >= 0.001);
 }
 
+void compare_variances(const std::vector<Picture> &pictures, const std::vector<Picture> &variances, std::size_t channel) {
+    statistics::Sample difference, scattered;
+    for (std::size_t i = 0; i < PIXELS; ++i) {
+        statistics::Sample value, stated;
+        for (std::uint32_t r = 0; r < REPLICATES; ++r) {
+            value.add(pictures[r][3 * i + channel]);
+            stated.add(variances[r][3 * i + channel]);
+        }
+        // Relative to the pixel's brightness, so that no pixel counts for all.
+        const double square = std::max(value.mean * value.mean, 1e-12);
+        const double scatter = value.variance_of_mean() * REPLICATES;
+        difference.add((stated.mean - scatter) / square);
+        scattered.add(scatter / square);
+    }
+    const double z = difference.mean / std::sqrt(difference.variance_of_mean());
+    std::printf("%c: variances stated by the library are %.3f +- %.3f of the scatter, z %.2f\n", "RGB"[channel],
+                1 + difference.mean / scattered.mean, std::sqrt(difference.variance_of_mean()) / scattered.mean, z);
+    CHECK(std::abs(z) < 3.29);
+}
+
 // Quantiles from printed tables.
 void check_statistics() {
     CHECK(std::abs(statistics::student_p(2.0687, 23) - 0.05) < 1e-5);
@@ -133,10 +162,12 @@ int main(int argc, char **argv) {
     check_statistics();
     LitRoom room;
     const SceneCopy copy = read_scene(room.scene);
-    const std::vector<Picture> library = render_with_library(room);
+    const auto [library, variances] = render_with_library(room);
     const PathTracer tracer(room, copy, factor);
     const std::vector<Picture> harness = render_with_harness(tracer);
-    for (std::size_t channel = 0; channel < 3; ++channel)
+    for (std::size_t channel = 0; channel < 3; ++channel) {
         compare(library, harness, channel);
+        compare_variances(library, variances, channel);
+    }
     return check::summary("path_tracer_check");
 }
