@@ -1,0 +1,155 @@
+//! Scenes through the C functions that read them back and shoot rays at them.
+
+mod host;
+
+use host::{context, image, made, message, scene};
+use luxfer::ffi::*;
+use std::ptr::{null, null_mut};
+
+fn zeroed<T>() -> T {
+    // SAFETY: only for structs of numbers and pointers.
+    unsafe { std::mem::zeroed() }
+}
+
+#[test]
+fn a_mesh_comes_back_as_it_was_described() {
+    let context = context(1);
+    let scene = scene(context);
+    unsafe {
+        let mut info = luxfer_mesh_info { struct_size: size_of::<luxfer_mesh_info>() as u32, ..zeroed() };
+        assert_eq!(luxfer_scene_get_mesh(scene, 1, &mut info), LUXFER_OK);
+        assert_eq!((info.material, info.vertex_count, info.triangle_count), (1, 4, 2));
+        assert_eq!((info.has_normals, info.uv_sets), (0, 0));
+        let (mut positions, mut indices) = ([0.0f32; 12], [0u32; 6]);
+        let read = |vertices, positions, normals, triangles, indices| {
+            luxfer_scene_read_mesh(scene, 1, vertices, positions, normals, triangles, indices)
+        };
+        assert_eq!(read(4, positions.as_mut_ptr(), null_mut(), 2, indices.as_mut_ptr()), LUXFER_OK);
+        assert_eq!(positions, [-0.5, 1.9, -0.5, 0.5, 1.9, -0.5, 0.5, 1.9, 0.5, -0.5, 1.9, 0.5]);
+        assert_eq!(indices, [0, 1, 2, 0, 2, 3]);
+        // Nothing is written where not all fits.
+        let (mut positions, mut indices) = ([7.0f32; 12], [7u32; 6]);
+        assert_eq!(read(4, positions.as_mut_ptr(), null_mut(), 1, indices.as_mut_ptr()), LUXFER_INVALID_ARGUMENT);
+        assert!(message(context).contains("room for 1 indices; 2"), "{}", message(context));
+        assert_eq!((positions, indices), ([7.0; 12], [7; 6]));
+        assert_eq!(read(0, null_mut(), null_mut(), 0, null_mut()), LUXFER_OK);
+        assert_eq!(read(4, null_mut(), positions.as_mut_ptr(), 0, null_mut()), LUXFER_NOT_FOUND);
+        for set in [0, 1, 2, u32::MAX] {
+            assert_eq!(luxfer_scene_read_mesh_uvs(scene, 1, set, 4, positions.as_mut_ptr()), LUXFER_NOT_FOUND);
+        }
+        let (mut name, mut needed) = ([0u8; 8], 0);
+        assert_eq!(luxfer_scene_get_mesh_name(scene, 1, name.as_mut_ptr().cast(), 8, &mut needed), LUXFER_OK);
+        assert_eq!((&name[..needed], needed), (&b"Lamp\0"[..], 5));
+        assert_eq!(luxfer_scene_get_mesh(scene, 2, &mut info), LUXFER_NOT_FOUND);
+        assert_eq!(luxfer_scene_release(scene), LUXFER_OK);
+        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+    }
+}
+
+#[test]
+fn materials_and_textures_come_back() {
+    let context = context(1);
+    let scene = scene(context);
+    let light = image(context, 5, 3, 2.0);
+    unsafe {
+        let (mut mesh, mut index) = (0, 0);
+        let name = c"Lamp".as_ptr();
+        let status = luxfer_scene_place_emission(scene, name, light, 1.0, 2.0, 3.0, &mut mesh, &mut index);
+        assert_eq!(status, LUXFER_OK, "{}", message(context));
+        let mut material: luxfer_material_params = zeroed();
+        material.struct_size = size_of_val(&material) as u32;
+        assert_eq!(luxfer_scene_get_material(scene, index, &mut material), LUXFER_OK);
+        assert_eq!((material.emission, material.double_sided, material.ior), ([1.0, 2.0, 3.0], 0, 1.5));
+        assert!(material.name.is_null());
+
+        let mut used = luxfer_texture_use { struct_size: size_of::<luxfer_texture_use>() as u32, ..zeroed() };
+        let mut role = |role| (luxfer_scene_get_material_texture(scene, index, role, &mut used), used.texture);
+        assert_eq!(role(LUXFER_TEXTURE_BASE_COLOR), (LUXFER_OK, LUXFER_NONE));
+        assert_eq!(role(LUXFER_TEXTURE_NORMAL), (LUXFER_OK, LUXFER_NONE));
+        assert_eq!(role(4).0, LUXFER_INVALID_ARGUMENT);
+        assert_eq!(role(LUXFER_TEXTURE_EMISSION), (LUXFER_OK, 0));
+        assert_eq!((used.uv_set, used.wrap_u, used.wrap_v), (1, LUXFER_WRAP_CLAMP, LUXFER_WRAP_CLAMP));
+        assert_eq!(used.transform, [1.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
+        let texture = made(|out| luxfer_scene_get_texture(scene, used.texture, out));
+        assert_eq!(luxfer_scene_get_texture(scene, 1, &mut null_mut()), LUXFER_NOT_FOUND);
+        assert_eq!(luxfer_scene_get_material(scene, 3, &mut material), LUXFER_NOT_FOUND);
+
+        // A texture outlives its scene.
+        assert_eq!(luxfer_scene_release(scene), LUXFER_OK);
+        let (mut width, mut height) = (0, 0);
+        assert_eq!(luxfer_image_size(texture, &mut width, &mut height, null_mut()), LUXFER_OK);
+        assert_eq!((width, height), (5, 3));
+        assert_eq!(luxfer_image_release(texture), LUXFER_OK);
+        assert_eq!(luxfer_image_release(light), LUXFER_OK);
+        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+    }
+}
+
+#[test]
+fn rays_hit_what_they_should_after_every_change() {
+    let context = context(2);
+    let scene = scene(context);
+    let up = luxfer_ray { origin: [0.1, 0.0, 0.2], direction: [0.0, 2.0, 0.0], t_max: f32::INFINITY };
+    let rays = [
+        up,
+        luxfer_ray { t_max: 0.9, ..up },
+        luxfer_ray { direction: [0.0; 3], ..up },
+        luxfer_ray { origin: [f32::NAN; 3], ..up },
+        luxfer_ray { direction: [0.0, -2.0, 0.0], ..up },
+    ];
+    let none = luxfer_hit { t: -1.0, mesh: 7, triangle: 7, u: -1.0, v: -1.0 };
+    unsafe {
+        let mut hits = [none; 5];
+        assert_eq!(luxfer_scene_intersect(scene, rays.as_ptr(), 5, hits.as_mut_ptr()), LUXFER_OK);
+        assert_eq!(hits.map(|h| h.mesh), [1, LUXFER_NONE, LUXFER_NONE, LUXFER_NONE, 0]);
+        assert_eq!(hits.map(|h| h.t), [0.95, f32::INFINITY, f32::INFINITY, f32::INFINITY, 1.0]);
+        // At (0.6, 0.7) of the lamp: in its second triangle, whose corners are 0, 2 and 3.
+        assert_eq!(hits[0].triangle, 1);
+        assert!((hits[0].u - 0.6).abs() < 1e-5 && (hits[0].v - 0.1).abs() < 1e-5, "{} {}", hits[0].u, hits[0].v);
+
+        // The scene changes: the lamp is covered.
+        let positions = [[-1.0f32, 1.5, -1.0], [1.0, 1.5, -1.0], [0.0, 1.5, 2.0]];
+        let mut mesh: luxfer_mesh_params = zeroed();
+        assert_eq!(luxfer_mesh_params_init(&mut mesh, size_of_val(&mesh)), LUXFER_OK);
+        (mesh.vertex_count, mesh.positions) = (3, positions.as_ptr().cast());
+        (mesh.triangle_count, mesh.indices) = (1, [0u32, 1, 2].as_ptr().cast());
+        assert_eq!(luxfer_scene_add_mesh(scene, &mesh, null_mut()), LUXFER_OK);
+        assert_eq!(luxfer_scene_intersect(scene, rays.as_ptr(), 1, hits.as_mut_ptr()), LUXFER_OK);
+        assert_eq!((hits[0].mesh, hits[0].t), (2, 0.75));
+
+        assert_eq!(luxfer_scene_intersect(scene, null(), 0, null_mut()), LUXFER_OK);
+        assert_eq!(luxfer_scene_intersect(scene, null(), 1, hits.as_mut_ptr()), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_scene_intersect(scene, rays.as_ptr(), 1, null_mut()), LUXFER_INVALID_ARGUMENT);
+        let too_many = luxfer_scene_intersect(scene, rays.as_ptr(), usize::MAX / 2, hits.as_mut_ptr());
+        assert_eq!(too_many, LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_scene_release(scene), LUXFER_OK);
+        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+    }
+}
+
+#[test]
+fn generated_scenes_and_warps_refuse_what_makes_no_sense() {
+    let context = context(1);
+    unsafe {
+        let mut scene = null_mut();
+        for which in [-1, 2] {
+            assert_eq!(luxfer_demo_scene(context, which, &mut scene), LUXFER_INVALID_ARGUMENT);
+        }
+        let source = image(context, 4, 4, 0.5);
+        let identity = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
+        let warp = |map: &[f64; 9], width, height| {
+            let mut out = null_mut();
+            let status = luxfer_image_warp(source, map.as_ptr(), width, height, &mut out);
+            assert_eq!(status == LUXFER_OK, !out.is_null());
+            assert_eq!(luxfer_image_release(out), LUXFER_OK);
+            status
+        };
+        assert_eq!(warp(&identity, 4, 4), LUXFER_OK);
+        assert_eq!(warp(&identity, 0, 4), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(warp(&identity, 4, 65537), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(warp(&[f64::NAN; 9], 4, 4), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(warp(&[0.0; 9], 4, 4), LUXFER_OK, "a map to nowhere shows nothing");
+        assert_eq!(luxfer_image_release(source), LUXFER_OK);
+        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+    }
+}

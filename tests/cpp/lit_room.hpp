@@ -1,0 +1,68 @@
+// The library's demonstration room with lamps on its ceiling, as the harnesses trace it.
+#pragma once
+
+#include "scene_copy.hpp"
+
+// The ceiling's light texture: texels are 12.5 cm wide where the ceiling is 6 x 4 m. Lamps are whole texels.
+constexpr std::uint32_t LAMP_COLUMNS = 48, LAMP_ROWS = 32;
+
+struct Lamp {
+    std::uint32_t left, top, right, bottom; // in texels, right and bottom excluded
+    Vec emission;                           // cd/m²
+};
+
+inline const std::vector<Lamp> &lamps() {
+    static const std::vector<Lamp> list = {
+        {4, 4, 12, 8, {900, 820, 700}},     {20, 3, 24, 13, {400, 600, 1000}}, {33, 5, 43, 9, {900, 820, 700}},
+        {5, 22, 9, 26, {1200, 500, 250}},   {18, 20, 32, 22, {800, 800, 800}}, {38, 19, 42, 29, {500, 900, 450}},
+    };
+    return list;
+}
+
+inline const Lamp *lamp_at(std::uint32_t column, std::uint32_t row) {
+    for (const Lamp &lamp : lamps())
+        if (column >= lamp.left && column < lamp.right && row >= lamp.top && row < lamp.bottom)
+            return &lamp;
+    return nullptr;
+}
+
+struct LitRoom {
+    luxfer_context *context = nullptr;
+    luxfer_scene *scene = nullptr;
+    luxfer_surface ceiling = {};
+    std::uint32_t light_mesh = 0;
+
+    LitRoom() {
+        CHECK_OK(luxfer_context_create(nullptr, &context));
+        CHECK_OK(luxfer_demo_scene(context, LUXFER_DEMO_TARGET_ROOM, &scene));
+        ceiling.struct_size = sizeof ceiling;
+        CHECK_OK(luxfer_scene_find_surface(scene, "Ceiling", &ceiling));
+
+        constexpr float SCALE = 500.0f; // so that the strength matters
+        std::vector<float> pixels(std::size_t(LAMP_COLUMNS) * LAMP_ROWS * 3, 0.0f);
+        for (std::uint32_t row = 0; row < LAMP_ROWS; ++row)
+            for (std::uint32_t column = 0; column < LAMP_COLUMNS; ++column)
+                if (const Lamp *lamp = lamp_at(column, row)) {
+                    float *pixel = &pixels[3 * (std::size_t(row) * LAMP_COLUMNS + column)];
+                    pixel[0] = float(lamp->emission.x / SCALE);
+                    pixel[1] = float(lamp->emission.y / SCALE);
+                    pixel[2] = float(lamp->emission.z / SCALE);
+                }
+        luxfer_image_view view;
+        CHECK_OK(luxfer_image_view_init(&view, sizeof view));
+        view.width = LAMP_COLUMNS;
+        view.height = LAMP_ROWS;
+        view.byte_size = pixels.size() * sizeof(float);
+        view.data = pixels.data();
+        luxfer_image *texture = nullptr;
+        CHECK_OK(luxfer_image_create(context, &view, &texture));
+        CHECK_OK(luxfer_scene_place_emission(scene, "Ceiling", texture, SCALE, SCALE, SCALE, &light_mesh, nullptr));
+        CHECK_OK(luxfer_image_release(texture));
+    }
+    ~LitRoom() {
+        CHECK_OK(luxfer_scene_release(scene));
+        CHECK_OK(luxfer_context_release(context));
+    }
+    LitRoom(const LitRoom &) = delete;
+    LitRoom &operator=(const LitRoom &) = delete;
+};

@@ -1,0 +1,235 @@
+// Homographies and unwarps against OpenCV's.
+//
+// OpenCV puts the top-left pixel's centre at (0, 0), the library at (0.5, 0.5); homographies of points do not care, those
+// of images are moved by half a pixel on both sides.
+#include "check.hpp"
+
+#include <opencv2/calib3d.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+namespace {
+
+using Quad = std::vector<cv::Point2f>;
+
+// A convex quadrilateral: the corners of a rectangle, each moved by up to 30 % of its sides. OpenCV takes f32, and
+// getPerspectiveTransform multiplies coordinates in f32 too: they are rounded to twelve bits, so that products are exact.
+Quad random_quad(std::mt19937_64 &random, double size) {
+    std::uniform_real_distribution<double> unit(0.0, 1.0);
+    const auto rounded = [size](double v) { return float(std::round(v / size * 1024) * size / 1024); };
+    const double w = (0.5 + unit(random)) * size, h = (0.5 + unit(random)) * size;
+    const double x = (unit(random) - 0.5) * size, y = (unit(random) - 0.5) * size;
+    Quad quad;
+    for (const auto &[u, v] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 1}})
+        quad.emplace_back(rounded(x + w * (u + 0.3 * (2 * unit(random) - 1))),
+                          rounded(y + h * (v + 0.3 * (2 * unit(random) - 1))));
+    return quad;
+}
+
+cv::Matx33d with_library(luxfer_context *context, const Quad &from, const Quad &to) {
+    double a[8], b[8];
+    for (std::size_t i = 0; i < 4; ++i) {
+        a[2 * i] = from[i].x;
+        a[2 * i + 1] = from[i].y;
+        b[2 * i] = to[i].x;
+        b[2 * i + 1] = to[i].y;
+    }
+    cv::Matx33d found;
+    CHECK_OK(luxfer_homography_from_corners(context, a, b, found.val));
+    return found;
+}
+
+// Between coordinates in units of the quads' sizes, so that all entries count alike; of unit norm, the largest entry
+// positive.
+cv::Matx33d normalised(const cv::Matx33d &h, double from_size, double to_size) {
+    const auto scale = [](double s) { return cv::Matx33d(s, 0, 0, 0, s, 0, 0, 0, 1); };
+    const cv::Matx33d unit = scale(1 / to_size) * h * scale(from_size);
+    const auto smaller = [](double a, double b) { return std::abs(a) < std::abs(b); };
+    return unit * (std::copysign(1.0, *std::max_element(unit.val, unit.val + 9, smaller)) / cv::norm(unit));
+}
+
+// In those units the equations of these quads have condition numbers up to 2300, so that findHomography, which squares
+// them, errs by no more than 1e-9, and getPerspectiveTransform by far less. No quad is left out.
+void check_homographies(luxfer_context *context) {
+    constexpr double RELATIVE = 1e-9;
+    std::mt19937_64 random(11);
+    for (const auto &[from_size, to_size] : {std::pair{1.0, 1.0}, {1.0, 1024.0}, {1024.0, 1024.0}, {4096.0, 512.0}}) {
+        double worst_exact = 0, worst_found = 0;
+        for (int i = 0; i < 400; ++i) {
+            const Quad from = random_quad(random, from_size), to = random_quad(random, to_size);
+            const auto unit = [&](const cv::Matx33d &h) { return normalised(h, from_size, to_size); };
+            const cv::Matx33d ours = unit(with_library(context, from, to));
+            const cv::Matx33d exact = unit(cv::getPerspectiveTransform(from, to, cv::DECOMP_LU));
+            const cv::Matx33d found = unit(cv::findHomography(from, to, 0));
+            worst_exact = std::max(worst_exact, cv::norm(ours - exact));
+            worst_found = std::max(worst_found, cv::norm(ours - found));
+        }
+        std::printf("400 homographies from quads of size %g to %g: getPerspectiveTransform within %.1e, "
+                    "findHomography within %.1e\n",
+                    from_size, to_size, worst_exact, worst_found);
+        CHECK(worst_exact <= RELATIVE);
+        CHECK(worst_found <= RELATIVE);
+    }
+    // What has no homography is an error.
+    const double square[8] = {0, 0, 1, 0, 1, 1, 0, 1}, line[8] = {0, 0, 1, 0, 2, 0, 0, 1};
+    const double nowhere[8] = {0, 0, 1, 0, 1, 1, 0, std::numeric_limits<double>::quiet_NaN()};
+    double h[9];
+    CHECK_STATUS(luxfer_homography_from_corners(context, line, square, h), LUXFER_DEGENERATE);
+    CHECK_STATUS(luxfer_homography_from_corners(context, square, nowhere, h), LUXFER_DEGENERATE);
+    CHECK_STATUS(luxfer_homography_from_corners(context, nullptr, square, h), LUXFER_INVALID_ARGUMENT);
+    CHECK_STATUS(luxfer_homography_from_corners(context, square, square, nullptr), LUXFER_INVALID_ARGUMENT);
+}
+
+// A smooth picture: waves of amplitude 0.25 and this length in pixels, another pair of directions for each channel.
+struct Waves {
+    double length;
+    // The largest there can be along an axis.
+    double slope() const { return 2 * 0.25 * 2 * M_PI / length; }
+    double curvature() const { return 2 * 0.25 * std::pow(2 * M_PI / length, 2); }
+
+    float value(double x, double y, int channel) const {
+        const double k = 2 * M_PI / length, turn = 0.7 * channel;
+        const double s = x * std::cos(turn) + y * std::sin(turn), t = y * std::cos(turn) - x * std::sin(turn);
+        return float(0.5 + 0.25 * std::sin(k * s) + 0.25 * std::cos(k * t));
+    }
+    cv::Mat image(int width, int height) const {
+        cv::Mat image(height, width, CV_32FC3);
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < width; ++x)
+                for (int c = 0; c < 3; ++c)
+                    image.at<cv::Vec3f>(y, x)[c] = value(x + 0.5, y + 0.5, c);
+        return image;
+    }
+};
+
+cv::Mat warp_with_library(luxfer_context *context, const cv::Mat &source, const cv::Matx33d &to_source, cv::Size size) {
+    luxfer_image_view view;
+    CHECK_OK(luxfer_image_view_init(&view, sizeof view));
+    view.width = std::uint32_t(source.cols);
+    view.height = std::uint32_t(source.rows);
+    view.byte_size = source.total() * source.elemSize();
+    view.data = source.data;
+    luxfer_image *image = nullptr, *warped = nullptr;
+    CHECK_OK(luxfer_image_create(context, &view, &image));
+    CHECK_OK(luxfer_image_warp(image, to_source.val, std::uint32_t(size.width), std::uint32_t(size.height), &warped));
+    cv::Mat out(size, CV_32FC3);
+    view.width = std::uint32_t(size.width);
+    view.height = std::uint32_t(size.height);
+    view.byte_size = out.total() * out.elemSize();
+    view.data = out.data;
+    CHECK_OK(luxfer_image_read(warped, 0, &view));
+    CHECK_OK(luxfer_image_release(warped));
+    CHECK_OK(luxfer_image_release(image));
+    return out;
+}
+
+// OpenCV's warp of the same, in its convention of pixel centres.
+cv::Mat warp_with_opencv(const cv::Mat &source, const cv::Matx33d &to_source, cv::Size size, int interpolation) {
+    const cv::Matx33d half(1, 0, 0.5, 0, 1, 0.5, 0, 0, 1);
+    cv::Mat out;
+    cv::warpPerspective(source, out, half.inv() * to_source * half, size, interpolation | cv::WARP_INVERSE_MAP);
+    return out;
+}
+
+struct Difference {
+    double mean = 0, most = 0;
+};
+
+Difference difference(const cv::Mat &a, const cv::Mat &b) {
+    cv::Mat d;
+    cv::absdiff(a, b, d);
+    const cv::Scalar mean = cv::mean(d);
+    Difference found;
+    found.mean = (mean[0] + mean[1] + mean[2]) / 3;
+    cv::minMaxLoc(d.reshape(1), nullptr, &found.most);
+    return found;
+}
+
+void check_difference(double minification, const Difference &found, double bound) {
+    std::printf("unwarps at %.2f source pixels for each: mean difference %.1e (bound %.1e), largest %.1e (bound %.1e)\n",
+                minification, found.mean, bound / 2, found.most, bound);
+    CHECK(found.mean <= bound / 2);
+    CHECK(found.most <= bound);
+}
+
+// A map from an output of this size into the inside of a source, minifying by about `minification`.
+cv::Matx33d random_map(luxfer_context *context, std::mt19937_64 &random, cv::Size size, cv::Size source,
+                       double minification) {
+    std::uniform_real_distribution<double> unit(-1.0, 1.0);
+    const double w = size.width * minification, h = size.height * minification;
+    Quad to;
+    for (const auto &[u, v] : {std::pair{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}})
+        to.emplace_back(float(source.width / 2.0 + w * (u + 0.05 * unit(random))),
+                        float(source.height / 2.0 + h * (v + 0.05 * unit(random))));
+    const float right = float(size.width), bottom = float(size.height);
+    return with_library(context, {{0, 0}, {right, 0}, {right, bottom}, {0, bottom}}, to);
+}
+
+// Magnified, the library interpolates with cubics, OpenCV linearly at positions rounded to 1/32 pixel. So on a smooth
+// picture they may differ by a linear interpolation's error, curvature / 8 along each axis, and by what 1/64 pixel along
+// each axis makes; the cubic's own error is of fourth order. The mean is less than half of that largest difference: the
+// weight of a linear interpolation's error, a parabola, has a mean of 2/3, and a wave one of 2/pi.
+void check_magnified(luxfer_context *context) {
+    std::mt19937_64 random(12);
+    const Waves waves{64};
+    const cv::Mat source = waves.image(480, 360);
+    const double bound = 2 * waves.curvature() / 8 + 2 * waves.slope() / 64;
+    for (double minification : {0.3, 0.6, 0.95}) {
+        const cv::Size size(int(300 / minification), int(220 / minification));
+        Difference worst;
+        for (int i = 0; i < 4; ++i) {
+            const cv::Matx33d map = random_map(context, random, size, source.size(), minification);
+            const Difference found = difference(warp_with_library(context, source, map, size),
+                                                warp_with_opencv(source, map, size, cv::INTER_LINEAR));
+            worst.mean = std::max(worst.mean, found.mean);
+            worst.most = std::max(worst.most, found.most);
+        }
+        check_difference(minification, worst, bound);
+    }
+}
+
+// Minified by m, a pixel is the mean of its footprint: for the library under a Gaussian whose variance is (m² + 1) / 4
+// source pixels along each axis, here for OpenCV over the footprint itself, m² / 12, made by a linear unwarp four times as
+// fine (1/12 more for its interpolation) that is then averaged. Averages of a smooth picture differ by half the curvature
+// times the difference of the variances, along each axis.
+void check_minified(luxfer_context *context) {
+    std::mt19937_64 random(13);
+    const Waves waves{120};
+    const cv::Mat source = waves.image(1300, 1000);
+    constexpr int FINE = 4;
+    for (double m : {2.0, 3.5}) {
+        const cv::Size size(int(1000 / m), int(760 / m));
+        const double longest = 1.25 * m; // the corners' shifts make it vary
+        const double variances = (longest * longest + 1) / 4 - longest * longest / 12;
+        const double bound = waves.curvature() * variances + 2 * waves.slope() / 64;
+        Difference worst;
+        for (int i = 0; i < 2; ++i) {
+            const cv::Matx33d map = random_map(context, random, size, source.size(), m);
+            const cv::Matx33d finer = map * cv::Matx33d(1.0 / FINE, 0, 0, 0, 1.0 / FINE, 0, 0, 0, 1);
+            const cv::Mat fine = warp_with_opencv(source, finer, size * FINE, cv::INTER_LINEAR);
+            cv::Mat averaged;
+            cv::resize(fine, averaged, size, 0, 0, cv::INTER_AREA);
+            const Difference found = difference(warp_with_library(context, source, map, size), averaged);
+            worst.mean = std::max(worst.mean, found.mean);
+            worst.most = std::max(worst.most, found.most);
+        }
+        check_difference(m, worst, bound);
+    }
+}
+
+} // namespace
+
+int main() {
+    luxfer_context *context = nullptr;
+    CHECK_OK(luxfer_context_create(nullptr, &context));
+    check_homographies(context);
+    check_magnified(context);
+    check_minified(context);
+    CHECK_OK(luxfer_context_release(context));
+    return check::summary("opencv_cross_check");
+}

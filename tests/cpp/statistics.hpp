@@ -1,0 +1,84 @@
+// The little of statistics that comparing two renderers needs, in f64.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+namespace statistics {
+
+// Continued fraction of the incomplete beta function (Lentz's method; Press et al., Numerical Recipes, 6.4).
+inline double beta_fraction(double a, double b, double x) {
+    const double tiny = 1e-300;
+    double c = 1, d = 1 / std::max(1 - (a + b) * x / (a + 1), tiny), result = d;
+    for (int m = 1; m < 500; ++m) {
+        const double even = m * (b - m) * x / ((a + 2 * m - 1) * (a + 2 * m));
+        const double odd = -(a + m) * (a + b + m) * x / ((a + 2 * m) * (a + 2 * m + 1));
+        double step = 1;
+        for (double term : {even, odd}) {
+            d = 1 / (1 + term * d);
+            c = 1 + term / c;
+            step = c * d;
+            result *= step;
+        }
+        if (std::abs(step - 1) < 1e-14)
+            break;
+    }
+    return result;
+}
+
+inline double incomplete_beta(double a, double b, double x) {
+    if (x <= 0 || x >= 1)
+        return x <= 0 ? 0 : 1;
+    const double front =
+        std::exp(std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) + a * std::log(x) + b * std::log1p(-x));
+    return x < (a + 1) / (a + b + 2) ? front * beta_fraction(a, b, x) / a : 1 - front * beta_fraction(b, a, 1 - x) / b;
+}
+
+// Probability that Student's t lies further from 0 than this.
+inline double student_p(double t, double degrees) {
+    return incomplete_beta(degrees / 2, 0.5, degrees / (degrees + t * t));
+}
+
+struct Sample {
+    double count = 0, mean = 0, squares = 0; // squared distances from the mean (Welford 1962)
+
+    void add(double value) {
+        ++count;
+        const double before = value - mean;
+        mean += before / count;
+        squares += before * (value - mean);
+    }
+    double variance_of_mean() const { return squares / (count - 1) / count; }
+};
+
+// Welch's test that two samples have one mean: the probability of a difference as large as theirs.
+inline double welch_p(const Sample &a, const Sample &b) {
+    const double va = a.variance_of_mean(), vb = b.variance_of_mean(), difference = a.mean - b.mean;
+    // Without any scatter, as where a pixel sees nothing but a lamp or nothing at all, only rounding may differ.
+    const double rounding = 1e-6 * (std::abs(a.mean) + std::abs(b.mean));
+    if (std::sqrt(va + vb) <= rounding)
+        return std::abs(difference) <= 4 * rounding ? 1 : 0;
+    const double degrees = (va + vb) * (va + vb) / (va * va / (a.count - 1) + vb * vb / (b.count - 1));
+    return student_p(difference / std::sqrt(va + vb), degrees);
+}
+
+// The numbers of successes in n trials of probability p between which all but `outside` of the cases lie.
+inline std::pair<std::size_t, std::size_t> binomial_interval(std::size_t n, double p, double outside) {
+    std::size_t low = 0, high = n;
+    double sum = 0;
+    for (std::size_t k = 0; k <= n; ++k) {
+        sum += std::exp(std::lgamma(n + 1.0) - std::lgamma(k + 1.0) - std::lgamma(double(n - k) + 1.0) +
+                        double(k) * std::log(p) + double(n - k) * std::log1p(-p));
+        if (sum < outside / 2)
+            low = k + 1;
+        if (sum >= 1 - outside / 2) {
+            high = k;
+            break;
+        }
+    }
+    return {low, high};
+}
+
+} // namespace statistics
