@@ -945,7 +945,7 @@ typedef struct luxfer_rectify_params {
     uint32_t max_side;
     /** Must be 0. */
     uint32_t reserved;
-    /** Largest magnification of the photo, > 0; default 6. What is further away is cut off. */
+    /** Largest magnification of the photo, > 0; default 16. What is further away is cut off. */
     double max_magnification;
     /** Seed of the search; default 1. */
     uint64_t seed;

@@ -25,7 +25,8 @@ pub fn strokes(exemplar: &Exemplar, width: usize, height: usize) -> Result<Strok
     let between = |column: usize, row: usize| lamp(column, row) + grid.period * Vec2::new(0.5, 0.0);
     let half = Vec2::new(0.3, 0.0) * grid.size;
 
-    // Ceiling: along it between two columns of lamps, and across between two rows. Not ceiling: walls, floor, furniture.
+    // Ceiling: along it between two columns of lamps, and across between two rows. Not ceiling: the walls and what
+    // stands before them.
     // No two strokes cross, so that one drawing can hold them all.
     let along = |column: usize, row: usize| [on_ceiling(between(column, row)), on_ceiling(between(column, row + 1))];
     let across = |column: usize, row: usize| {
@@ -37,7 +38,7 @@ pub fn strokes(exemplar: &Exemplar, width: usize, height: usize) -> Result<Strok
         vec![Vec3::new(5.39, 2.6, 5.0), Vec3::new(5.39, 2.5, 2.5)],
         vec![Vec3::new(5.39, 2.2, 4.0), Vec3::new(5.39, 1.5, 2.0)],
         vec![Vec3::new(1.0, 2.4, 0.01), Vec3::new(4.4, 2.0, 0.01)],
-        vec![Vec3::new(2.2, 0.0, 3.5), Vec3::new(2.6, 0.0, 2.0)],
+        vec![Vec3::new(1.4, 2.0, 0.01), Vec3::new(2.6, 1.8, 0.01)],
     ];
     let mut set = StrokeSet::default();
     set.plane.push(stroke(&along(0, 1), true)?);

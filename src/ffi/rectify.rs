@@ -88,7 +88,7 @@ pub struct luxfer_rectify_params {
     pub max_side: u32,
     /// Must be 0.
     pub reserved: u32,
-    /// Largest magnification of the photo, > 0; default 6. What is further away is cut off.
+    /// Largest magnification of the photo, > 0; default 16. What is further away is cut off.
     pub max_magnification: f64,
     /// Seed of the search; default 1.
     pub seed: u64,

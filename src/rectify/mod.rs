@@ -224,7 +224,7 @@ pub struct UnwarpParams {
 
 impl Default for UnwarpParams {
     fn default() -> Self {
-        Self { axes: None, max_side: 2048, max_magnification: 6.0 }
+        Self { axes: None, max_side: 2048, max_magnification: 16.0 }
     }
 }
 

@@ -2,12 +2,16 @@
 
 use super::{LitScene, Results, Transfer, colour, need, placement};
 use crate::error::{Error, ErrorKind, Result};
+use crate::image::pyramid;
 use crate::job::Job;
 use crate::render::World;
 use crate::scene::surface;
 use crate::{emission, features, rectify, relight, render, segment};
 use glam::Vec3;
 use std::sync::Arc;
+
+/// Standard deviation of the blur of the light mask in photo pixels.
+const EDGE_BLUR: f32 = 0.9;
 
 impl Transfer {
     pub(super) fn find_view(&mut self, job: Job) -> Result<()> {
@@ -61,9 +65,11 @@ impl Transfer {
         let unwarped = need(&self.results.unwarped, "run stage Unwarp")?;
         let surface = surface::find(scene, &self.input.surface)?;
 
-        // What the unwarped plane shows of the light mask.
+        // What the unwarped plane shows of the light mask. Where a lamp is clipped its edge is a staircase of whole pixels:
+        // a blur of about a pixel makes half the confidence the straight edge again.
         let (width, height) = (unwarped.image.width, unwarped.image.height);
-        let light = rectify::warp(&lights.confidence, &unwarped.to_photo, width, height, job.part(0.0, 0.1))?;
+        let smooth = pyramid::blur(&lights.confidence, EDGE_BLUR, job.part(0.0, 0.05))?;
+        let light = rectify::warp(&smooth, &unwarped.to_photo, width, height, job.part(0.05, 0.1))?;
         let input = emission::Input {
             unwarped: &unwarped.image,
             light: &light,
