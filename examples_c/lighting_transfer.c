@@ -58,7 +58,7 @@ static const char *path(const options *o, const char *name) {
 }
 
 static options parse(int argc, char **argv) {
-    options o = {NULL, NULL, "Ceiling", NULL, ".", 1.2, 640, 360, 16};
+    options o = {NULL, NULL, "Ceiling", NULL, ".", 1.2, 640, 360, 12};
     int i;
     for (i = 1; i < argc; i++) {
         const char *arg = argv[i], *value = i + 1 < argc ? argv[i + 1] : NULL;
@@ -134,27 +134,25 @@ static void generate_input(luxfer_transfer *transfer, luxfer_image **photo, luxf
     luxfer_demo_photo_release(demo);
 }
 
-/* Gives a scene without lights one before its camera, so that there is something to see. */
-static void add_headlight(luxfer_scene *scene) {
+/* Gives a scene without lights one before the camera, so that there is something to see. */
+static void add_headlight(luxfer_scene *scene, const luxfer_camera_params *camera) {
     luxfer_scene_counts counts;
-    luxfer_camera_params camera;
     luxfer_light_params light;
     int i;
     counts.struct_size = sizeof counts;
     check(luxfer_scene_get_counts(scene, &counts), "scene");
     if (counts.lights > 0) return;
-    check(luxfer_camera_params_init(&camera, sizeof camera), "camera");
     check(luxfer_light_params_init(&light, sizeof light), "light");
-    check(luxfer_scene_get_camera(scene, 0, &camera), "camera");
     for (i = 0; i < 3; i++) {
-        light.position[i] = camera.position[i] + 1.5f * (camera.target[i] - camera.position[i]);
+        light.position[i] = camera->position[i] + 1.5f * (camera->target[i] - camera->position[i]);
         light.intensity[i] = 400;
     }
     check(luxfer_scene_add_light(scene, &light, NULL), "light");
 }
 
-/* A quick picture of a scene through its first camera. */
-static luxfer_image *preview(const options *o, luxfer_scene *scene, unsigned samples, const char *title) {
+/* A quick picture of a scene. */
+static luxfer_image *preview(const options *o, luxfer_scene *scene, const luxfer_camera_params *camera,
+                             unsigned samples, const char *title) {
     luxfer_render *render = NULL;
     luxfer_render_params params;
     luxfer_job *job = NULL;
@@ -165,6 +163,7 @@ static luxfer_image *preview(const options *o, luxfer_scene *scene, unsigned sam
     params.samples = samples;
     check(luxfer_render_create(context, &render), title);
     check(luxfer_render_set_scene(render, scene), title);
+    check(luxfer_render_set_camera(render, camera), title);
     check(luxfer_render_start(render, &params, &job), title);
     finish(job, title);
     check(luxfer_render_get_image(render, LUXFER_RENDER_BEAUTY, &image), title);
@@ -233,6 +232,7 @@ int main(int argc, char **argv) {
     luxfer_image *photo = NULL, *lit = NULL, *emission = NULL, *before, *white;
     luxfer_scene *scene = NULL, *lit_scene = NULL, *white_scene = NULL;
     luxfer_job *job = NULL;
+    luxfer_camera_params camera;
     report.struct_size = sizeof report;
     solution.struct_size = sizeof solution;
     check(luxfer_context_create(NULL, &context), "context");
@@ -267,9 +267,11 @@ int main(int argc, char **argv) {
     write_report(&o, &report, &solution);
 
     /* What to compare it with: the scene before, under its own lights or a lamp before the camera, and in white light. */
-    add_headlight(scene);
-    before = preview(&o, scene, 8, "rendering it before");
-    white = preview(&o, white_scene, o.samples / 2 + 1, "rendering it in white");
+    check(luxfer_camera_params_init(&camera, sizeof camera), "camera");
+    check(luxfer_scene_get_camera(lit_scene, 0, &camera), "camera");
+    add_headlight(scene, &camera);
+    before = preview(&o, scene, &camera, 8, "rendering it before");
+    white = preview(&o, white_scene, &camera, o.samples / 2 + 1, "rendering it in white");
     check(overview_save(context, transfer, photo, before, white, lit, params.white_luminance, path(&o, "overview.png")),
           "overview.png");
     printf("%u luminaires; colour and intensity to +-%.2f %%; see %s\n", report.fixtures, 100 * report.relight_error,

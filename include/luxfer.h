@@ -1635,7 +1635,7 @@ typedef struct luxfer_relight_params {
     uint32_t struct_size;
     /** LUXFER_QUANTITY_ value; default LUXFER_QUANTITY_OUTGOING. */
     luxfer_quantity quantity;
-    /** Most paths to trace, in [1024, 2^30]; default 2^22. */
+    /** Most paths to trace, in [1024, 2^30]; default 2^20. */
     uint32_t paths;
     /**
      * Stop when the half-width of the widest 95 % interval is below this share of its answer, in [0, 1]; default 0.01; 0 =
@@ -1849,7 +1849,10 @@ luxfer_status luxfer_transfer_set_scene(luxfer_transfer *transfer,
                                         luxfer_scene *scene,
                                         const char *surface);
 
-/** Sets the camera of the picture. camera may be NULL: the scene's first, which is the default. Any thread. */
+/**
+ * Sets the camera of the picture. camera may be NULL, the default: the scene's first, or one chosen in a corner
+ * of the room if it has none. Any thread.
+ */
 luxfer_status luxfer_transfer_set_camera(luxfer_transfer *transfer,
                                          const luxfer_camera_params *camera);
 

@@ -56,17 +56,32 @@ fn the_header_is_what_the_sources_say() {
     assert_eq!(checked_in.len(), generated.len(), "include/luxfer.h ends early or late; run with LUXFER_BLESS=1");
 }
 
+/// The C program in the README is one that compiles, warnings as errors.
+#[test]
+fn the_readme_program_compiles() {
+    let readme = std::fs::read_to_string(root().join("README.md")).unwrap();
+    let program = readme.split("```c\n").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
+    let file = scratch("readme.c");
+    std::fs::write(&file, program).unwrap();
+    check_syntax("cc", "-std=c99", &file);
+}
+
 #[test]
 fn the_header_compiles_as_c99_and_as_cpp17_without_a_warning() {
     let source = "#include \"luxfer.h\"\n#include \"luxfer.h\"\nint main(void) { return (int)(luxfer_version() - LUXFER_VERSION); }\n";
     for (compiler, standard, name) in [("cc", "-std=c99", "alone.c"), ("c++", "-std=c++17", "alone.cpp")] {
         let file = scratch(name);
         std::fs::write(&file, source).unwrap();
-        run(Command::new(compiler)
-            .args([standard, "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-fsyntax-only", "-I"])
-            .arg(root().join("include"))
-            .arg(file));
+        check_syntax(compiler, standard, &file);
     }
+}
+
+/// Compiles a file against the header, warnings as errors.
+fn check_syntax(compiler: &str, standard: &str, file: &Path) {
+    run(Command::new(compiler)
+        .args([standard, "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-fsyntax-only", "-I"])
+        .arg(root().join("include"))
+        .arg(file));
 }
 
 #[test]

@@ -47,7 +47,7 @@ pub struct luxfer_relight_params {
     pub struct_size: u32,
     /// LUXFER_QUANTITY_ value; default LUXFER_QUANTITY_OUTGOING.
     pub quantity: luxfer_quantity,
-    /// Most paths to trace, in [1024, 2^30]; default 2^22.
+    /// Most paths to trace, in [1024, 2^30]; default 2^20.
     pub paths: u32,
     /// Stop when the half-width of the widest 95 % interval is below this share of its answer, in [0, 1]; default 0.01; 0 =
     /// never.

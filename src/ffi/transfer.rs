@@ -272,7 +272,8 @@ pub unsafe extern "C" fn luxfer_transfer_set_scene(
     })
 }
 
-/// Sets the camera of the picture. camera may be NULL: the scene's first, which is the default. Any thread.
+/// Sets the camera of the picture. camera may be NULL, the default: the scene's first, or one chosen in a corner
+/// of the room if it has none. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_set_camera(
     transfer: *mut luxfer_transfer,

@@ -67,7 +67,7 @@ pub struct Params {
 
 impl Default for Params {
     fn default() -> Self {
-        Self { quantity: Quantity::Outgoing, paths: 1 << 22, target_error: 0.01, time_budget_ms: 0, seed: 1 }
+        Self { quantity: Quantity::Outgoing, paths: 1 << 20, target_error: 0.01, time_budget_ms: 0, seed: 1 }
     }
 }
 

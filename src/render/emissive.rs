@@ -13,7 +13,7 @@ use crate::scene::{Scene, Texture, Wrap};
 use glam::{DVec2, Vec2, Vec3};
 
 /// The most cells in all; blocks of texels double in size until there are no more.
-const MAX_CELLS: usize = 1 << 20;
+const MAX_CELLS: usize = 1 << 17;
 /// Beyond this many texels a triangle is sampled uniformly.
 const MAX_TEXELS: f64 = (1 << 22) as f64;
 

@@ -9,6 +9,7 @@ mod colour;
 mod placement;
 mod schedule;
 mod stages;
+mod viewpoint;
 
 pub use colour::TargetColour;
 pub use schedule::Fixture;
@@ -74,7 +75,7 @@ pub struct Input {
     pub scene: Option<Arc<Scene>>,
     /// Name of the object or material of the scene that receives the lights.
     pub surface: String,
-    /// Whence the result is rendered; the scene's first camera if absent.
+    /// Whence the result is rendered; the scene's first camera if absent, and if it has none one is chosen.
     pub camera: Option<Camera>,
 }
 
@@ -143,7 +144,7 @@ pub struct Results {
     /// Mean colour the surface is to have, relative to the photo's white.
     pub target: Option<Vec3>,
     pub solution: Option<Solution>,
-    /// The scene with the solved emission.
+    /// The scene with the solved emission, and a camera if it had none.
     pub lit: Option<Arc<LitScene>>,
     pub film: Option<Arc<Film>>,
     /// Seconds each stage took when it last ran.

@@ -1,6 +1,6 @@
 //! Each stage of the transfer: gathers its input from the results before it, runs it, keeps its result.
 
-use super::{LitScene, Results, Transfer, colour, need, placement};
+use super::{LitScene, Results, Transfer, colour, need, placement, viewpoint};
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::pyramid;
 use crate::job::Job;
@@ -114,7 +114,11 @@ impl Transfer {
         let solution = relight::run(&input, &self.params.relight, job.part(0.1, 1.0))?;
 
         let strength = Vec3::splat(self.params.white_luminance) * solution.scale.as_vec3();
-        self.results.lit = Some(Arc::new(unsolved.with_strength(strength)));
+        let mut lit = unsolved.with_strength(strength);
+        if lit.scene.cameras.is_empty() {
+            Arc::make_mut(&mut lit.scene).cameras.push(viewpoint::choose(&world, &lit.surface));
+        }
+        self.results.lit = Some(Arc::new(lit));
         self.results.target = Some(target);
         self.results.solution = Some(solution);
         Ok(())

@@ -1,0 +1,66 @@
+//! A camera for scenes that come without one: in the corner of the room under the lit surface from where most is seen.
+
+use crate::render::World;
+use crate::scene::accel::Ray;
+use crate::scene::surface::Surface;
+use crate::scene::{Camera, Scene};
+use glam::{Vec2, Vec3};
+
+/// Vertical angle of view in radians.
+const FOV_Y: f32 = 0.9;
+/// How far into the room from a corner, as shares of the surface's sides.
+const INSETS: [f32; 2] = [0.08, 0.2];
+/// Where between the surface and the far end of the scene.
+const HEIGHTS: [f32; 2] = [0.35, 0.5];
+/// Rays that judge a view: across and down.
+const RAYS: [usize; 2] = [12, 8];
+
+/// The candidate with the longest mean line of sight, each cut at the size of the surface.
+pub(super) fn choose(world: &World, surface: &Surface) -> Camera {
+    let depth = depth_below(world.scene(), surface);
+    let mut best = (f32::NEG_INFINITY, None);
+    for corner in 0..4 {
+        for inset in INSETS {
+            for height in HEIGHTS {
+                let camera = candidate(surface, corner, inset, height * depth);
+                let score = openness(world, &camera, surface.size.length());
+                if score > best.0 {
+                    best = (score, Some(camera));
+                }
+            }
+        }
+    }
+    best.1.unwrap_or_else(|| candidate(surface, 0, INSETS[0], HEIGHTS[0] * depth))
+}
+
+/// Extent of the scene on the room's side of the surface.
+fn depth_below(scene: &Scene, surface: &Surface) -> f32 {
+    let points = scene.meshes.iter().flat_map(|m| &m.positions);
+    let depth = points.map(|p| (*p - surface.origin).dot(surface.normal)).fold(0.0, f32::max);
+    if depth > 0.0 { depth } else { surface.size.max_element() / 2.0 }
+}
+
+/// In a corner of the surface, `below` metres from it, looking at the opposite corner.
+fn candidate(surface: &Surface, corner: usize, inset: f32, below: f32) -> Camera {
+    let at = |u: f32, v: f32| {
+        let on_surface = Vec2::new(u, v) * surface.size;
+        surface.origin + surface.u_axis * on_surface.x + surface.v_axis * on_surface.y + surface.normal * below
+    };
+    let near = |far: bool| if far { 1.0 - inset } else { inset };
+    let (u, v) = (near(corner & 1 == 1), near(corner >> 1 == 1));
+    let position = at(u, v);
+    Camera { name: "Overview".into(), ..Camera::look_at(position, at(1.0 - u, 1.0 - v), FOV_Y) }
+}
+
+fn openness(world: &World, camera: &Camera, cap: f32) -> f32 {
+    let mut sum = 0.0;
+    for i in 0..RAYS[0] * RAYS[1] {
+        let x = ((i % RAYS[0]) as f32 + 0.5) / RAYS[0] as f32;
+        let y = ((i / RAYS[0]) as f32 + 0.5) / RAYS[1] as f32;
+        let direction: Vec3 = camera.direction(x, y, 16.0 / 9.0).normalize();
+        let hit = world.accel().closest(&Ray::new(camera.position, direction), |_| true);
+        // Leaving the scene is no better than seeing its far end.
+        sum += hit.map_or(cap / 2.0, |h| h.t.min(cap));
+    }
+    sum
+}

@@ -1,0 +1,130 @@
+//! The whole lighting transfer on the generated photo and room, against what is known about them.
+
+use glam::Vec3;
+use luxfer::demo::{self, photo};
+use luxfer::error::ErrorKind;
+use luxfer::exec::Pool;
+use luxfer::job::Monitor;
+use luxfer::relight;
+use luxfer::render::World;
+use luxfer::transfer::{Input, Params, Stage, Transfer};
+use std::sync::Arc;
+
+/// A transfer with all its input, small enough for a test; and the room the photo shows.
+fn prepared(pool: &Pool) -> (Transfer, demo::Exemplar) {
+    let room = demo::exemplar_room().unwrap();
+    let camera = room.scene.cameras[room.camera].clone();
+    let size = photo::Params { width: 540, height: 360, samples: 8, seed: 3 };
+    let monitor = Monitor::default();
+    let scene = Arc::new(room.scene.clone());
+    let (picture, _) = pool.run(|| photo::photograph(scene, &camera, &size, monitor.job())).unwrap();
+    let input = Input {
+        strokes: demo::strokes(&room, size.width, size.height).unwrap(),
+        photo: Some(Arc::new(picture)),
+        scene: Some(Arc::new(demo::target_room().unwrap())),
+        surface: "Ceiling".into(),
+        ..Input::default()
+    };
+    let mut params = Params::default();
+    params.relight.target_error = 0.02;
+    params.render.width = 64;
+    params.render.height = 36;
+    params.render.samples = 8;
+    // The photographer stands 1.2 m under the ceiling.
+    params.plane_distance = f64::from(room.ceiling_height - camera.position.y);
+    (Transfer { input, params, ..Transfer::default() }, room)
+}
+
+#[test]
+fn lamps_keep_their_size_and_spacing_and_the_ceiling_gets_its_colour() {
+    let pool = Pool::new(0).unwrap();
+    let (mut transfer, room) = prepared(&pool);
+    let monitor = Monitor::default();
+    pool.run(|| transfer.run(Stage::View, Stage::Render, monitor.job(), |_| {})).unwrap();
+    assert_eq!(monitor.progress(), 1.0);
+    let results = &transfer.results;
+
+    // The camera: 66 degrees across.
+    let perspective = &results.view.as_ref().unwrap().perspective;
+    let focal = 540.0 / 2.0 / 33f64.to_radians().tan();
+    assert!((perspective.focal / focal - 1.0).abs() < 0.05, "focal length {} px, truly {focal}", perspective.focal);
+
+    // The lamps: in metres, as in the office. Whole ones only; the border of the ceiling cuts others.
+    let fixtures = transfer.fixtures().unwrap();
+    let largest = fixtures.iter().map(|f| f.area).fold(0.0, f64::max);
+    let whole: Vec<_> = fixtures.iter().filter(|f| f.area > 0.8 * largest).collect();
+    assert!(whole.len() >= 4, "{} whole lamps of {}", whole.len(), fixtures.len());
+    // A lamp fifty times as bright as white stays clipped for two standard deviations of the lens blur, 1.4 px, beyond its
+    // edge: at the 2 to 5 m of these lamps up to 3 cm on each side that no mask can tell from the lamp.
+    let side = f64::from(room.grid.size.x);
+    for lamp in &whole {
+        let seen = lamp.area.sqrt();
+        assert!(seen > 0.97 * side && seen < side + 0.06, "a lamp of {seen} m, truly {side}");
+    }
+    let nearest = |from: Vec3| {
+        let others = whole.iter().map(|f| f64::from(f.position.distance(from))).filter(|d| *d > 0.1);
+        others.fold(f64::INFINITY, f64::min)
+    };
+    let mut spacings: Vec<f64> = whole.iter().map(|f| nearest(f.position)).collect();
+    spacings.sort_by(f64::total_cmp);
+    let (spacing, period) = (spacings[spacings.len() / 2], f64::from(room.grid.period.min_element()));
+    assert!((spacing / period - 1.0).abs() < 0.03, "lamps {spacing} m apart, truly {period}");
+
+    // The colour: measured again with other paths, the ceiling of the lit scene has the photo's.
+    let lit = results.lit.as_ref().unwrap();
+    let mesh = lit.placed.mesh;
+    let triangles: Vec<_> = (0..lit.scene.meshes[mesh].triangles.len()).map(|t| (mesh, t)).collect();
+    let target = results.target.unwrap() * transfer.params.white_luminance;
+    let again = pool.run(|| {
+        let world = World::build(lit.scene.clone(), monitor.job()).unwrap();
+        let input =
+            relight::Input { world: &world, emitter: lit.placed.material, target_triangles: &triangles, target };
+        let params = relight::Params { seed: 77, ..transfer.params.relight.clone() };
+        relight::run(&input, &params, monitor.job()).unwrap()
+    });
+    let stated = transfer.results.solution.as_ref().unwrap().error();
+    for c in 0..3 {
+        // Two independent intervals, widened to 99.9 % for three channels.
+        let allowed = 1.8 * (stated + again.half_width[c]);
+        assert!((again.scale[c] - 1.0).abs() < allowed, "channel {c}: {} +- {allowed}", again.scale[c]);
+    }
+}
+
+#[test]
+fn what_is_missing_is_named_and_a_cancelled_run_keeps_what_it_has() {
+    let pool = Pool::new(0).unwrap();
+    let monitor = Monitor::default();
+    let empty = pool.run(|| Transfer::default().run(Stage::View, Stage::Render, monitor.job(), |_| {})).unwrap_err();
+    assert_eq!((empty.kind, empty.message.contains("set the photo")), (ErrorKind::NotReady, true), "{empty}");
+
+    let (mut transfer, _) = prepared(&pool);
+    let late = pool.run(|| transfer.run(Stage::Emission, Stage::Render, monitor.job(), |_| {})).unwrap_err();
+    assert_eq!((late.kind, late.message.contains("run stage Lights")), (ErrorKind::NotReady, true), "{late}");
+    let backwards = pool.run(|| transfer.run(Stage::Render, Stage::View, monitor.job(), |_| {})).unwrap_err();
+    assert_eq!(backwards.kind, ErrorKind::InvalidArgument);
+
+    // Cancel when the lights have been found; then go on from there.
+    let cancelling = Monitor::default();
+    let run = pool.run(|| {
+        transfer.run(Stage::View, Stage::Render, cancelling.job(), |results| {
+            if results.lights.is_some() {
+                cancelling.cancel();
+            }
+        })
+    });
+    assert_eq!(run.unwrap_err().kind, ErrorKind::Cancelled);
+    assert!(transfer.results.lights.is_some() && transfer.results.unwarped.is_none());
+    pool.run(|| transfer.run(Stage::Unwarp, Stage::Emission, monitor.job(), |_| {})).unwrap();
+    assert!(transfer.results.emission.is_some());
+
+    // A surface that is not there, and a plane without light.
+    transfer.input.surface = "No such thing".into();
+    let wrong = pool.run(|| transfer.run(Stage::Emission, Stage::Emission, monitor.job(), |_| {})).unwrap_err();
+    assert_eq!(wrong.kind, ErrorKind::NotFound, "{wrong}");
+    transfer.input.surface = "Ceiling".into();
+    let lights = Arc::make_mut(transfer.results.lights.as_mut().unwrap());
+    lights.confidence.data.fill(0.0);
+    lights.mask.data.fill(0.0);
+    let dark = pool.run(|| transfer.run(Stage::Emission, Stage::Emission, monitor.job(), |_| {})).unwrap_err();
+    assert_eq!(dark.kind, ErrorKind::Degenerate, "{dark}");
+}
