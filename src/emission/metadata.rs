@@ -1,5 +1,5 @@
 //! The three metadata channels that lead the synthesis through empty space: confidence, and the signed x and y distance
-//! to the nearest feature (Lipp et al., §6 and Fig. 12b; after Lefebvre and Hoppe 2006).
+//! to the nearest feature ("Lighting Style Transfer", §6 and Fig. 12b; after Lefebvre and Hoppe 2006).
 //!
 //! The paper does not say what "horizontal and vertical distance" is where the nearest lamp of the row and of the plane
 //! differ. Here the two are the components of the offset from a pixel to its *nearest lit pixel* in the plane, so that

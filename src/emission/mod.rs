@@ -1,4 +1,4 @@
-//! Emission: an emissive texture of any size from the unwarped lights of a photo (Lipp et al., §6).
+//! Emission: an emissive texture of any size from the unwarped lights of a photo ("Lighting Style Transfer", §6).
 //!
 //! ```text
 //! unwarped photo + light + valid ─▶ exemplar ─▶ period ─▶ metadata ─▶ patches (seam) ─▶ lamps ─▶ recover ─▶ luminaires

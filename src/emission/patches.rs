@@ -1,4 +1,4 @@
-//! Iterative patch placement: image quilting (Efros and Freeman 2001) over colour and metadata (Lipp et al., §6).
+//! Iterative patch placement: image quilting (Efros and Freeman 2001) over colour and metadata ("Lighting Style Transfer", §6).
 //!
 //! Blocks are filled in scanline order. A patch is a shift of the exemplar; of the shifts that cover a block best, one is
 //! drawn among those that agree best with what is already there. What a patch cannot show, because the photo did not, is

@@ -1,4 +1,4 @@
-//! Full detail: every lamp and every patch is copied again from the finest source there is (Lipp et al., §6, Fig. 12h).
+//! Full detail: every lamp and every patch is copied again from the finest source there is ("Lighting Style Transfer", §6, Fig. 12h).
 //!
 //! A texel looks up its shift, undoes it, and arrives in the unwarped image; from there the homography leads into the photo,
 //! where the area the texel covers is averaged. What is light is decided in the unwarped mask: sharply where it is magnified,

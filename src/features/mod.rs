@@ -1,4 +1,4 @@
-//! Features: what segmentation knows of each pixel (Lipp et al., "Single-Exemplar Lighting Style Transfer", §4.1).
+//! Features: what segmentation knows of each pixel ("Single-Exemplar Lighting Style Transfer", §4.1).
 //!
 //! ```text
 //! photo ─▶ clean ─▶ L*, a*, b* ───────────────────────────────┐

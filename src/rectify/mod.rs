@@ -1,4 +1,4 @@
-//! Rectification: edges to lines to vanishing points to a homography to an unwarped texture (Lipp et al., §5).
+//! Rectification: edges to lines to vanishing points to a homography to an unwarped texture ("Lighting Style Transfer", §5).
 //!
 //! ```text
 //! photo ─▶ gradient ─▶ segments ───────▶ vanishing ─▶ camera ─▶ View

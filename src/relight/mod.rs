@@ -1,5 +1,5 @@
-//! Relighting: colour and intensity of the emission, solved against the photo through light transport (Lipp et al.,
-//! "Single-Exemplar Lighting Style Transfer", §7).
+//! Relighting: colour and intensity of the emission, solved against the photo through light transport
+//! ("Single-Exemplar Lighting Style Transfer", §7).
 //!
 //! Radiance is linear in emission, so nothing is searched: per colour channel the mean light `r` that the target surface
 //! sends back under the emission as it stands, and the light `b` of everything else, are measured once; the answer is

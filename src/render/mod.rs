@@ -1,5 +1,5 @@
 //! Rendering: unidirectional path tracing with next-event estimation and multiple importance sampling (Kajiya 1986;
-//! Veach 1997), for images and for the irradiance of surfaces (Lipp et al. 2024, section 7; StyLit, section 3.2).
+//! Veach 1997), for images and for the irradiance of surfaces ("Lighting Style Transfer", section 7; StyLit, section 3.2).
 //!
 //! [`World`] makes a scene ready; [`run`] renders a camera's view; [`irradiance`] samples the light that arrives at a point.
 //! All estimates are unbiased and nothing is clamped; the same seed gives the same bits on any number of threads.

@@ -1,4 +1,4 @@
-//! Guided segmentation: strokes on the photo to a mask with per-pixel confidence (Lipp et al., §4.2).
+//! Guided segmentation: strokes on the photo to a mask with per-pixel confidence ("Lighting Style Transfer", §4.2).
 //!
 //! ```text
 //! strokes ─▶ samples ─▶ standardise ─▶ logistic models ─▶ cross-validation over strokes ─▶ the better one, calibrated

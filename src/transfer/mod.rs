@@ -1,5 +1,5 @@
-//! The lighting transfer: from a photo, a few strokes and a 3D scene to that scene lit as in the photo (Lipp et al.,
-//! "Single-Exemplar Lighting Style Transfer via Emissive Texture Synthesis and Optimization").
+//! The lighting transfer: from a photo, a few strokes and a 3D scene to that scene lit as in the photo
+//! ("Single-Exemplar Lighting Style Transfer via Emissive Texture Synthesis and Optimization").
 //!
 //! Runs the stages in order and passes data between them, which never know of each other. Every intermediate can be read,
 //! replaced by the caller's own, and the run taken up again from any stage: a better depth map, a hand-drawn mask or
