@@ -1850,6 +1850,13 @@ luxfer_status luxfer_transfer_set_scene(luxfer_transfer *transfer,
                                         const char *surface);
 
 /**
+ * Sets an emissive texture, linear RGB relative to the photo's white, that the stage EMISSION stretches over the surface
+ * as it is instead of making one from the photo. texture may be NULL, the default: one is made. Any thread.
+ */
+luxfer_status luxfer_transfer_set_texture(luxfer_transfer *transfer,
+                                          luxfer_image *texture);
+
+/**
  * Sets the camera of the picture. camera may be NULL, the default: the scene's first, or one chosen in a corner
  * of the room if it has none. Any thread.
  */
@@ -2066,6 +2073,12 @@ luxfer_status luxfer_transfer_get_scene(luxfer_transfer *transfer,
  * LUXFER_NOT_READY before the first stage has ended.
  */
 luxfer_status luxfer_transfer_get_report(luxfer_transfer *transfer, luxfer_transfer_report *report);
+
+/**
+ * Tells what the lines of the photo say about its camera, and how the plane is unwarped. Any thread.
+ * LUXFER_NOT_READY before the stage VIEW has ended.
+ */
+luxfer_status luxfer_transfer_get_view(luxfer_transfer *transfer, luxfer_rectify_report *view);
 
 /**
  * Tells the solved colour and intensity and how sure they are. Any thread.

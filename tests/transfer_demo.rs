@@ -4,6 +4,7 @@ use glam::Vec3;
 use luxfer::demo::{self, photo};
 use luxfer::error::ErrorKind;
 use luxfer::exec::Pool;
+use luxfer::image::Image;
 use luxfer::job::Monitor;
 use luxfer::relight;
 use luxfer::render::World;
@@ -119,6 +120,19 @@ fn what_is_missing_is_named_and_a_cancelled_run_keeps_what_it_has() {
     assert!(transfer.results.lights.is_some() && transfer.results.unwarped.is_none());
     pool.run(|| transfer.run(Stage::Unwarp, Stage::Emission, monitor.job(), |_| {})).unwrap();
     assert!(transfer.results.emission.is_some());
+
+    // A texture of the caller's own takes the place of the synthesised one.
+    let stripe = Image::from_fn(12, 8, |x, _| if x == 3 { [1.0, 0.9, 0.8] } else { [0.0; 3] }).unwrap();
+    transfer.input.texture = Some(Arc::new(stripe.clone()));
+    pool.run(|| transfer.run(Stage::Emission, Stage::Relight, monitor.job(), |_| {})).unwrap();
+    assert_eq!(transfer.results.emission.as_ref().unwrap().texture, stripe);
+    let fixtures = transfer.fixtures().unwrap();
+    assert_eq!(fixtures.len(), 1);
+    assert!((fixtures[0].area - 6.0 * 4.0 / 12.0).abs() < 1e-3, "{} m²", fixtures[0].area);
+    transfer.input.texture = Some(Arc::new(Image::new(4, 4, 3).unwrap()));
+    let black = pool.run(|| transfer.run(Stage::Emission, Stage::Emission, monitor.job(), |_| {})).unwrap_err();
+    assert_eq!(black.kind, ErrorKind::Degenerate, "{black}");
+    transfer.input.texture = None;
 
     // A surface that is not there, and a plane without light.
     transfer.input.surface = "No such thing".into();

@@ -101,7 +101,7 @@ pub struct Emission {
     pub texture: Image,
     /// Light mask of the texture, 0 or 1.
     pub mask: Image,
-    /// What synthesis worked with, at working size: confidence, signed x and y distance to the nearest light.
+    /// What synthesis worked with, at working size; empty where the caller gave the texture. Confidence, signed x and y distance to the nearest light.
     pub exemplar_metadata: Image,
     /// The same of its result.
     pub metadata: Image,
@@ -125,6 +125,32 @@ impl Params {
         check_range("emission.metadata_weight", self.metadata_weight, 0.0, 1e3)?;
         Ok(())
     }
+}
+
+/// The emission of a texture the caller has made: what is brighter than nothing is light.
+pub fn given(texture: &Image, job: Job) -> Result<Emission> {
+    let texture = texture.to_rgb()?;
+    if let Some(bad) = texture.data.iter().find(|v| !(v.is_finite() && **v >= 0.0)) {
+        return Err(Error::argument(format!("the emissive texture holds {bad}; its values must be finite and >= 0")));
+    }
+    let mut mask = Image::new(texture.width, texture.height, 1)?;
+    for (m, pixel) in mask.data.iter_mut().zip(texture.data.chunks_exact(3)) {
+        *m = f32::from(pixel.iter().any(|&v| v > 0.0));
+    }
+    if !mask.data.contains(&1.0) {
+        return Err(Error::degenerate("the emissive texture is black everywhere: nothing in it gives light"));
+    }
+    let luminaires = luminaires::find(&texture, &mask, job)?;
+    Ok(Emission {
+        texture,
+        mask,
+        exemplar_metadata: Image::default(),
+        metadata: Image::default(),
+        luminaires,
+        continuation: Continuation::Copy,
+        regularity: 0.0,
+        error: 0.0,
+    })
 }
 
 fn check_input(input: &Input) -> Result<()> {

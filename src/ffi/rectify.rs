@@ -225,8 +225,7 @@ unsafe impl Versioned for luxfer_rectify_report {
 }
 
 impl luxfer_rectify_report {
-    fn new(output: &Output) -> Self {
-        let view = &output.view;
+    pub(super) fn new(view: &View, unwarped: Option<&Unwarped>) -> Self {
         let camera = &view.perspective;
         let point = |i: usize| &view.vanishing_points[i];
         let report = Self {
@@ -244,7 +243,7 @@ impl luxfer_rectify_report {
             axes: camera.axes.to_cols_array_2d(),
             ..Self::defaults()
         };
-        let Some(unwarped) = &output.unwarped else { return report };
+        let Some(unwarped) = unwarped else { return report };
         Self {
             is_unwarped: 1,
             to_photo: unwarped.to_photo.0.transpose().to_cols_array(),
@@ -422,7 +421,8 @@ pub unsafe extern "C" fn luxfer_rectify_get_report(
 ) -> luxfer_status {
     enter(rectify, |stage| {
         let out = Report::new(report)?;
-        out.set(luxfer_rectify_report::new(&*stage.output()?));
+        let output = stage.output()?;
+        out.set(luxfer_rectify_report::new(&output.view, output.unwarped.as_deref()));
         Ok(())
     })
 }

@@ -153,6 +153,7 @@ pub(super) struct Inputs {
     photo: Option<Arc<Pixels>>,
     depth: Option<(Arc<Pixels>, DepthKind)>,
     strokes: StrokeSet,
+    texture: Option<Arc<Pixels>>,
     scene: Option<Arc<SceneObject>>,
     surface: String,
     camera: Option<Camera>,
@@ -174,6 +175,7 @@ impl Inputs {
             photo: self.photo.as_ref().map(|photo| photo.shared()).transpose()?,
             depth,
             strokes: self.strokes.clone(),
+            texture: self.texture.as_ref().map(|texture| texture.shared()).transpose()?,
             scene: self.scene.as_ref().map(|scene| scene.snapshot()),
             surface: self.surface.clone(),
             camera: self.camera.clone(),
@@ -267,6 +269,22 @@ pub unsafe extern "C" fn luxfer_transfer_set_scene(
         stage.change(|inputs| {
             inputs.scene = Some(scene);
             inputs.surface = surface;
+            Ok(())
+        })
+    })
+}
+
+/// Sets an emissive texture, linear RGB relative to the photo's white, that the stage EMISSION stretches over the surface
+/// as it is instead of making one from the photo. texture may be NULL, the default: one is made. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_transfer_set_texture(
+    transfer: *mut luxfer_transfer,
+    texture: *mut luxfer_image,
+) -> luxfer_status {
+    enter(transfer, |stage| {
+        let texture = Pixels::optional(stage.context(), texture, "texture")?;
+        stage.change(|inputs| {
+            inputs.texture = texture;
             Ok(())
         })
     })

@@ -7,6 +7,7 @@ use super::handle::{self, Owned};
 use super::image::{Pixels, luxfer_image};
 use super::params::{Report, Versioned};
 use super::pointer::Out;
+use super::rectify::luxfer_rectify_report;
 use super::relight::luxfer_relight_report;
 use super::scene::{SceneObject, luxfer_scene, missing};
 use super::status::luxfer_status;
@@ -256,6 +257,21 @@ pub unsafe extern "C" fn luxfer_transfer_get_report(
     enter(transfer, |stage| {
         let out = Report::new(report)?;
         out.set(luxfer_transfer_report::new(&*stage.output()?));
+        Ok(())
+    })
+}
+
+/// Tells what the lines of the photo say about its camera, and how the plane is unwarped. Any thread.
+/// LUXFER_NOT_READY before the stage VIEW has ended.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_transfer_get_view(
+    transfer: *mut luxfer_transfer,
+    view: *mut luxfer_rectify_report,
+) -> luxfer_status {
+    enter(transfer, |stage| {
+        let out = Report::new(view)?;
+        let results = stage.output()?;
+        out.set(luxfer_rectify_report::new(made(&results.view, "VIEW")?, results.unwarped.as_deref()));
         Ok(())
     })
 }

@@ -72,6 +72,8 @@ pub struct Input {
     /// Depth of the photo, if the caller has it.
     pub depth: Option<(Arc<Image>, DepthKind)>,
     pub strokes: StrokeSet,
+    /// An emissive texture to use as it is, stretched over the surface, instead of one synthesised from the photo.
+    pub texture: Option<Arc<Image>>,
     pub scene: Option<Arc<Scene>>,
     /// Name of the object or material of the scene that receives the lights.
     pub surface: String,

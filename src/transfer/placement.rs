@@ -8,8 +8,6 @@ pub(super) struct TexelGrid {
     pub height: usize,
     /// Unwarped pixels per texel.
     pub scale: f64,
-    /// Metres per texel.
-    pub texel_size: f64,
 }
 
 /// Texels as fine as the unwarped photo, but no more than `max_texels` along the longer side.
@@ -18,7 +16,7 @@ pub(super) fn texel_grid(surface: &Surface, unwarped: &Unwarped, plane_distance:
     let (width, height) = (f64::from(surface.size.x), f64::from(surface.size.y));
     let texel_size = pixel.max(width.max(height) / max_texels as f64);
     let count = |length: f64| ((length / texel_size).round() as usize).clamp(1, max_texels);
-    TexelGrid { width: count(width), height: count(height), scale: texel_size / pixel, texel_size }
+    TexelGrid { width: count(width), height: count(height), scale: texel_size / pixel }
 }
 
 #[cfg(test)]
@@ -51,7 +49,7 @@ mod tests {
         assert!((fine.scale - 1.0).abs() < 1e-6);
         let coarse = texel_grid(&surface(Vec2::new(6.0, 3.0)), &unwarped, 2.0, 100);
         assert_eq!((coarse.width, coarse.height), (100, 50));
-        assert!((coarse.scale - 3.0).abs() < 1e-6 && (coarse.texel_size - 0.06).abs() < 1e-8);
+        assert!((coarse.scale - 3.0).abs() < 1e-6);
         // A surface thinner than a texel still has one.
         assert_eq!(texel_grid(&surface(Vec2::new(1e-9, 1.0)), &unwarped, 1.0, 64).width, 1);
     }

@@ -1,11 +1,12 @@
 //! Each stage of the transfer: gathers its input from the results before it, runs it, keeps its result.
 
 use super::{LitScene, Results, Transfer, colour, need, placement, viewpoint};
+use crate::emission::Emission;
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::pyramid;
 use crate::job::Job;
 use crate::render::World;
-use crate::scene::surface;
+use crate::scene::surface::{self, Surface};
 use crate::{emission, features, rectify, relight, render, segment};
 use glam::Vec3;
 use std::sync::Arc;
@@ -59,11 +60,28 @@ impl Transfer {
     }
 
     pub(super) fn synthesise(&mut self, job: Job) -> Result<()> {
-        let photo = need(&self.input.photo, "set the photo")?;
         let scene = need(&self.input.scene, "set the scene")?;
+        let surface = surface::find(scene, &self.input.surface)?;
+        let emission = match &self.input.texture {
+            Some(texture) => emission::given(texture, job.part(0.0, 0.95))?,
+            None => self.texture_from_photo(&surface, job.part(0.0, 0.95))?,
+        };
+
+        // Onto the surface, as bright as the photo shows the lamps.
+        let mut lit = (**scene).clone();
+        let strength = Vec3::splat(self.params.white_luminance);
+        let texel_size = f64::from(surface.size.x) / emission.texture.width as f64;
+        let placed = surface::place(&mut lit, &surface, emission.texture.clone(), strength)?;
+        self.results.unsolved = Some(Arc::new(LitScene { scene: Arc::new(lit), surface, placed, texel_size }));
+        self.results.emission = Some(Arc::new(emission));
+        Ok(())
+    }
+
+    /// As many texels as the surface needs, continued from the unwarped lights.
+    fn texture_from_photo(&self, surface: &Surface, job: Job) -> Result<Emission> {
+        let photo = need(&self.input.photo, "set the photo")?;
         let lights = need(&self.results.lights, "run stage Lights")?;
         let unwarped = need(&self.results.unwarped, "run stage Unwarp")?;
-        let surface = surface::find(scene, &self.input.surface)?;
 
         // What the unwarped plane shows of the light mask. Where a lamp is clipped its edge is a staircase of whole pixels:
         // a blur of about a pixel makes half the confidence the straight edge again.
@@ -76,23 +94,14 @@ impl Transfer {
             valid: &unwarped.valid,
             photo: Some((photo, unwarped.to_photo)),
         };
-        let grid = placement::texel_grid(&surface, unwarped, self.params.plane_distance, self.params.max_texels);
+        let grid = placement::texel_grid(surface, unwarped, self.params.plane_distance, self.params.max_texels);
         let params = emission::Params {
             width: grid.width,
             height: grid.height,
             scale: grid.scale,
             ..self.params.emission.clone()
         };
-        let emission = emission::run(&input, &params, job.part(0.1, 0.95))?;
-
-        // Onto the surface, as bright as the photo shows the lamps.
-        let mut lit = (**scene).clone();
-        let strength = Vec3::splat(self.params.white_luminance);
-        let placed = surface::place(&mut lit, &surface, emission.texture.clone(), strength)?;
-        self.results.unsolved =
-            Some(Arc::new(LitScene { scene: Arc::new(lit), surface, placed, texel_size: grid.texel_size }));
-        self.results.emission = Some(Arc::new(emission));
-        Ok(())
+        emission::run(&input, &params, job.part(0.1, 1.0))
     }
 
     pub(super) fn relight(&mut self, job: Job) -> Result<()> {
