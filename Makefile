@@ -1,5 +1,6 @@
 # make demo   builds the library and a C program, and runs the lighting transfer on generated input, into out/
 # make test   sets up what is missing (Debian packages) and runs every test
+# make bench  runs the benches and prints the headline figures; make bench ONLY=rays runs one; plots go to out/bench/
 # make clean  removes what was built
 
 CARGO   ?= cargo
@@ -9,7 +10,10 @@ LIB     := $(PROFILE)/libluxfer.so
 SONAME  := $(PROFILE)/libluxfer.so.0.1
 PACKAGES := cmake g++ binutils libopencv-dev libembree-dev
 
-.PHONY: all lib demo test setup clean
+BENCHES  := $(patsubst benches/%.rs,%,$(wildcard benches/*.rs))
+ONLY     ?= $(BENCHES)
+
+.PHONY: all lib demo test bench setup clean
 
 all: lib
 
@@ -41,6 +45,10 @@ test: setup lib
 	cmake -S . -B build -DCMAKE_BUILD_TYPE=Release
 	cmake --build build -j 2
 	ctest --test-dir build --output-on-failure
+
+# One after the other: they would measure each other.
+bench:
+	@for bench in $(ONLY); do $(CARGO) bench --quiet --bench $$bench || exit 1; done
 
 clean:
 	$(CARGO) clean

@@ -1,0 +1,151 @@
+//! What all benches share: headline figures, interleaved timing, tables, plots, and the scenes they run on.
+//!
+//! A bench is a program (`harness = false`): it prints tables for people, writes curves into `out/bench/`, and prints one
+//! line per headline figure, `figure NAME VALUE UNIT`. Rivals are timed in turns within one process, and the figure is
+//! the median of the ratios of the rounds: what else the machine does then weighs on both alike.
+
+// Each bench is a crate of its own and uses a part of this.
+#![allow(dead_code)]
+
+pub mod embree;
+pub mod plot;
+pub mod scenes;
+
+use std::time::Instant;
+
+/// One headline figure.
+pub fn figure(name: &str, value: f64, unit: &str) {
+    // Four significant digits whatever the size.
+    let digits = (3.0 - value.abs().max(1e-9).log10().floor()).clamp(0.0, 9.0) as usize;
+    println!("figure {name} {value:.digits$} {unit}");
+}
+
+/// A headline figure that cannot be measured here, and why.
+pub fn absent(name: &str, reason: &str) {
+    println!("figure {name} absent -");
+    println!("# {name} is absent: {reason}");
+}
+
+/// Which clock a piece of work is held against.
+#[derive(Clone, Copy)]
+pub enum Clock {
+    /// Time on the wall: for work on several threads.
+    Wall,
+    /// Processor time of the calling thread: for work on one thread, blind to what else the machine does.
+    Thread,
+}
+
+impl Clock {
+    fn seconds(self, start: Instant) -> f64 {
+        match self {
+            Self::Wall => start.elapsed().as_secs_f64(),
+            Self::Thread => {
+                let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
+                // SAFETY: the call fills the structure it is given.
+                unsafe { libc::clock_gettime(libc::CLOCK_THREAD_CPUTIME_ID, &mut time) };
+                time.tv_sec as f64 + time.tv_nsec as f64 * 1e-9
+            }
+        }
+    }
+}
+
+/// Seconds that `work` takes, and what it gives.
+pub fn time<T>(clock: Clock, work: impl FnOnce() -> T) -> (f64, T) {
+    let origin = Instant::now();
+    let before = clock.seconds(origin);
+    let value = work();
+    (clock.seconds(origin) - before, value)
+}
+
+/// Times of several rivals, taken in turns.
+pub struct Timings {
+    /// `seconds[rival][round]`.
+    pub seconds: Vec<Vec<f64>>,
+}
+
+/// Runs every rival once per round, each round starting with another one. A round before the first is not counted.
+pub fn interleaved(clock: Clock, rounds: usize, rivals: &mut [&mut dyn FnMut()]) -> Timings {
+    let mut seconds = vec![Vec::with_capacity(rounds); rivals.len()];
+    rivals.iter_mut().for_each(|rival| rival());
+    for round in 0..rounds {
+        for turn in 0..rivals.len() {
+            let index = (round + turn) % rivals.len();
+            let (taken, ()) = time(clock, &mut *rivals[index]);
+            seconds[index].push(taken);
+        }
+    }
+    Timings { seconds }
+}
+
+impl Timings {
+    /// Median seconds of one rival.
+    pub fn median(&self, rival: usize) -> f64 {
+        median(&self.seconds[rival])
+    }
+
+    /// Median over the rounds of the time of `above` divided by the time of `below`.
+    pub fn ratio(&self, above: usize, below: usize) -> f64 {
+        median(&self.ratios(above, below))
+    }
+
+    /// Lower and upper quartile of those ratios.
+    pub fn quartiles(&self, above: usize, below: usize) -> [f64; 2] {
+        let ratios = self.ratios(above, below);
+        [quantile(&ratios, 0.25), quantile(&ratios, 0.75)]
+    }
+
+    fn ratios(&self, above: usize, below: usize) -> Vec<f64> {
+        self.seconds[above].iter().zip(&self.seconds[below]).map(|(a, b)| a / b).collect()
+    }
+}
+
+pub fn median(values: &[f64]) -> f64 {
+    quantile(values, 0.5)
+}
+
+/// The value that a share `p` of the values lies below, interpolated; NaN of nothing.
+pub fn quantile(values: &[f64], p: f64) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let Some(last) = sorted.len().checked_sub(1) else { return f64::NAN };
+    let at = p * last as f64;
+    let below = at.floor() as usize;
+    let above = (below + 1).min(last);
+    sorted[below] + (sorted[above] - sorted[below]) * (at - below as f64)
+}
+
+/// Highest resident memory of this process so far, in bytes.
+pub fn peak_memory() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    line.trim().trim_end_matches("kB").trim().parse::<u64>().ok().map(|kib| kib << 10)
+}
+
+/// A table: the first column is left-aligned, the others right.
+pub struct Table {
+    rows: Vec<Vec<String>>,
+}
+
+impl Table {
+    pub fn new<S: ToString>(head: impl IntoIterator<Item = S>) -> Self {
+        Self { rows: vec![head.into_iter().map(|s| s.to_string()).collect()] }
+    }
+
+    pub fn row<S: ToString>(&mut self, cells: impl IntoIterator<Item = S>) {
+        self.rows.push(cells.into_iter().map(|s| s.to_string()).collect());
+    }
+
+    pub fn print(&self, title: &str) {
+        let columns = self.rows.iter().map(Vec::len).max().unwrap_or(0);
+        let len = |column: usize| self.rows.iter().filter_map(|r| r.get(column)).map(|c| c.chars().count()).max();
+        let widths: Vec<usize> = (0..columns).map(|c| len(c).unwrap_or(0)).collect();
+        println!("\n{title}");
+        for row in &self.rows {
+            let cells = row.iter().zip(&widths).enumerate().map(|(i, (cell, &width))| match i {
+                0 => format!("{cell:<width$}"),
+                _ => format!("{cell:>width$}"),
+            });
+            println!("  {}", cells.collect::<Vec<_>>().join("  ").trim_end());
+        }
+    }
+}

@@ -1,0 +1,143 @@
+//! Curves as numbers (CSV) and as a picture (SVG) in `out/bench/`.
+
+use std::fmt::Write;
+use std::path::PathBuf;
+
+/// Curves over one another on logarithmic axes. Points that are not positive have no place and are left out.
+pub struct Plot {
+    pub title: String,
+    pub x_label: String,
+    pub y_label: String,
+    pub series: Vec<Series>,
+}
+
+pub struct Series {
+    pub name: String,
+    pub points: Vec<[f64; 2]>,
+}
+
+const SIZE: [f64; 2] = [760.0, 480.0];
+/// Room for labels: left, right, top, bottom.
+const MARGIN: [f64; 4] = [70.0, 180.0, 40.0, 55.0];
+/// Distinct also for those who do not tell red from green (Okabe and Ito 2008).
+const COLOURS: [&str; 8] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#8a8a00"];
+
+impl Plot {
+    pub fn new(title: &str, x_label: &str, y_label: &str) -> Self {
+        Self { title: title.into(), x_label: x_label.into(), y_label: y_label.into(), series: Vec::new() }
+    }
+
+    pub fn add(&mut self, name: &str, points: impl IntoIterator<Item = [f64; 2]>) {
+        self.series.push(Series { name: name.into(), points: points.into_iter().collect() });
+    }
+
+    /// Writes `out/bench/<name>.csv` and `.svg` and says so.
+    pub fn write(&self, name: &str) -> std::io::Result<()> {
+        let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("out/bench");
+        std::fs::create_dir_all(&folder)?;
+        std::fs::write(folder.join(name).with_extension("csv"), self.csv())?;
+        std::fs::write(folder.join(name).with_extension("svg"), self.svg())?;
+        println!("plot out/bench/{name}.svg (numbers in {name}.csv)");
+        Ok(())
+    }
+
+    fn csv(&self) -> String {
+        let quote = |s: &str| format!("\"{}\"", s.replace('"', "\"\""));
+        let mut out = format!("series,{},{}\n", quote(&self.x_label), quote(&self.y_label));
+        for series in &self.series {
+            for [x, y] in &series.points {
+                let _ = writeln!(out, "{},{x},{y}", quote(&series.name));
+            }
+        }
+        out
+    }
+
+    fn svg(&self) -> String {
+        let [width, height] = SIZE;
+        let [left, right, top, bottom] = MARGIN;
+        let axes = [0, 1].map(|k| Axis::covering(self.series.iter().flat_map(|s| s.points.iter().map(move |p| p[k]))));
+        let x = |v: f64| left + axes[0].place(v) * (width - left - right);
+        let y = |v: f64| height - bottom - axes[1].place(v) * (height - top - bottom);
+        let mut out = format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" font-family=\"sans-serif\" \
+             font-size=\"12\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n"
+        );
+        let text = |out: &mut String, x: f64, y: f64, anchor: &str, extra: &str, s: &str| {
+            let s = s.replace('&', "&amp;").replace('<', "&lt;");
+            let _ = writeln!(out, "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\"{extra}>{s}</text>");
+        };
+        let (middle, centre) = ((left + width - right) / 2.0, (top + height - bottom) / 2.0);
+        text(&mut out, middle, 22.0, "middle", " font-size=\"15\"", &self.title);
+        text(&mut out, middle, height - 12.0, "middle", "", &self.x_label);
+        text(&mut out, 16.0, centre, "middle", &format!(" transform=\"rotate(-90 16 {centre})\""), &self.y_label);
+        // Grid and its numbers.
+        for v in axes[0].ticks() {
+            let _ = writeln!(out, "<path d=\"M{:.1} {top}V{:.1}\" stroke=\"#ddd\"/>", x(v), height - bottom);
+            text(&mut out, x(v), height - bottom + 18.0, "middle", "", &number(v));
+        }
+        for v in axes[1].ticks() {
+            let _ = writeln!(out, "<path d=\"M{left} {:.1}H{:.1}\" stroke=\"#ddd\"/>", y(v), width - right);
+            text(&mut out, left - 6.0, y(v) + 4.0, "end", "", &number(v));
+        }
+        // The curves and their names.
+        for (i, series) in self.series.iter().enumerate() {
+            let colour = COLOURS[i % COLOURS.len()];
+            let places: Vec<String> = series
+                .points
+                .iter()
+                .filter(|p| p.iter().all(|v| is_drawable(*v)))
+                .map(|p| format!("{:.1},{:.1}", x(p[0]), y(p[1])))
+                .collect();
+            let line = places.join(" ");
+            let _ = writeln!(out, "<polyline points=\"{line}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"2\"/>");
+            for place in &places {
+                let (cx, cy) = place.split_once(',').unwrap_or_default();
+                let _ = writeln!(out, "<circle cx=\"{cx}\" cy=\"{cy}\" r=\"3\" fill=\"{colour}\"/>");
+            }
+            let at = top + 16.0 + 18.0 * i as f64;
+            let from = width - right + 12.0;
+            let _ = writeln!(out, "<path d=\"M{from} {:.1}h18\" stroke=\"{colour}\" stroke-width=\"2\"/>", at - 4.0);
+            text(&mut out, from + 24.0, at, "start", "", &series.name);
+        }
+        out + "</svg>\n"
+    }
+}
+
+fn is_drawable(v: f64) -> bool {
+    v.is_finite() && v > 0.0
+}
+
+/// A logarithmic axis.
+struct Axis {
+    low: f64,
+    high: f64,
+}
+
+impl Axis {
+    fn covering(values: impl Iterator<Item = f64>) -> Self {
+        let logs = values.filter(|v| is_drawable(*v)).map(f64::log10);
+        let (low, high) = logs.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+        if low > high {
+            return Self { low: 0.0, high: 1.0 };
+        }
+        let pad = (0.05 * (high - low)).max(0.05);
+        Self { low: low - pad, high: high + pad }
+    }
+
+    /// From 0 at the low end to 1 at the high end.
+    fn place(&self, value: f64) -> f64 {
+        (value.log10() - self.low) / (self.high - self.low)
+    }
+
+    /// Powers of ten, with twos and fives between where there are few of them.
+    fn ticks(&self) -> Vec<f64> {
+        let decades = self.low.floor() as i32..=self.high.ceil() as i32;
+        let steps: &[f64] = if self.high - self.low > 2.5 { &[1.0] } else { &[1.0, 2.0, 5.0] };
+        let all = decades.flat_map(|d| steps.iter().map(move |s| s * 10f64.powi(d)));
+        all.filter(|v| (0.0..=1.0).contains(&self.place(*v))).collect()
+    }
+}
+
+fn number(v: f64) -> String {
+    if (1e-3..1e4).contains(&v) { format!("{v}") } else { format!("{v:e}") }
+}

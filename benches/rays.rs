@@ -1,0 +1,253 @@
+//! Rays per second and building time against Embree 3, in one process, in turns.
+//!
+//! Three kinds of ray per scene: camera rays (coherent), rays of a path after its first hit, cosine-distributed over the
+//! surfaces they leave (incoherent), and shadow rays between surfaces and lights or other surfaces (any hit). All are
+//! traced on one thread. Embree stands at its defaults, whose triangle test is not watertight; the ratio against its
+//! robust mode, which is what this library always does, is given beside it.
+
+mod harness;
+
+use glam::Vec3;
+use harness::embree::{self, Embree};
+use harness::scenes::{self, Setting};
+use harness::{Clock, Table, absent, figure, interleaved, time};
+use luxfer::exec::Pool;
+use luxfer::job::Monitor;
+use luxfer::rng::Rng;
+use luxfer::scene::accel::{Accel, Ray};
+use std::hint::black_box;
+
+/// Rays of each kind.
+const RAYS: usize = 100_000;
+const ROUNDS: usize = 9;
+
+fn main() {
+    let pool = Pool::new(2).expect("two threads");
+    let engines = Embree::open(2);
+    if let Err(reason) = &engines {
+        println!("# no Embree: {reason}");
+    }
+    let mut table = Table::new(["scene", "rays", "Mray/s", "Embree", "ratio", "quartiles", "ratio to robust"]);
+    let mut built =
+        Table::new(["scene", "triangles", "seconds", "Embree", "ratio", "bytes/triangle", "Embree", "dropped"]);
+    let settings = [
+        ("planes8k", Ok(scenes::planes("planes8k", 8_000))),
+        ("planes128k", Ok(scenes::planes("planes128k", 128_000))),
+        ("planes3m", Ok(scenes::planes("planes3m", 3_200_000))),
+        ("demo", scenes::demo_room()),
+        ("office", scenes::demo_office()),
+        ("cornell", scenes::cornell()),
+        ("kitchen", scenes::kitchen()),
+        ("apartment", scenes::apartment()),
+        ("sponza", scenes::sponza()),
+    ];
+    for (name, setting) in settings {
+        match setting {
+            Ok(setting) => measure(&setting, &pool, engines.as_ref(), &mut table, &mut built),
+            Err(reason) => {
+                for kind in ["closest", "any"] {
+                    if is_headline(kind, name) {
+                        absent(&format!("rays.{kind}.{name}.vs_embree"), &reason);
+                    }
+                }
+            }
+        }
+    }
+    table.print("Rays per second on one thread; ratios are ours over Embree's");
+    built.print("Building on two threads; ratios are our time over Embree's");
+}
+
+fn is_headline(kind: &str, scene: &str) -> bool {
+    match kind {
+        "closest" => ["planes8k", "planes128k", "planes3m", "demo", "kitchen"].contains(&scene),
+        "any" => ["planes128k", "kitchen"].contains(&scene),
+        _ => false,
+    }
+}
+
+fn measure(setting: &Setting, pool: &Pool, embree: Result<&Embree, &String>, table: &mut Table, built: &mut Table) {
+    let triangles = setting.triangles();
+    let (positions, indices) = one_mesh(setting);
+    let monitor = Monitor::default();
+    let build = || pool.run(|| Accel::build(&triangles, monitor.job())).expect("a scene to trace");
+    let accel = build();
+
+    // Building.
+    let mut row = vec![setting.name.to_string(), triangles.len().to_string()];
+    let per_triangle = |bytes: usize| format!("{:.1}", bytes as f64 / triangles.len() as f64);
+    match &embree {
+        Ok(embree) => {
+            let rounds = if triangles.len() > 1_000_000 { 5 } else { ROUNDS };
+            let timings = interleaved(
+                Clock::Wall,
+                rounds,
+                &mut [&mut || drop(black_box(build())), &mut || {
+                    drop(black_box(embree.build(&positions, &indices, false)))
+                }],
+            );
+            let ratio = timings.ratio(0, 1);
+            row.extend([0, 1].map(|i| format!("{:.4}", timings.median(i))));
+            row.extend([format!("{ratio:.2}"), per_triangle(accel.bytes())]);
+            row.push(per_triangle(embree.build(&positions, &indices, false).bytes));
+            if setting.name == "planes3m" {
+                figure("bvh.build.planes3m.vs_embree", ratio, "x");
+            }
+        }
+        Err(reason) => {
+            let (seconds, _) = time(Clock::Wall, build);
+            row.extend([format!("{seconds:.4}"), "-".into(), "-".into(), per_triangle(accel.bytes()), "-".into()]);
+            if setting.name == "planes3m" {
+                absent("bvh.build.planes3m.vs_embree", reason);
+            }
+        }
+    }
+    row.push(accel.dropped().to_string());
+    built.row(row);
+
+    // Tracing.
+    let rays = Rays::new(setting, &accel, &triangles);
+    let peers = embree.map(|e| [false, true].map(|robust| e.build(&positions, &indices, robust)));
+    for (kind, rays, any) in
+        [("coherent", &rays.camera, false), ("closest", &rays.bounce, false), ("any", &rays.shadow, true)]
+    {
+        let mut ours = || match any {
+            false => rays.iter().filter(|ray| accel.closest(ray, |_| true).is_some()).count(),
+            true => rays.iter().filter(|ray| accel.occluded(ray, |_| true)).count(),
+        };
+        let theirs = |scene: &embree::Scene| match any {
+            false => rays
+                .iter()
+                .filter(|ray| {
+                    let mut hit = embree::RayHit::new(ray.origin, ray.direction, ray.t_max);
+                    scene.closest(&mut hit);
+                    hit.triangle != u32::MAX
+                })
+                .count(),
+            true => rays
+                .iter()
+                .filter(|ray| scene.occluded(&mut embree::Ray::new(ray.origin, ray.direction, ray.t_max)))
+                .count(),
+        };
+        let speed = |seconds: f64| format!("{:.2}", rays.len() as f64 / seconds * 1e-6);
+        let name = format!("rays.{kind}.{}.vs_embree", setting.name);
+        match &peers {
+            Ok([default, robust]) => {
+                check(kind, setting.name, &accel, robust, rays, any);
+                let timings = interleaved(
+                    Clock::Thread,
+                    ROUNDS,
+                    &mut [&mut || _ = black_box(ours()), &mut || _ = black_box(theirs(default)), &mut || {
+                        _ = black_box(theirs(robust))
+                    }],
+                );
+                let ratio = timings.ratio(1, 0);
+                let [low, high] = timings.quartiles(1, 0);
+                table.row([
+                    setting.name.into(),
+                    kind.into(),
+                    speed(timings.median(0)),
+                    speed(timings.median(1)),
+                    format!("{ratio:.2}"),
+                    format!("{low:.2}-{high:.2}"),
+                    format!("{:.2}", timings.ratio(2, 0)),
+                ]);
+                if is_headline(kind, setting.name) {
+                    figure(&name, ratio, "x");
+                }
+            }
+            Err(reason) => {
+                let (seconds, _) = time(Clock::Thread, &mut ours);
+                table.row([setting.name, kind, &speed(seconds), "-", "-", "-", "-"]);
+                if is_headline(kind, setting.name) {
+                    absent(&name, reason);
+                }
+            }
+        }
+    }
+}
+
+/// Both must do the same work: hits at other distances, or of one only, may come from rounding alone.
+fn check(kind: &str, scene: &str, accel: &Accel, robust: &embree::Scene, rays: &[Ray], any: bool) {
+    let mut differ = 0;
+    for ray in rays {
+        let mut theirs = embree::RayHit::new(ray.origin, ray.direction, ray.t_max);
+        robust.closest(&mut theirs);
+        let ours = accel.closest(ray, |_| true);
+        differ += usize::from(match (ours, theirs.triangle) {
+            (None, u32::MAX) => false,
+            (Some(_), u32::MAX) | (None, _) => true,
+            (Some(hit), _) => !any && (hit.t - theirs.ray.t_far).abs() > 1e-4 * hit.t,
+        });
+    }
+    if differ * 1000 > rays.len() {
+        println!("# {scene}, {kind}: {differ} of {} rays hit something else", rays.len());
+    }
+}
+
+struct Rays {
+    camera: Vec<Ray>,
+    bounce: Vec<Ray>,
+    shadow: Vec<Ray>,
+}
+
+impl Rays {
+    fn new(setting: &Setting, accel: &Accel, triangles: &[[Vec3; 3]]) -> Self {
+        let mut rng = Rng::new(3, &[]);
+        // A grid of pixels, in scan order.
+        let side = (RAYS as f64).sqrt() as usize;
+        let mut camera = Vec::with_capacity(RAYS);
+        for i in 0..side * side {
+            let (x, y) = ((i % side) as f32 + rng.next_f32(), (i / side) as f32 + rng.next_f32());
+            let direction = setting.camera.direction(x / side as f32, y / side as f32, setting.aspect());
+            camera.push(Ray::new(setting.camera.position, direction.normalize()));
+        }
+        // Paths of up to five bounces; where one leaves the scene the next starts at the camera again.
+        let (low, high) = accel.bounds();
+        let step = (high - low).length() * 1e-5;
+        let lights = setting.light_points();
+        let (mut bounce, mut shadow, mut places) =
+            (Vec::with_capacity(RAYS), Vec::with_capacity(RAYS), Vec::<Vec3>::new());
+        while bounce.len() < RAYS || shadow.len() < RAYS {
+            let mut ray = camera[rng.below(camera.len())];
+            for _ in 0..6 {
+                let Some(hit) = accel.closest(&ray, |_| true) else { break };
+                let [a, b, c] = triangles[hit.triangle as usize];
+                let mut normal = (b - a).cross(c - a).normalize_or_zero();
+                if normal.dot(ray.direction) > 0.0 {
+                    normal = -normal;
+                }
+                let at = ray.at(hit.t) + normal * step;
+                if !places.is_empty() && shadow.len() < RAYS {
+                    let lit = rng.below(2) == 0 && !lights.is_empty();
+                    let end = if lit { lights[rng.below(lights.len())] } else { places[rng.below(places.len())] };
+                    shadow.push(Ray { t_max: 0.999, ..Ray::new(at, end - at) });
+                }
+                places.push(at);
+                ray = Ray::new(at, cosine(normal, &mut rng));
+                if bounce.len() < RAYS {
+                    bounce.push(ray);
+                }
+            }
+        }
+        Self { camera, bounce, shadow }
+    }
+}
+
+/// A direction about a normal, its density the cosine.
+fn cosine(normal: Vec3, rng: &mut Rng) -> Vec3 {
+    let z = 2.0 * rng.next_f32() - 1.0;
+    let (sin, cos) = (std::f32::consts::TAU * rng.next_f32()).sin_cos();
+    let r = (1.0 - z * z).max(0.0).sqrt();
+    (normal + Vec3::new(r * cos, r * sin, z) * 0.9999).normalize_or(normal)
+}
+
+/// The whole scene as one mesh, as Embree is given it.
+fn one_mesh(setting: &Setting) -> (Vec<Vec3>, Vec<[u32; 3]>) {
+    let (mut positions, mut indices) = (Vec::new(), Vec::new());
+    for mesh in &setting.scene.meshes {
+        let first = positions.len() as u32;
+        positions.extend_from_slice(&mesh.positions);
+        indices.extend(mesh.triangles.iter().map(|t| t.map(|i| first + i)));
+    }
+    (positions, indices)
+}
