@@ -1,0 +1,146 @@
+//! Closed forms, invariants and statistics of the whole renderer: what the tests share.
+
+mod energy;
+mod extremes;
+mod film;
+mod irradiance;
+mod refusal;
+
+use super::*;
+use crate::job::Monitor;
+use crate::scene::{AlphaMode, Environment, Material, Mesh, PunctualLight, Scene, Texture, TextureRef};
+use glam::DVec3;
+use std::sync::Arc;
+
+/// A matt material without a reflecting top layer.
+fn matt(albedo: f32, emission: f32) -> Material {
+    Material { ior: 1.0, emission: Vec3::splat(emission), ..Material::diffuse("matt", Vec3::splat(albedo)) }
+}
+
+/// A parallelogram with texture coordinates from 0 to 1, facing `u × v`.
+fn quad(corner: Vec3, u: Vec3, v: Vec3, material: usize) -> Mesh {
+    Mesh {
+        material,
+        positions: vec![corner, corner + u, corner + u + v, corner + v],
+        uvs: [vec![Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y], Vec::new()],
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+        ..Mesh::default()
+    }
+}
+
+/// A closed sphere of triangles that faces its centre.
+fn inward_sphere(radius: f32, material: usize) -> Mesh {
+    let (rows, columns) = (12, 24);
+    let mut mesh = Mesh { material, ..Mesh::default() };
+    for i in 0..=rows {
+        for j in 0..=columns {
+            let polar = std::f32::consts::PI * i as f32 / rows as f32;
+            let angle = std::f32::consts::TAU * (j % columns) as f32 / columns as f32;
+            let sine = if i == rows { 0.0 } else { polar.sin() };
+            mesh.positions.push(Vec3::new(sine * angle.cos(), polar.cos(), sine * angle.sin()) * radius);
+        }
+    }
+    for i in 0..rows {
+        for j in 0..columns {
+            let a = i * (columns + 1) + j;
+            let b = a + columns + 1;
+            mesh.triangles.extend([[a, b, a + 1], [a + 1, b, b + 1]]);
+        }
+    }
+    mesh
+}
+
+fn world(scene: Scene) -> World {
+    World::build(Arc::new(scene), Monitor::default().job()).unwrap()
+}
+
+fn render(world: &World, camera: &Camera, params: &Params) -> Film {
+    run(world, camera, params, Monitor::default().job(), &mut |_| ()).unwrap()
+}
+
+struct Sum(DVec3);
+
+impl PathSink for Sum {
+    fn add(&mut self, _: LightSource, importance: Vec3, emission: Vec3) {
+        self.0 += (importance * emission).as_dvec3();
+    }
+}
+
+/// Mean irradiance of a point (red) and its standard error, from independent scramblings.
+fn measure(world: &World, point: &SurfacePoint) -> (f64, f64) {
+    let (batches, per_batch) = (64, 256);
+    let means: Vec<f64> = (0..batches)
+        .map(|batch| {
+            let mut sum = Sum(DVec3::ZERO);
+            (0..per_batch).for_each(|i| irradiance(world, point, 1000 + batch, i, &mut sum));
+            sum.0.x / f64::from(per_batch)
+        })
+        .collect();
+    let mean = means.iter().sum::<f64>() / batches as f64;
+    let variance = means.iter().map(|m| (m - mean).powi(2)).sum::<f64>() / (batches * (batches - 1)) as f64;
+    (mean, variance.sqrt())
+}
+
+fn assert_close(world: &World, point: &SurfacePoint, expected: f64) {
+    let (mean, error) = measure(world, point);
+    // The second term allows for coordinates in f32.
+    assert!((mean - expected).abs() < 4.0 * error + 1e-5 * expected, "{mean} ± {error}, expected {expected}");
+}
+
+/// A point in the middle of the first triangle of a mesh's front.
+fn centre_of(mesh: u32) -> SurfacePoint {
+    SurfacePoint { mesh, triangle: 0, barycentric: Vec2::new(0.0, 0.5), front: true }
+}
+
+/// Form factor from a small facet to a rectangle `a × b` at distance `c`, one corner on the facet's normal, parallel.
+fn parallel_form_factor(a: f64, b: f64, c: f64) -> f64 {
+    let (x, y) = (a / c, b / c);
+    let (p, q) = ((1.0 + x * x).sqrt(), (1.0 + y * y).sqrt());
+    (x / p * (y / p).atan() + y / q * (x / q).atan()) / std::f64::consts::TAU
+}
+
+/// The same for a rectangle in a plane perpendicular to the facet's, at distance `c`, `b` high and `a` wide.
+fn perpendicular_form_factor(a: f64, b: f64, c: f64) -> f64 {
+    let (x, y) = (a / c, b / c);
+    let r = 1.0 / (1.0 + y * y).sqrt();
+    (x.atan() - r * (x * r).atan()) / std::f64::consts::TAU
+}
+
+/// A small room with everything in it: textures, mirror, glass, gloss, alpha, a lamp and a sky.
+fn everything() -> Scene {
+    let image = Image::from_fn(16, 16, |x, y| {
+        let lit = x % 4 == 1 && y % 4 == 2;
+        [f32::from(u8::from(lit)), 0.5 * f32::from(u8::from(lit)), 0.1, if x < 8 { 1.0 } else { 0.3 }]
+    });
+    let mut meshes = vec![inward_sphere(2.0, 0)];
+    meshes.push(quad(Vec3::new(-1.0, 1.2, -1.0), Vec3::X * 2.0, Vec3::Z * 2.0, 1));
+    for (i, x) in [-1.2, -0.6, 0.0, 0.6].into_iter().enumerate() {
+        meshes.push(quad(Vec3::new(x, -0.5, -0.8), Vec3::X * 0.5, Vec3::new(0.0, 0.6, -0.2), 2 + i));
+    }
+    let gloss = Material { base_color: Vec3::new(0.9, 0.6, 0.3), roughness: 0.3, ..Material::default() };
+    Scene {
+        meshes,
+        materials: vec![
+            matt(0.7, 0.0),
+            Material { emission_texture: Some(TextureRef::new(0)), ..matt(0.0, 300.0) },
+            gloss.clone(),
+            Material { roughness: 0.0, ..gloss.clone() },
+            Material { metallic: 0.0, roughness: 0.1, transmission: 0.9, ..gloss.clone() },
+            Material {
+                alpha_mode: AlphaMode::Blend,
+                base_color_texture: Some(TextureRef::new(0)),
+                normal_texture: Some(TextureRef::new(0)),
+                metallic: 0.0,
+                ..gloss
+            },
+        ],
+        textures: vec![Texture::new("all", image.unwrap())],
+        lights: vec![PunctualLight::Point { position: Vec3::new(0.5, 0.5, 1.0), intensity: Vec3::splat(20.0) }],
+        environment: Some(Environment::Constant(Vec3::ONE)),
+        ..Scene::default()
+    }
+}
+
+fn viewer() -> Camera {
+    Camera::look_at(Vec3::new(0.0, 0.2, 1.5), Vec3::new(0.0, -0.2, -0.8), 1.2)
+}
