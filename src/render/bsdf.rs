@@ -57,11 +57,28 @@ pub struct Bsdf<'a> {
     left_over: f32,
 }
 
+/// What the diffuse and the top layer send back of light from one direction, each with the cosine.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lobes {
+    pub diffuse: Vec3,
+    pub glossy: Vec3,
+}
+
+impl Lobes {
+    pub const NONE: Self = Self { diffuse: Vec3::ZERO, glossy: Vec3::ZERO };
+
+    pub fn sum(&self) -> Vec3 {
+        self.diffuse + self.glossy
+    }
+}
+
 /// Where a path goes on.
 pub struct Scattered {
     pub direction: Vec3,
     /// Throughput: the BSDF times the cosine over the density.
     pub weight: Vec3,
+    /// What the BSDF is made of where it spreads.
+    pub lobes: Lobes,
     pub kind: Kind,
 }
 
@@ -167,25 +184,25 @@ impl<'a> Bsdf<'a> {
     }
 
     /// The spread part of the BSDF times the cosine, and the density with which [`Bsdf::sample`] chooses `direction`.
-    pub fn eval(&self, direction: Vec3) -> (Vec3, f32) {
+    pub fn eval(&self, direction: Vec3) -> (Lobes, f32) {
         let wi = to_local(&self.frame, direction);
         if wi.z <= 0.0 || self.wo.z <= 0.0 || direction.dot(self.geometric) <= 0.0 {
-            return (Vec3::ZERO, 0.0);
+            return (Lobes::NONE, 0.0);
         }
         let s = &self.substance;
-        let mut value = Vec3::ZERO;
+        let mut lobes = Lobes::NONE;
         let mut density = 0.0;
         if self.shares[0] > 0.0 {
             let left = if self.has_top() { self.left_over * self.passes_top(wi.z) } else { 1.0 };
-            value += s.diffuse * (left * wi.z * FRAC_1_PI);
+            lobes.diffuse = s.diffuse * (left * wi.z * FRAC_1_PI);
             density += self.shares[0] * wi.z * FRAC_1_PI;
         }
         if self.shares[1] > 0.0 && !self.is_mirror() {
             let h = (self.wo + wi).normalize_or(Vec3::Z);
-            value += ggx::schlick(s.f0, s.f90, self.wo.dot(h)) * ggx::lobe(self.wo, wi, h, self.alpha());
+            lobes.glossy = ggx::schlick(s.f0, s.f90, self.wo.dot(h)) * ggx::lobe(self.wo, wi, h, self.alpha());
             density += self.shares[1] * ggx::density(self.wo, h, self.alpha());
         }
-        (value, density)
+        (lobes, density)
     }
 
     /// Chooses where a path goes on: `choice` the layer, `u` the direction. None where the light is absorbed.
@@ -203,24 +220,29 @@ impl<'a> Bsdf<'a> {
             return self.pass_through();
         };
         let direction = from_local(&self.frame, local);
-        let (value, density) = self.eval(direction);
+        let (lobes, density) = self.eval(direction);
         if !(density > 0.0 && density.is_finite()) {
             return None;
         }
-        Some(Scattered { direction, weight: value / density, kind: Kind::Spread(density) })
+        Some(Scattered { direction, weight: lobes.sum() / density, lobes, kind: Kind::Spread(density) })
     }
 
     fn reflect(&self, share: f32) -> Option<Scattered> {
         let direction = from_local(&self.frame, Vec3::new(-self.wo.x, -self.wo.y, self.wo.z));
         let weight = ggx::schlick(self.substance.f0, self.substance.f90, self.wo.z) / share;
-        (direction.dot(self.geometric) > 0.0).then_some(Scattered { direction, weight, kind: Kind::Mirrored })
+        (direction.dot(self.geometric) > 0.0).then_some(Scattered {
+            direction,
+            weight,
+            lobes: Lobes::NONE,
+            kind: Kind::Mirrored,
+        })
     }
 
     fn pass_through(&self) -> Option<Scattered> {
         let share = self.shares[2];
         let direction = -from_local(&self.frame, self.wo);
         let weight = self.substance.through(self.upright) / share;
-        (share > 0.0).then_some(Scattered { direction, weight, kind: Kind::Through })
+        (share > 0.0).then_some(Scattered { direction, weight, lobes: Lobes::NONE, kind: Kind::Through })
     }
 }
 
@@ -306,9 +328,9 @@ mod tests {
                 for _ in 0..n {
                     let sample = bsdf.sample(rng.next_f32(), Vec2::new(rng.next_f32(), rng.next_f32()));
                     let bin = sample.map_or(ROWS * COLUMNS, |s| {
-                        let (value, density) = bsdf.eval(s.direction);
+                        let (lobes, density) = bsdf.eval(s.direction);
                         assert_eq!(s.kind, Kind::Spread(density));
-                        assert_eq!(s.weight, value / density);
+                        assert_eq!(s.weight, lobes.sum() / density);
                         let row = ((s.direction.z * ROWS as f32) as usize).min(ROWS - 1);
                         let angle = s.direction.y.atan2(s.direction.x).rem_euclid(TAU) / TAU;
                         row * COLUMNS + ((angle * COLUMNS as f32) as usize).min(COLUMNS - 1)
@@ -344,7 +366,7 @@ mod tests {
             for _ in 0..200 {
                 let a = direction(rng.next_f32() * 0.98 + 0.01, TAU * rng.next_f32());
                 let b = direction(rng.next_f32() * 0.98 + 0.01, TAU * rng.next_f32());
-                let value = |o, i: Vec3| Bsdf::new(substance, Vec3::Z, Vec3::Z, o, Some(&table)).eval(i).0 / i.z;
+                let value = |o, i: Vec3| Bsdf::new(substance, Vec3::Z, Vec3::Z, o, Some(&table)).eval(i).0.sum() / i.z;
                 let (there, back) = (value(a, b), value(b, a));
                 assert!((there - back).abs().max_element() <= 1e-3 * there.max_element(), "{there} and {back}");
             }

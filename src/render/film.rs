@@ -146,7 +146,7 @@ fn radiance(world: &World, camera: &Camera, params: &Params, (x, y): (usize, usi
     let aspect = params.width as f32 / params.height as f32;
     let direction = camera.direction(u, v, aspect).normalize_or_zero();
     let mut sum = Sum(Vec3::ZERO);
-    path::trace(world, Ray::new(camera.position, direction), &mut sampler, &mut sum);
+    path::trace(world, Ray::new(camera.position, direction), &mut sampler, &mut path::Contributions(&mut sum));
     sum.0
 }
 

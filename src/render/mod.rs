@@ -72,7 +72,8 @@ pub fn irradiance<S: PathSink>(world: &World, point: &SurfacePoint, seed: u64, s
     if mesh.is_some_and(|m| (point.triangle as usize) < m.triangles.len()) {
         let vertex = Vertex::new(world, point.mesh, point.triangle, point.barycentric);
         if vertex.normal != Vec3::ZERO {
-            path::gather(world, &vertex, point.front, &mut Sampler::new(seed, sample), sink);
+            let observer = &mut path::Contributions(sink);
+            path::gather(world, &vertex, point.front, &mut Sampler::new(seed, sample), observer);
         }
     }
 }

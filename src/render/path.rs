@@ -4,12 +4,12 @@
 //! power heuristic (Veach 1997, 9.2.4). Clear panes are no vertices of a path in that sense: shadow rays pass through them
 //! with their share, and paths keep the density of the vertex before. Nothing is clamped: the estimate is unbiased.
 
-use super::bsdf::{Bsdf, Kind};
+use super::bsdf::{Bsdf, Kind, Lobes, Scattered};
 use super::environment;
 use super::light::{LightEnd, LightSample};
 use super::sampler::Sampler;
 use super::vertex::Vertex;
-use super::world::{NONE, World};
+use super::world::{NONE, Pane, World};
 use super::{LightSource, PathSink};
 use crate::scene::accel::Ray;
 use glam::{Vec2, Vec3};
@@ -20,6 +20,42 @@ const ROULETTE_FROM: u32 = 3;
 const MOST_VERTICES: u32 = 1024;
 /// The surest a path can be to go on: in a room of white walls it must end some time.
 const SUREST: f32 = 0.98;
+
+/// Takes what a path brings. All but [`Observer::add`] is for those that tell light apart by the way it came; the others
+/// leave these steps empty, and pay nothing for them.
+pub trait Observer {
+    /// A contribution, as [`PathSink::add`] has it.
+    fn add(&mut self, source: LightSource, importance: Vec3, emission: Vec3);
+
+    /// The first surface a path from the eye meets, `distance` away.
+    fn meet(&mut self, _vertex: &Vertex, _bsdf: &Bsdf, _distance: f32) {}
+
+    /// The path could have ended here; it had this chance to go on.
+    fn survive(&mut self, _chance: f32) {}
+
+    /// The path goes on from a vertex of a mesh.
+    fn scatter(&mut self, _mesh: u32, _scattered: &Scattered) {}
+
+    /// Where to list the panes between a vertex and a light chosen for it, if anyone wants to know.
+    fn panes(&mut self) -> Option<&mut Vec<Pane>> {
+        None
+    }
+
+    /// A light chosen for a vertex of a mesh contributes; `factor` is all but lobes, panes and emission.
+    fn connect(&mut self, _mesh: u32, _lobes: Lobes, _factor: f32, _light: &LightSample) {}
+
+    /// A light met by scattering contributes with this weight.
+    fn arrive(&mut self, _source: LightSource, _weight: f32, _emission: Vec3) {}
+}
+
+/// An observer that only adds up.
+pub struct Contributions<'a, S>(pub &'a mut S);
+
+impl<S: PathSink> Observer for Contributions<'_, S> {
+    fn add(&mut self, source: LightSource, importance: Vec3, emission: Vec3) {
+        self.0.add(source, importance, emission);
+    }
+}
 
 /// A path about to leave a vertex or the eye.
 struct Leg {
@@ -32,29 +68,29 @@ struct Leg {
     rival: Option<(Vec3, f32)>,
 }
 
-/// Adds one estimate of the radiance that arrives along a ray (of unit direction) to a sink.
-pub fn trace<S: PathSink>(world: &World, ray: Ray, sampler: &mut Sampler, sink: &mut S) {
-    walk(world, Leg { ray, from: NONE, throughput: Vec3::ONE, rival: None }, 1.0, sampler, sink);
+/// Makes one estimate of the radiance that arrives along a ray (of unit direction).
+pub fn trace<O: Observer>(world: &World, ray: Ray, sampler: &mut Sampler, observer: &mut O) {
+    walk(world, Leg { ray, from: NONE, throughput: Vec3::ONE, rival: None }, 1.0, sampler, observer);
 }
 
-/// Adds one estimate of the irradiance at a point to a sink.
-pub fn gather<S: PathSink>(world: &World, vertex: &Vertex, front: bool, sampler: &mut Sampler, sink: &mut S) {
+/// Makes one estimate of the irradiance at a point.
+pub fn gather<O: Observer>(world: &World, vertex: &Vertex, front: bool, sampler: &mut Sampler, observer: &mut O) {
     let normal = if front { vertex.normal } else { -vertex.normal };
     let receiver = Bsdf::receiver(normal);
-    if let Some(leg) = scatter(world, vertex, &receiver, Vec3::ONE, None, sampler, sink) {
+    if let Some(leg) = scatter(world, vertex, &receiver, Vec3::ONE, None, sampler, observer) {
         let scale = leg.throughput.max_element();
-        walk(world, leg, scale, sampler, sink);
+        walk(world, leg, scale, sampler, observer);
     }
 }
 
 /// Follows a path to its end. `scale` is what counts as full throughput.
-fn walk<S: PathSink>(world: &World, mut leg: Leg, scale: f32, sampler: &mut Sampler, sink: &mut S) {
+fn walk<O: Observer>(world: &World, mut leg: Leg, scale: f32, sampler: &mut Sampler, observer: &mut O) {
     for bounce in 0..MOST_VERTICES {
         let Some(hit) = world.closest(&leg.ray, leg.from, sampler.ray_seed()) else {
-            return add_environment(world, &leg, sink);
+            return add_environment(world, &leg, observer);
         };
         let vertex = Vertex::of_hit(world, &hit);
-        add_emission(world, &leg, &vertex, sink);
+        add_emission(world, &leg, &vertex, observer);
         // End by chance what can no longer add much.
         let mut throughput = leg.throughput;
         if bounce + 1 >= ROULETTE_FROM {
@@ -64,28 +100,32 @@ fn walk<S: PathSink>(world: &World, mut leg: Leg, scale: f32, sampler: &mut Samp
                 return;
             }
             throughput /= survival;
+            observer.survive(survival);
         }
         let bsdf = vertex.bsdf(world, -leg.ray.direction);
-        let Some(next) = scatter(world, &vertex, &bsdf, throughput, leg.rival, sampler, sink) else { return };
+        if bounce == 0 && leg.from == NONE {
+            observer.meet(&vertex, &bsdf, hit.t);
+        }
+        let Some(next) = scatter(world, &vertex, &bsdf, throughput, leg.rival, sampler, observer) else { return };
         leg = next;
     }
 }
 
 /// Adds the light chosen for a vertex and chooses where the path goes on.
-fn scatter<S: PathSink>(
+fn scatter<O: Observer>(
     world: &World,
     vertex: &Vertex,
     bsdf: &Bsdf,
     throughput: Vec3,
     rival: Option<(Vec3, f32)>,
     sampler: &mut Sampler,
-    sink: &mut S,
+    observer: &mut O,
 ) -> Option<Leg> {
     let lighting = sampler.next();
     if bsdf.spreads()
         && let Some(light) = world.lights().sample(world.scene(), vertex.position, &lighting)
     {
-        add_light(world, vertex, bsdf, throughput, &light, sink);
+        add_light(world, vertex, bsdf, throughput, &light, observer);
     }
     let choice = sampler.next();
     let scattered = bsdf.sample(choice.get(2), Vec2::new(choice.get(0), choice.get(1)))?;
@@ -93,6 +133,7 @@ fn scatter<S: PathSink>(
     if throughput == Vec3::ZERO || !throughput.is_finite() {
         return None;
     }
+    observer.scatter(vertex.mesh, &scattered);
     let rival = match scattered.kind {
         Kind::Spread(density) => Some((vertex.position, density)),
         Kind::Mirrored => None,
@@ -101,15 +142,16 @@ fn scatter<S: PathSink>(
     Some(Leg { ray: vertex.ray(scattered.direction), from: vertex.id, throughput, rival })
 }
 
-fn add_light<S: PathSink>(
+fn add_light<O: Observer>(
     world: &World,
     vertex: &Vertex,
     bsdf: &Bsdf,
     throughput: Vec3,
     light: &LightSample,
-    sink: &mut S,
+    observer: &mut O,
 ) {
-    let (value, density) = bsdf.eval(light.direction);
+    let (lobes, density) = bsdf.eval(light.direction);
+    let value = lobes.sum();
     if value == Vec3::ZERO || light.emission == Vec3::ZERO {
         return;
     }
@@ -126,14 +168,15 @@ fn add_light<S: PathSink>(
             (Ray { origin, direction: p - origin, t_max: 1.0 }, emitter.id)
         }
     };
-    let transmittance = world.transmittance(&ray, [vertex.id, end]);
+    let transmittance = world.transmittance(&ray, [vertex.id, end], observer.panes());
     if transmittance != Vec3::ZERO {
-        sink.add(light.source, throughput * value * transmittance * (weight / light.density), light.emission);
+        observer.add(light.source, throughput * value * transmittance * (weight / light.density), light.emission);
+        observer.connect(vertex.mesh, lobes, weight / light.density, light);
     }
 }
 
 /// What a path meets by scattering, weighed against having chosen it as a light.
-fn add_emission<S: PathSink>(world: &World, leg: &Leg, vertex: &Vertex, sink: &mut S) {
+fn add_emission<O: Observer>(world: &World, leg: &Leg, vertex: &Vertex, observer: &mut O) {
     let Some(index) = world.emitter_of(vertex.id) else { return };
     let lights = world.lights();
     let emitter = &lights.emitters.emitters[index];
@@ -150,14 +193,12 @@ fn add_emission<S: PathSink>(world: &World, leg: &Leg, vertex: &Vertex, sink: &m
         let rival = lights.surface_density(world.scene(), index, vertex.barycentric, direction, distance);
         power_heuristic(density, rival)
     });
-    sink.add(
-        LightSource::Surface { mesh: vertex.mesh, triangle: vertex.triangle, uv },
-        leg.throughput * weight,
-        emission,
-    );
+    let source = LightSource::Surface { mesh: vertex.mesh, triangle: vertex.triangle, uv };
+    observer.add(source, leg.throughput * weight, emission);
+    observer.arrive(source, weight, emission);
 }
 
-fn add_environment<S: PathSink>(world: &World, leg: &Leg, sink: &mut S) {
+fn add_environment<O: Observer>(world: &World, leg: &Leg, observer: &mut O) {
     let Some(environment) = &world.scene().environment else { return };
     let emission = environment::radiance(environment, leg.ray.direction);
     if emission == Vec3::ZERO {
@@ -166,7 +207,8 @@ fn add_environment<S: PathSink>(world: &World, leg: &Leg, sink: &mut S) {
     let weight = leg
         .rival
         .map_or(1.0, |(_, density)| power_heuristic(density, world.lights().environment_density(leg.ray.direction)));
-    sink.add(LightSource::Environment, leg.throughput * weight, emission);
+    observer.add(LightSource::Environment, leg.throughput * weight, emission);
+    observer.arrive(LightSource::Environment, weight, emission);
 }
 
 /// The weight of a strategy of density `own` against another of density `other`.

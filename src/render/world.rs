@@ -30,6 +30,18 @@ pub struct World {
     any_see_through: bool,
 }
 
+/// A surface that lets light through in a straight line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pane {
+    /// Distance from the start of the ray in units of its direction.
+    pub t: f32,
+    pub triangle: u32,
+    /// Share of light that finds nothing in its way.
+    pub beside: f32,
+    /// Share that passes through what is there, per channel.
+    pub through: Vec3,
+}
+
 /// No triangle, no emitter.
 pub const NONE: u32 = u32::MAX;
 
@@ -136,8 +148,12 @@ impl World {
     }
 
     /// Share of light, per channel, that goes straight from the start of a ray to its end, neither of the two triangles
-    /// counted. Partly transparent surfaces and clear panes let their share through.
-    pub(super) fn transmittance(&self, ray: &Ray, ends: [u32; 2]) -> Vec3 {
+    /// counted. Partly transparent surfaces and clear panes let their share through; `panes` receives those met, in no
+    /// particular order.
+    pub(super) fn transmittance(&self, ray: &Ray, ends: [u32; 2], mut panes: Option<&mut Vec<Pane>>) -> Vec3 {
+        if let Some(panes) = &mut panes {
+            panes.clear();
+        }
         if !self.any_see_through {
             let blocked = self.accel.occluded(ray, |hit| !ends.contains(&hit.triangle));
             return if blocked { Vec3::ZERO } else { Vec3::ONE };
@@ -148,14 +164,17 @@ impl World {
             if ends.contains(&hit.triangle) {
                 return false;
             }
-            share *= self.passing(hit, ray.direction).as_dvec3();
+            let pane = self.pane(hit, ray.direction);
+            share *= (Vec3::splat(pane.beside) + pane.through).as_dvec3();
+            if let Some(panes) = &mut panes {
+                panes.push(pane);
+            }
             share == glam::DVec3::ZERO
         });
         if blocked { Vec3::ZERO } else { share.as_vec3() }
     }
 
-    /// What passes a surface in a straight line.
-    fn passing(&self, hit: &Hit, direction: Vec3) -> Vec3 {
+    fn pane(&self, hit: &Hit, direction: Vec3) -> Pane {
         let (mesh, material, triangle) = self.described(hit);
         let at = Vec2::new(hit.u, hit.v);
         let there = match material.alpha_mode {
@@ -163,13 +182,13 @@ impl World {
             AlphaMode::Mask(cutoff) => f32::from(u8::from(opacity(self, mesh, material, triangle, at) >= cutoff)),
             AlphaMode::Blend => opacity(self, mesh, material, triangle, at).clamp(0.0, 1.0),
         };
-        let pane = if material.transmission > 0.0 && there > 0.0 {
+        let through = if material.transmission > 0.0 && there > 0.0 {
             let normal = geometric_normal(mesh.corners(triangle as usize));
             substance(self, mesh, material, triangle, at).through(normal.dot(direction.normalize_or_zero()))
         } else {
             Vec3::ZERO
         };
-        Vec3::splat(1.0 - there) + pane * there
+        Pane { t: hit.t, triangle: hit.triangle, beside: 1.0 - there, through: through * there }
     }
 
     fn described(&self, hit: &Hit) -> (&Mesh, &Material, u32) {
