@@ -79,6 +79,7 @@ impl luxfer_render_params {
             target_error: self.target_error,
             time_budget_ms: self.time_budget_ms,
             seed: self.seed,
+            ..render::Params::default()
         }
     }
 }

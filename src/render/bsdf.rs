@@ -122,6 +122,20 @@ impl<'a> Bsdf<'a> {
         Self::new(substance, normal, normal, normal, None)
     }
 
+    /// Shading normal and geometric normal on the side of the viewer.
+    pub fn normal(&self) -> Vec3 {
+        self.frame[2]
+    }
+
+    pub fn geometric_normal(&self) -> Vec3 {
+        self.geometric
+    }
+
+    /// Colour at normal incidence: what is reflected by either layer or let through.
+    pub fn colour(&self) -> Vec3 {
+        self.substance.diffuse + self.substance.f0 + self.substance.transmission
+    }
+
     fn has_top(&self) -> bool {
         self.substance.f90 > 0.0
     }

@@ -4,7 +4,8 @@
 //! batches are independent; so their scatter gives an unbiased estimate of the variance of the pass, however much
 //! stratification helped. Passes are independent too: the mean weighs them by their samples, and so does its variance.
 
-use super::path;
+use super::layers::{Layers, Recorder};
+use super::path::{self, Contributions};
 use super::sampler::Sampler;
 use super::world::World;
 use super::{Film, LightSource, Params, PathSink};
@@ -35,6 +36,7 @@ pub struct Passes<'a> {
     params: &'a Params,
     tiles_across: usize,
     pixels: Vec<Pixel>,
+    layers: Option<Layers<'a>>,
     pass: u32,
     samples: u32,
 }
@@ -43,7 +45,8 @@ impl<'a> Passes<'a> {
     pub fn new(world: &'a World, camera: &'a Camera, params: &'a Params) -> Result<Self> {
         let (across, down) = (params.width.div_ceil(TILE), params.height.div_ceil(TILE));
         let pixels = try_vec(across * down * TILE * TILE, Pixel::default())?;
-        Ok(Self { world, camera, params, tiles_across: across, pixels, pass: 0, samples: 0 })
+        let layers = Layers::new(world, camera, &params.outputs, across * down, TILE * TILE)?;
+        Ok(Self { world, camera, params, tiles_across: across, pixels, layers, pass: 0, samples: 0 })
     }
 
     pub fn samples(&self) -> u32 {
@@ -54,8 +57,9 @@ impl<'a> Passes<'a> {
     pub fn add(&mut self, count: u32, job: Job) -> Result<()> {
         let (world, camera, params, pass) = (self.world, self.camera, self.params, self.pass);
         let (batches, per_batch) = batches(count);
-        let across = self.tiles_across;
+        let (across, layers) = (self.tiles_across, self.layers.as_ref());
         exec::for_rows(&mut self.pixels, TILE * TILE, job, |tile, pixels| {
+            let mut recorder = layers.map(|l| l.recorder(world));
             let (left, top) = (tile % across * TILE, tile / across * TILE);
             for (i, pixel) in pixels.iter_mut().enumerate() {
                 let (x, y) = (left + i % TILE, top + i / TILE);
@@ -70,12 +74,16 @@ impl<'a> Passes<'a> {
                         if job.is_cancelled() {
                             return;
                         }
-                        sum += radiance(world, camera, params, (x, y), Sampler::new(seed, index)).as_dvec3();
+                        let sampler = Sampler::new(seed, index);
+                        sum += radiance(world, camera, params, (x, y), sampler, recorder.as_mut()).as_dvec3();
                     }
                     sums.add(sum);
                 }
                 pixel.sum += sums.sum;
                 pixel.variance += sums.variance_of_sum();
+                if let (Some(layers), Some(recorder)) = (layers, &mut recorder) {
+                    layers.keep(recorder, tile, i);
+                }
             }
         })?;
         job.check()?;
@@ -103,7 +111,9 @@ impl<'a> Passes<'a> {
             }
         }
         let error = if deviation == 0.0 { 0.0 } else { deviation / total };
-        Ok(Film { beauty, variance, samples: self.samples, error })
+        let place = |x: usize, y: usize| (y / TILE * self.tiles_across + x / TILE, y % TILE * TILE + x % TILE, n);
+        let layers = self.layers.as_ref().map_or(Ok(Vec::new()), |l| l.images(&beauty, place))?;
+        Ok(Film { beauty, variance, samples: self.samples, error, layers })
     }
 }
 
@@ -139,15 +149,31 @@ impl Batches {
 }
 
 /// One sample of a pixel's radiance; the first block of numbers places it in the pixel (box filter).
-fn radiance(world: &World, camera: &Camera, params: &Params, (x, y): (usize, usize), mut sampler: Sampler) -> Vec3 {
+fn radiance(
+    world: &World,
+    camera: &Camera,
+    params: &Params,
+    (x, y): (usize, usize),
+    mut sampler: Sampler,
+    recorder: Option<&mut Recorder>,
+) -> Vec3 {
     let place = sampler.next();
     let u = ((x as f64 + place.fine(0)) / params.width as f64) as f32;
     let v = ((y as f64 + place.fine(1)) / params.height as f64) as f32;
     let aspect = params.width as f32 / params.height as f32;
-    let direction = camera.direction(u, v, aspect).normalize_or_zero();
-    let mut sum = Sum(Vec3::ZERO);
-    path::trace(world, Ray::new(camera.position, direction), &mut sampler, &mut path::Contributions(&mut sum));
-    sum.0
+    let ray = Ray::new(camera.position, camera.direction(u, v, aspect).normalize_or_zero());
+    match recorder {
+        None => {
+            let mut sum = Sum(Vec3::ZERO);
+            path::trace(world, ray, &mut sampler, &mut Contributions(&mut sum));
+            sum.0
+        }
+        Some(recorder) => {
+            recorder.start();
+            path::trace(world, ray, &mut sampler, recorder);
+            recorder.beauty()
+        }
+    }
 }
 
 /// Adds contributions up.

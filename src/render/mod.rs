@@ -9,18 +9,23 @@
 //!
 //! Not modelled: volumes, refraction in solids, frosted glass, polarisation, wavelengths, depth of field, motion blur.
 
+mod aov;
 mod bsdf;
 mod distribution;
 mod emissive;
 mod environment;
 mod film;
 mod ggx;
+mod layers;
 mod light;
+pub mod lpe;
 mod path;
 mod sampler;
 mod vertex;
 mod world;
 
+pub use aov::Aov;
+pub use layers::{Layer, Outputs};
 pub use world::World;
 
 use crate::error::{Error, Result, check_range};
@@ -90,11 +95,13 @@ pub struct Params {
     /// Stop after this many milliseconds; 0 = never.
     pub time_budget_ms: u32,
     pub seed: u64,
+    /// What to render beside the main image.
+    pub outputs: Outputs,
 }
 
 impl Default for Params {
     fn default() -> Self {
-        Self { width: 1280, height: 720, samples: 64, target_error: 0.0, time_budget_ms: 0, seed: 1 }
+        Self { width: 1280, height: 720, samples: 64, target_error: 0.0, time_budget_ms: 0, seed: 1, outputs: Outputs::default() }
     }
 }
 
@@ -109,6 +116,8 @@ pub struct Film {
     pub samples: u32,
     /// Mean over the pixels of the standard error relative to the image's mean.
     pub error: f64,
+    /// The images beside it: those of expressions in their order, then those of surfaces in theirs.
+    pub layers: Vec<Layer>,
 }
 
 /// Renders a camera's view; `publish` is called with the film after every pass. Each pass doubles the samples, so that

@@ -1,0 +1,294 @@
+//! All expressions of a rendering as one deterministic automaton (Thompson 1968; subset construction, Rabin and Scott 1959;
+//! minimised by refinement, Moore 1956).
+//!
+//! A path of camera, scatterings and a light moves through it one look-up per event. States from which no light can
+//! complete any expression are one, [`DEAD`]: what a path carries there is dropped. States that no future event tells
+//! apart are one as well, so a path has as few parts as the expressions allow.
+
+use super::alphabet::{Alphabet, Scatter};
+use super::parse::{Event, EventSet, Node, kind};
+use super::{EmitterAs, Expression};
+use crate::error::{Error, Result};
+use crate::render::LightSource;
+use crate::scene::Scene;
+use std::collections::BTreeMap;
+
+/// The state that leads nowhere.
+pub const DEAD: u16 = 0;
+
+/// Bounds of the construction: places of all expressions, states before they are merged, and moves looked at.
+const MOST_PLACES: usize = 20_000;
+const MOST_STATES: usize = 4096;
+const MOST_MOVES: usize = 20_000_000;
+
+/// The automaton of a scene's events.
+pub struct Table {
+    alphabet: Alphabet,
+    start: u16,
+    /// State by state, where each event of scattering leads.
+    next: Vec<u16>,
+    /// State by state, which of `lists` holds when a path ends at each light.
+    ends: Vec<u16>,
+    /// Expressions that accept; the first list is empty.
+    lists: Vec<Vec<u16>>,
+}
+
+impl Table {
+    /// # Errors
+    /// A label that nothing in the scene bears, an expression that no path can match, or too many states.
+    pub fn new(scene: &Scene, expressions: &[&Expression], emitter_as: EmitterAs) -> Result<Self> {
+        let alphabet = Alphabet::new(scene, expressions, emitter_as)?;
+        let mut places = Places::default();
+        let start = places.add()?;
+        for (number, expression) in expressions.iter().enumerate() {
+            let end = places.build(&expression.tree, start)?;
+            places.accepts[end as usize].push(number as u16);
+        }
+        let mut subsets = Subsets::new(&places, &alphabet);
+        let first = subsets.explore(start)?;
+        let Subsets { next, ends, lists, .. } = subsets;
+        // Every expression must have a path that it accepts.
+        for (number, expression) in expressions.iter().enumerate() {
+            if !lists.iter().flatten().any(|&n| usize::from(n) == number) {
+                return Err(Error::argument(format!(
+                    "expression {:?} matches no path of light: one is a camera, any number of scatterings, and a light",
+                    expression.text()
+                )));
+            }
+        }
+        Ok(Self { start: first, next, ends, lists, alphabet }.minimised())
+    }
+
+    /// The state of a path that has left the camera.
+    pub fn start(&self) -> u16 {
+        self.start
+    }
+
+    pub fn scatter(&self, state: u16, mesh: u32, scatter: Scatter) -> u16 {
+        self.next[usize::from(state) * self.alphabet.scatters.len() + self.alphabet.scatter(mesh, scatter)]
+    }
+
+    /// The expressions that accept a path that ends at a light.
+    pub fn light(&self, state: u16, source: LightSource) -> &[u16] {
+        let light = self.alphabet.light(source);
+        &self.lists[usize::from(self.ends[usize::from(state) * self.alphabet.lights.len() + light])]
+    }
+
+    #[cfg(test)]
+    pub fn states(&self) -> usize {
+        self.ends.len() / self.alphabet.lights.len()
+    }
+
+    /// The same with states merged that no path tells apart.
+    fn minimised(self) -> Self {
+        let (events, lights) = (self.alphabet.scatters.len(), self.alphabet.lights.len());
+        let count = self.ends.len() / lights;
+        // Tell apart by what is accepted now, then again and again by where events lead.
+        let mut group = vec![0usize; count];
+        let mut groups = 0;
+        loop {
+            let mut seen = BTreeMap::new();
+            let refined: Vec<usize> = (0..count)
+                .map(|state| {
+                    let ahead = self.next[state * events..][..events].iter().map(|&n| group[usize::from(n)]);
+                    let signature = (&self.ends[state * lights..][..lights], ahead.collect::<Vec<_>>());
+                    let number = seen.len();
+                    *seen.entry(signature).or_insert(number)
+                })
+                .collect();
+            let found = seen.len();
+            group = refined;
+            if found == groups {
+                break;
+            }
+            groups = found;
+        }
+        // Groups are numbered by their first state, so the dead one, state 0, stays 0.
+        let mut next = vec![0; groups * events];
+        let mut ends = vec![0; groups * lights];
+        for state in 0..count {
+            let to = group[state];
+            for event in 0..events {
+                next[to * events + event] = group[usize::from(self.next[state * events + event])] as u16;
+            }
+            ends[to * lights..][..lights].copy_from_slice(&self.ends[state * lights..][..lights]);
+        }
+        Self { start: group[usize::from(self.start)] as u16, next, ends, ..self }
+    }
+}
+
+/// The expressions as one automaton that may be in many places at once.
+#[derive(Default)]
+struct Places<'a> {
+    /// Places that can be entered from each without an event.
+    jumps: Vec<Vec<u32>>,
+    /// The events that lead on, and where.
+    moves: Vec<Option<(&'a EventSet, u32)>>,
+    accepts: Vec<Vec<u16>>,
+}
+
+impl<'a> Places<'a> {
+    fn add(&mut self) -> Result<u32> {
+        if self.jumps.len() >= MOST_PLACES {
+            return Err(too_large());
+        }
+        self.jumps.push(Vec::new());
+        self.moves.push(None);
+        self.accepts.push(Vec::new());
+        Ok(self.jumps.len() as u32 - 1)
+    }
+
+    fn jump(&mut self, from: u32, to: u32) {
+        self.jumps[from as usize].push(to);
+    }
+
+    /// Adds what a node matches after place `from`; returns the place after it.
+    fn build(&mut self, node: &'a Node, from: u32) -> Result<u32> {
+        match node {
+            Node::Event(set) => {
+                let (before, after) = (self.add()?, self.add()?);
+                self.jump(from, before);
+                self.moves[before as usize] = Some((set, after));
+                Ok(after)
+            }
+            Node::Sequence(nodes) => nodes.iter().try_fold(from, |at, node| self.build(node, at)),
+            Node::Either(nodes) => {
+                let end = self.add()?;
+                for node in nodes {
+                    let last = self.build(node, from)?;
+                    self.jump(last, end);
+                }
+                Ok(end)
+            }
+            Node::Repeat(node, least, most) => {
+                let mut at = from;
+                for _ in 0..*least {
+                    at = self.build(node, at)?;
+                }
+                let end = self.add()?;
+                self.jump(at, end);
+                match most {
+                    None => {
+                        let last = self.build(node, end)?;
+                        self.jump(last, end);
+                    }
+                    Some(most) => {
+                        for _ in *least..*most {
+                            at = self.build(node, at)?;
+                            self.jump(at, end);
+                        }
+                    }
+                }
+                Ok(end)
+            }
+        }
+    }
+}
+
+/// The sets of places that paths reach, as states.
+struct Subsets<'a> {
+    places: &'a Places<'a>,
+    scatters: &'a [Event],
+    lights: &'a [Event],
+    /// Numbers of the sets and of the lists seen so far.
+    numbers: BTreeMap<Vec<u32>, u16>,
+    list_numbers: BTreeMap<Vec<u16>, u16>,
+    next: Vec<u16>,
+    ends: Vec<u16>,
+    lists: Vec<Vec<u16>>,
+    moves_left: usize,
+}
+
+impl<'a> Subsets<'a> {
+    fn new(places: &'a Places<'a>, alphabet: &'a Alphabet) -> Self {
+        Self {
+            places,
+            scatters: &alphabet.scatters,
+            lights: &alphabet.lights,
+            numbers: BTreeMap::from([(Vec::new(), DEAD)]),
+            list_numbers: BTreeMap::from([(Vec::new(), 0)]),
+            next: Vec::new(),
+            ends: Vec::new(),
+            lists: vec![Vec::new()],
+            moves_left: MOST_MOVES,
+        }
+    }
+
+    /// Visits all that can follow the camera; returns the state after it.
+    fn explore(&mut self, start: u32) -> Result<u16> {
+        let camera = Event { kinds: kind::CAMERA, modes: 0, labels: Vec::new() };
+        let mut sets = vec![Vec::new()];
+        let before = self.closure(&[start])?;
+        let first = self.after(&before, &camera)?;
+        let first = self.number(first, &mut sets)?;
+        let (scatters, lights) = (self.scatters, self.lights);
+        let mut state = 0;
+        while let Some(set) = sets.get(state).cloned() {
+            for event in scatters {
+                let after = self.after(&set, event)?;
+                let number = self.number(after, &mut sets)?;
+                self.next.push(number);
+            }
+            for light in lights {
+                let after = self.after(&set, light)?;
+                let mut list: Vec<u16> =
+                    after.iter().flat_map(|&p| &self.places.accepts[p as usize]).copied().collect();
+                list.sort_unstable();
+                list.dedup();
+                let number = self.lists.len() as u16;
+                let number = *self.list_numbers.entry(list.clone()).or_insert(number);
+                if usize::from(number) == self.lists.len() {
+                    self.lists.push(list);
+                }
+                self.ends.push(number);
+            }
+            state += 1;
+        }
+        Ok(first)
+    }
+
+    fn number(&mut self, set: Vec<u32>, sets: &mut Vec<Vec<u32>>) -> Result<u16> {
+        if let Some(&number) = self.numbers.get(&set) {
+            return Ok(number);
+        }
+        if sets.len() >= MOST_STATES {
+            return Err(too_large());
+        }
+        let number = sets.len() as u16;
+        self.numbers.insert(set.clone(), number);
+        sets.push(set);
+        Ok(number)
+    }
+
+    fn after(&mut self, set: &[u32], event: &Event) -> Result<Vec<u32>> {
+        self.spend(set.len())?;
+        let moves = set.iter().filter_map(|&p| self.places.moves[p as usize]);
+        let reached: Vec<u32> = moves.filter(|(events, _)| events.contains(event)).map(|(_, to)| to).collect();
+        self.closure(&reached)
+    }
+
+    /// The places that can be entered from some others without an event; those that only pass on are left out.
+    fn closure(&mut self, from: &[u32]) -> Result<Vec<u32>> {
+        let mut seen = std::collections::BTreeSet::new();
+        let mut waiting = from.to_vec();
+        while let Some(place) = waiting.pop() {
+            if seen.insert(place) {
+                waiting.extend(&self.places.jumps[place as usize]);
+            }
+        }
+        self.spend(seen.len())?;
+        let matters = |&p: &u32| self.places.moves[p as usize].is_some() || !self.places.accepts[p as usize].is_empty();
+        Ok(seen.into_iter().filter(matters).collect())
+    }
+
+    fn spend(&mut self, moves: usize) -> Result<()> {
+        self.moves_left = self.moves_left.checked_sub(moves).ok_or_else(too_large)?;
+        Ok(())
+    }
+}
+
+fn too_large() -> Error {
+    Error::argument(format!(
+        "the expressions together need more than {MOST_STATES} states; shorten their repetitions or render them in groups"
+    ))
+}
