@@ -188,9 +188,9 @@ mod tests {
         let mut rng = Rng::new(31, &[]);
         for round in 0..200 {
             // 101 votes of which 51 are for candidate 7, in random order, joined at random places.
-            let mut votes: Vec<u32> = (0..101).map(|i| if i < 51 { 7 } else { 1 + rng.below(5) }).collect();
+            let mut votes: Vec<u32> = (0..101).map(|i| if i < 51 { 7 } else { 1 + rng.below(5) as u32 }).collect();
             for i in (1..votes.len()).rev() {
-                votes.swap(i, rng.below(i as u32 + 1) as usize);
+                votes.swap(i, rng.below(i + 1));
             }
             let mut kept = [0.0; 2];
             let mut vote = Vote::default();

@@ -16,12 +16,9 @@ pub enum Scatter {
     Pane,
 }
 
-impl Scatter {
-    pub const ALL: [Self; 4] = [Self::Diffuse, Self::Glossy, Self::Mirror, Self::Pane];
-}
 
 pub struct Alphabet {
-    /// Events of scattering, four to a class of meshes, in the order of [`Scatter::ALL`].
+    /// Events of scattering, four to a class of meshes, in the order of [`Scatter`].
     pub scatters: Vec<Event>,
     /// Events at a light's end of a path.
     pub lights: Vec<Event>,
@@ -62,7 +59,7 @@ impl Alphabet {
         };
         class(Vec::new());
         let class_of_mesh: Vec<u32> = scene.meshes.iter().map(|mesh| class(told(&names(mesh)))).collect();
-        // So with punctual lights.
+        // So with lights without a surface.
         let mut by_labels = BTreeMap::new();
         let mut light = |kinds: u8, labels: Vec<String>| {
             *by_labels.entry((kinds, labels.clone())).or_insert_with(|| {
@@ -70,7 +67,7 @@ impl Alphabet {
                 lights.len() as u32 - 1
             })
         };
-        light(kind::LIGHT, Vec::new());
+        [kind::LIGHT, kind::OBJECT, kind::BACKGROUND].map(|kinds| light(kinds, Vec::new()));
         let punctual = (0..scene.lights.len()).map(|i| light(kind::LIGHT, told(&[punctual_label(i)]))).collect();
         let environment = light(environment_kinds(emitter_as), told(&[ENVIRONMENT.to_string()]));
         let first_scatter = class_of_mesh.iter().map(|c| c * SCATTERS.len() as u32).collect();
@@ -96,7 +93,7 @@ fn punctual_label(index: usize) -> String {
     format!("light{index}")
 }
 
-/// Types and modes in the order of [`Scatter::ALL`].
+/// Types and modes in the order of [`Scatter`].
 const SCATTERS: [(u8, u8); 4] = [
     (kind::REFLECT, mode::DIFFUSE),
     (kind::REFLECT, mode::GLOSSY),
