@@ -29,6 +29,8 @@ const GROUPS: &[&str] = &[
     "segment",
     "emission",
     "render",
+    "render_outputs",
+    "illuminance",
     "relight",
     "transfer",
     "transfer_results",
@@ -334,6 +336,9 @@ layouts! {
     luxfer_luminaire: struct_size corners centre size orientation area flux_share colour reserved;
     luxfer_render_params: struct_size width height samples target_error time_budget_ms seed;
     luxfer_render_report: struct_size samples error;
+    luxfer_illuminance_params: struct_size columns rows samples seed;
+    luxfer_illuminance_grid: struct_size origin across down normal reserved;
+    luxfer_illuminance_report: struct_size points least mean largest mean_error;
     luxfer_relight_params: struct_size quantity paths target_error time_budget_ms reserved seed;
     luxfer_relight_report: struct_size paths scale half_width response background reach reserved error;
     luxfer_transfer_params: struct_size max_texels plane_distance white_luminance target rectify features plane lights

@@ -151,12 +151,12 @@ trait Holder: Send + Sync {
     fn image(&self) -> &Image;
 }
 
-struct Part<O> {
+struct Part<O, P> {
     output: Arc<O>,
-    pick: fn(&O) -> &Image,
+    pick: P,
 }
 
-impl<O: Send + Sync> Holder for Part<O> {
+impl<O: Send + Sync, P: Fn(&O) -> &Image + Send + Sync> Holder for Part<O, P> {
     fn image(&self) -> &Image {
         (self.pick)(&self.output)
     }
@@ -204,7 +204,7 @@ impl Pixels {
     pub(super) fn part<O: Send + Sync + 'static>(
         context: &Arc<Context>,
         output: Arc<O>,
-        pick: fn(&O) -> &Image,
+        pick: impl Fn(&O) -> &Image + Send + Sync + 'static,
     ) -> Arc<Self> {
         let holder = Part { output, pick };
         Arc::new(Self { context: context.clone(), source: Source::Result(Arc::new(holder)) })
@@ -348,7 +348,7 @@ fn encode_exr(image: &Image) -> Result<Vec<u8>> {
         4 => vec!["R", "G", "B", "A"],
         _ => numbered.iter().map(String::as_str).collect(),
     };
-    io::encode_exr(&[io::Layer { name: "", image, channels: &names }])
+    io::encode_exr(&[io::Layer { name: "", image, channels: &names }], &[])
 }
 
 /// Tells width and height in pixels and the number of channels; any of the three may be NULL. Any thread.

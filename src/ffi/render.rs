@@ -16,7 +16,7 @@ use super::stage::{Stage, need};
 use super::status::luxfer_status;
 use crate::error::Error;
 use crate::image::Image;
-use crate::render::{self, Film};
+use crate::render::{self, Film, Outputs};
 use crate::scene::Camera;
 use std::sync::Arc;
 
@@ -109,6 +109,7 @@ unsafe impl Versioned for luxfer_render_report {
 pub(super) struct Inputs {
     scene: Option<Arc<SceneObject>>,
     camera: Viewpoint,
+    pub(super) outputs: Outputs,
 }
 
 #[derive(Clone)]
@@ -198,8 +199,8 @@ pub unsafe extern "C" fn luxfer_render_start(
     job: *mut *mut luxfer_job,
 ) -> luxfer_status {
     enter(render, |stage| {
-        let params = params::read(params)?.params();
         let inputs = stage.inputs();
+        let params = render::Params { outputs: inputs.outputs, ..params::read(params)?.params() };
         let object = need(&inputs.scene, "luxfer_render_set_scene")?.clone();
         let scene = object.snapshot();
         let camera = match inputs.camera {

@@ -194,9 +194,12 @@ pub struct Layer<'a> {
     pub channels: &'a [&'a str],
 }
 
-/// Encodes layers of one size into a single-part 32-bit float OpenEXR file, channels named `layer.channel`.
-pub fn encode_exr(layers: &[Layer]) -> Result<Vec<u8>> {
+/// Encodes layers of one size into a single-part 32-bit float OpenEXR file, channels named `layer.channel`. `notes` are
+/// texts kept in its header, by name.
+pub fn encode_exr(layers: &[Layer], notes: &[(String, String)]) -> Result<Vec<u8>> {
     use ex::WritableImage;
+    // Texts of OpenEXR files are UTF-8.
+    let text = |text: &str| ex::Text::from_slice_unchecked(text.as_bytes());
     let first = layers.first().ok_or_else(|| Error::argument("an OpenEXR file needs at least one layer"))?.image;
     let mut list = ex::SmallVec::<[ex::AnyChannel<ex::FlatSamples>; 4]>::new();
     for layer in layers {
@@ -212,12 +215,13 @@ pub fn encode_exr(layers: &[Layer]) -> Result<Vec<u8>> {
         for (c, channel) in layer.channels.iter().enumerate() {
             let name = if layer.name.is_empty() { channel.to_string() } else { format!("{}.{channel}", layer.name) };
             let samples: Vec<f32> = layer.image.data.iter().skip(c).step_by(layer.image.channels).copied().collect();
-            let name = ex::Text::new_or_none(&name)
-                .ok_or_else(|| Error::argument(format!("{name:?} cannot name an OpenEXR channel")))?;
-            list.push(ex::AnyChannel::new(name, ex::FlatSamples::F32(samples)));
+            list.push(ex::AnyChannel::new(text(&name), ex::FlatSamples::F32(samples)));
         }
     }
-    let file = ex::Image::from_channels((first.width, first.height), ex::AnyChannels::sort(list));
+    let mut file = ex::Image::from_channels((first.width, first.height), ex::AnyChannels::sort(list));
+    for (name, note) in notes {
+        file.layer_data.attributes.other.insert(text(name), ex::AttributeValue::Text(text(note)));
+    }
     let mut out = Cursor::new(Vec::new());
     file.write()
         .non_parallel()
@@ -250,7 +254,7 @@ mod tests {
         let image = picture();
         let png = decode(&encode_png(&image, 1.0).unwrap(), Encoding::Srgb).unwrap();
         assert!(png.data.iter().zip(&image.data).all(|(a, b)| (a - b).abs() < 0.01));
-        let exr = encode_exr(&[Layer { name: "", image: &image, channels: &["R", "G", "B"] }]).unwrap();
+        let exr = encode_exr(&[Layer { name: "", image: &image, channels: &["R", "G", "B"] }], &[]).unwrap();
         assert_eq!(decode(&exr, Encoding::Srgb).unwrap(), image);
     }
 
@@ -258,7 +262,7 @@ mod tests {
     fn truncated_and_lying_files_are_errors() {
         let image = picture();
         let png = encode_png(&image, 1.0).unwrap();
-        let exr = encode_exr(&[Layer { name: "", image: &image, channels: &["R", "G", "B"] }]).unwrap();
+        let exr = encode_exr(&[Layer { name: "", image: &image, channels: &["R", "G", "B"] }], &[]).unwrap();
         for file in [&png, &exr] {
             assert_eq!(probe(file).unwrap(), (19, 13, 3));
             for cut in [0, 1, 4, 8, 20, file.len() / 2, file.len() - 20] {

@@ -171,7 +171,7 @@ fn radiance(
         Some(recorder) => {
             recorder.start();
             path::trace(world, ray, &mut sampler, recorder);
-            recorder.beauty()
+            recorder.finish()
         }
     }
 }

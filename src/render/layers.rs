@@ -3,6 +3,7 @@
 //! They are made of the very paths the main image is made of, and never change a bit of it. Sums of a pass are in f64 and
 //! are added to those kept of a pixel, in f32, pass by pass.
 
+use super::LightSource;
 use super::aov::{Aov, Surfaces};
 use super::bsdf::{Bsdf, Lobes, Scattered};
 use super::light::LightSample;
@@ -10,7 +11,6 @@ use super::lpe::{EmitterAs, Expression, Table, Trail};
 use super::path::Observer;
 use super::vertex::Vertex;
 use super::world::{Pane, World};
-use super::LightSource;
 use crate::error::{Error, Result};
 use crate::image::{Image, colour, try_vec};
 use crate::scene::Camera;
@@ -105,6 +105,7 @@ impl<'a> Layers<'a> {
             layers: self,
             beauty: Vec3::ZERO,
             trail: Trail::new(&self.table),
+            path: vec![Vec3::ZERO; self.outputs.expressions.len()],
             sums: vec![DVec3::ZERO; self.outputs.expressions.len()],
             surfaces: Surfaces::default(),
         }
@@ -130,11 +131,7 @@ impl<'a> Layers<'a> {
     }
 
     /// The images so far. `pixels` yields, row by row, the tile of each pixel, its place there, and its samples.
-    pub fn images(
-        &self,
-        beauty: &Image,
-        place: impl Fn(usize, usize) -> (usize, usize, f64),
-    ) -> Result<Vec<Layer>> {
+    pub fn images(&self, beauty: &Image, place: impl Fn(usize, usize) -> (usize, usize, f64)) -> Result<Vec<Layer>> {
         let mut layers = Vec::new();
         let rgb: &[&str] = &["R", "G", "B"];
         for (name, expression) in &self.outputs.expressions {
@@ -179,6 +176,9 @@ pub struct Recorder<'a> {
     /// Sum of the contributions of one path, as the main image has it.
     beauty: Vec3,
     trail: Trail<'a>,
+    /// The same for each expression.
+    path: Vec<Vec3>,
+    /// Sums over the paths.
     sums: Vec<DVec3>,
     surfaces: Surfaces,
 }
@@ -187,11 +187,15 @@ impl Recorder<'_> {
     /// A new path begins.
     pub fn start(&mut self) {
         self.beauty = Vec3::ZERO;
+        self.path.fill(Vec3::ZERO);
         self.trail.start();
     }
 
-    /// What the path has brought to the main image.
-    pub fn beauty(&self) -> Vec3 {
+    /// Ends the path; returns what it has brought to the main image. One that is no finite number counts nowhere.
+    pub fn finish(&mut self) -> Vec3 {
+        if self.beauty.is_finite() {
+            self.sums.iter_mut().zip(&self.path).for_each(|(sum, path)| *sum += path.as_dvec3());
+        }
         self.beauty
     }
 }
@@ -224,10 +228,10 @@ impl Observer for Recorder<'_> {
     }
 
     fn connect(&mut self, mesh: u32, lobes: Lobes, factor: f32, light: &LightSample) {
-        self.trail.connect(self.world, mesh, lobes, light.emission * factor, light.source, &mut self.sums);
+        self.trail.connect(self.world, mesh, lobes, light.emission * factor, light.source, &mut self.path);
     }
 
     fn arrive(&mut self, source: LightSource, weight: f32, emission: Vec3) {
-        self.trail.arrive(source, emission * weight, &mut self.sums);
+        self.trail.arrive(source, emission * weight, &mut self.path);
     }
 }

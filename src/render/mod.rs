@@ -16,6 +16,7 @@ mod emissive;
 mod environment;
 mod film;
 mod ggx;
+pub mod illuminance;
 mod layers;
 mod light;
 pub mod lpe;
@@ -101,7 +102,15 @@ pub struct Params {
 
 impl Default for Params {
     fn default() -> Self {
-        Self { width: 1280, height: 720, samples: 64, target_error: 0.0, time_budget_ms: 0, seed: 1, outputs: Outputs::default() }
+        Self {
+            width: 1280,
+            height: 720,
+            samples: 64,
+            target_error: 0.0,
+            time_budget_ms: 0,
+            seed: 1,
+            outputs: Outputs::default(),
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! A point of a surface that a path has reached: where it is, how it is oriented, and what it is made of there.
 
 use super::bsdf::{Bsdf, Substance};
-use super::world::World;
+use super::world::{NONE, World};
 use crate::scene::accel::{Hit, Ray};
 use crate::scene::{Material, Mesh, TextureRef};
 use glam::{Vec2, Vec3};
@@ -40,6 +40,14 @@ impl Vertex {
             normal: geometric_normal([a, b, c]),
             offset: largest * OFFSET,
         }
+    }
+
+    /// A point that is on no surface, facing along a unit normal. It clears surfaces it may happen to lie in.
+    pub fn free(world: &World, position: Vec3, normal: Vec3) -> Self {
+        let (low, high) = world.accel().bounds();
+        let largest = position.abs().max(low.abs()).max(high.abs()).max_element();
+        let (mesh, triangle, barycentric) = (NONE, NONE, Vec2::ZERO);
+        Self { mesh, triangle, id: NONE, barycentric, position, normal, offset: largest * OFFSET }
     }
 
     /// The point moved off its surface to the side of `direction` (Wächter and Binder 2019, with the scale of the

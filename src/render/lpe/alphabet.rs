@@ -16,7 +16,6 @@ pub enum Scatter {
     Pane,
 }
 
-
 pub struct Alphabet {
     /// Events of scattering, four to a class of meshes, in the order of [`Scatter`].
     pub scatters: Vec<Event>,
@@ -67,7 +66,9 @@ impl Alphabet {
                 lights.len() as u32 - 1
             })
         };
-        [kind::LIGHT, kind::OBJECT, kind::BACKGROUND].map(|kinds| light(kinds, Vec::new()));
+        for kinds in [kind::LIGHT, kind::OBJECT, kind::BACKGROUND] {
+            light(kinds, Vec::new());
+        }
         let punctual = (0..scene.lights.len()).map(|i| light(kind::LIGHT, told(&[punctual_label(i)]))).collect();
         let environment = light(environment_kinds(emitter_as), told(&[ENVIRONMENT.to_string()]));
         let first_scatter = class_of_mesh.iter().map(|c| c * SCATTERS.len() as u32).collect();

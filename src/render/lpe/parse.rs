@@ -202,7 +202,8 @@ impl Parser<'_> {
                 self.either()?;
                 self.unexpected_unless_end()?;
                 let end = self.characters.len();
-                Err(self.error(end, "found no eye; expected C at the start (camera first) or E at the end (light first)"))
+                Err(self
+                    .error(end, "found no eye; expected C at the start (camera first) or E at the end (light first)"))
             }
             [_, eye] => {
                 self.light_first = eye.is_some();

@@ -10,19 +10,21 @@ use super::automaton::{DEAD, Table};
 use crate::render::LightSource;
 use crate::render::bsdf::{Kind, Lobes, Scattered};
 use crate::render::world::{Pane, World};
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 
 pub struct Trail<'a> {
     table: &'a Table,
     parts: Vec<(u16, Vec3)>,
     /// The parts before the last step, and those of a connection.
     before: Vec<(u16, Vec3)>,
+    spare: Vec<(u16, Vec3)>,
+    /// Those between a vertex and the light chosen for it.
     pub panes: Vec<Pane>,
 }
 
 impl<'a> Trail<'a> {
     pub fn new(table: &'a Table) -> Self {
-        Self { table, parts: Vec::new(), before: Vec::new(), panes: Vec::new() }
+        Self { table, parts: Vec::new(), before: Vec::new(), spare: Vec::new(), panes: Vec::new() }
     }
 
     /// A new path leaves the camera.
@@ -56,7 +58,7 @@ impl<'a> Trail<'a> {
     }
 
     /// The path ends at a light that scattering found; `value` is what a throughput of 1 contributes.
-    pub fn arrive(&self, source: LightSource, value: Vec3, sums: &mut [DVec3]) {
+    pub fn arrive(&self, source: LightSource, value: Vec3, sums: &mut [Vec3]) {
         for &(state, throughput) in &self.parts {
             record(self.table.light(state, source), throughput * value, sums);
         }
@@ -70,9 +72,9 @@ impl<'a> Trail<'a> {
         lobes: Lobes,
         value: Vec3,
         source: LightSource,
-        sums: &mut [DVec3],
+        sums: &mut [Vec3],
     ) {
-        let Self { table, parts, before: ends, panes } = self;
+        let Self { table, parts, before: ends, spare, panes } = self;
         ends.clear();
         for &(state, throughput) in parts.iter() {
             for (scatter, lobe) in [(Scatter::Diffuse, lobes.diffuse), (Scatter::Glossy, lobes.glossy)] {
@@ -85,7 +87,9 @@ impl<'a> Trail<'a> {
         panes.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.triangle.cmp(&b.triangle)));
         for pane in panes.iter() {
             let (mesh, _) = world.locate(pane.triangle);
-            for (state, throughput) in std::mem::take(ends) {
+            std::mem::swap(ends, spare);
+            ends.clear();
+            for &(state, throughput) in spare.iter() {
                 if pane.beside > 0.0 {
                     add(ends, state, throughput * pane.beside);
                 }
@@ -111,8 +115,8 @@ fn add(parts: &mut Vec<(u16, Vec3)>, state: u16, throughput: Vec3) {
     }
 }
 
-fn record(expressions: &[u16], value: Vec3, sums: &mut [DVec3]) {
+fn record(expressions: &[u16], value: Vec3, sums: &mut [Vec3]) {
     for &expression in expressions {
-        sums[usize::from(expression)] += value.as_dvec3();
+        sums[usize::from(expression)] += value;
     }
 }

@@ -3,7 +3,9 @@
 mod energy;
 mod extremes;
 mod film;
+mod illuminance;
 mod irradiance;
+mod layers;
 mod refusal;
 
 use super::*;

@@ -1,0 +1,290 @@
+//! Illuminance
+//!
+//! Illuminance in lux on a calculation grid, or over a mesh by its texture coordinates, with the standard error of every
+//! point, and mean, extremes and their error for reports.
+
+use super::context::luxfer_context;
+use super::guard::{enter, guard};
+use super::handle::{self, Handle, Owned, tag};
+use super::image::{Pixels, luxfer_image};
+use super::job::luxfer_job;
+use super::params::{self, Report, Versioned};
+use super::pointer::Out;
+use super::scene::{SceneObject, luxfer_scene};
+use super::stage::{Stage, need};
+use super::status::luxfer_status;
+use crate::error::{Error, Result};
+use crate::image::Image;
+use crate::render::illuminance::{self, Output, Place};
+use glam::Vec3;
+use std::sync::Arc;
+
+/// A calculation of illuminance. See luxfer_illuminance_create.
+pub struct luxfer_illuminance {
+    _opaque: [u8; 0],
+}
+
+/// An image of the calculation: a LUXFER_ILLUMINANCE_ value.
+pub type luxfer_illuminance_image = i32;
+/// Illuminance in lux; 1 channel, NaN where a mesh has no point.
+pub const LUXFER_ILLUMINANCE_LUX: luxfer_illuminance_image = 0;
+/// Standard error of each value, in lux; 1 channel.
+pub const LUXFER_ILLUMINANCE_ERROR: luxfer_illuminance_image = 1;
+
+/// Settings of the calculation. Fill them with luxfer_illuminance_params_init.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_illuminance_params {
+    /// sizeof(luxfer_illuminance_params), set by luxfer_illuminance_params_init.
+    pub struct_size: u32,
+    /// Points along the first edge or texture coordinate, in [1, 65536]; default 32.
+    pub columns: u32,
+    /// Points along the second, in [1, 65536]; default 32.
+    pub rows: u32,
+    /// Paths per point, in [16, 16777216], rounded up to a multiple of 16; default 1024.
+    pub samples: u32,
+    /// Seed of the paths; default 1.
+    pub seed: u64,
+}
+
+// SAFETY: plain integers.
+unsafe impl Versioned for luxfer_illuminance_params {
+    const NAME: &'static str = "luxfer_illuminance_params";
+    const SIZES: &'static [usize] = &[24];
+    fn defaults() -> Self {
+        let d = illuminance::Params::default();
+        Self { struct_size: 24, columns: d.columns as u32, rows: d.rows as u32, samples: d.samples, seed: d.seed }
+    }
+}
+
+/// A calculation grid. Fill it with luxfer_illuminance_grid_init, then set what differs: the defaults are a square metre
+/// at the origin that faces up.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_illuminance_grid {
+    /// sizeof(luxfer_illuminance_grid), set by luxfer_illuminance_grid_init.
+    pub struct_size: u32,
+    /// A corner, in metres; default (0, 0, 0).
+    pub origin: [f32; 3],
+    /// The edge along which columns count, in metres; default (1, 0, 0). Points are the centres of the cells.
+    pub across: [f32; 3],
+    /// The edge along which rows count, in metres; default (0, 0, 1).
+    pub down: [f32; 3],
+    /// The side from which light counts, of any length but 0; default (0, 1, 0).
+    pub normal: [f32; 3],
+    /// Must be 0.
+    pub reserved: u32,
+}
+
+// SAFETY: plain numbers.
+unsafe impl Versioned for luxfer_illuminance_grid {
+    const NAME: &'static str = "luxfer_illuminance_grid";
+    const SIZES: &'static [usize] = &[56];
+    fn defaults() -> Self {
+        Self {
+            struct_size: 56,
+            origin: [0.0; 3],
+            across: [1.0, 0.0, 0.0],
+            down: [0.0, 0.0, 1.0],
+            normal: [0.0, 1.0, 0.0],
+            reserved: 0,
+        }
+    }
+}
+
+/// The illuminance on the whole, in lux. Set struct_size before the call.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_illuminance_report {
+    /// sizeof(luxfer_illuminance_report), set by the caller.
+    pub struct_size: u32,
+    /// Points that there are: of a mesh, the texels with a surface.
+    pub points: u32,
+    /// Smallest illuminance; least / mean is the uniformity U0.
+    pub least: f64,
+    /// Mean illuminance.
+    pub mean: f64,
+    /// Largest illuminance.
+    pub largest: f64,
+    /// Standard error of the mean.
+    pub mean_error: f64,
+}
+
+// SAFETY: plain numbers.
+unsafe impl Versioned for luxfer_illuminance_report {
+    const NAME: &'static str = "luxfer_illuminance_report";
+    const SIZES: &'static [usize] = &[40];
+    fn defaults() -> Self {
+        Self { struct_size: 40, points: 0, least: 0.0, mean: 0.0, largest: 0.0, mean_error: 0.0 }
+    }
+}
+
+impl Handle for luxfer_illuminance {
+    type Object = Stage<Inputs, Output>;
+    const TAG: u64 = tag(b"lux.illu");
+    const NAME: &'static str = "luxfer_illuminance";
+}
+
+#[derive(Clone, Default)]
+pub(super) struct Inputs {
+    scene: Option<Arc<SceneObject>>,
+}
+
+/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_illuminance_params_init(
+    params: *mut luxfer_illuminance_params,
+    size: usize,
+) -> luxfer_status {
+    guard(|| params::init(params, size))
+}
+
+/// Fills *grid with the defaults; size is sizeof *grid. LUXFER_INVALID_ARGUMENT if grid is NULL or size is wrong.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_illuminance_grid_init(
+    grid: *mut luxfer_illuminance_grid,
+    size: usize,
+) -> luxfer_status {
+    guard(|| params::init(grid, size))
+}
+
+/// Creates the stage. The caller releases *illuminance. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_illuminance_create(
+    context: *mut luxfer_context,
+    illuminance: *mut *mut luxfer_illuminance,
+) -> luxfer_status {
+    enter(context, |object| {
+        let out = Out::new(illuminance, "illuminance")?;
+        out.set(handle::give(Stage::new(object.context(), Inputs::default())));
+        Ok(())
+    })
+}
+
+/// Sets the scene; each start calculates with it as it is then. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_illuminance_set_scene(
+    illuminance: *mut luxfer_illuminance,
+    scene: *mut luxfer_scene,
+) -> luxfer_status {
+    enter(illuminance, |stage| {
+        let scene = handle::borrow_in(stage.context(), scene, "scene")?;
+        stage.change(|inputs| {
+            inputs.scene = Some(scene);
+            Ok(())
+        })
+    })
+}
+
+/// Starts a job that calculates a grid. grid and params may be NULL for their defaults. The caller releases *job. Any
+/// thread.
+/// LUXFER_INVALID_OPERATION if the scene is missing or a job runs already. The job may end with LUXFER_INVALID_ARGUMENT
+/// if the scene is not valid, the grid has no normal, or a setting is out of range.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_illuminance_start_grid(
+    illuminance: *mut luxfer_illuminance,
+    grid: *const luxfer_illuminance_grid,
+    params: *const luxfer_illuminance_params,
+    job: *mut *mut luxfer_job,
+) -> luxfer_status {
+    enter(illuminance, |stage| {
+        let grid = params::read(grid)?;
+        if grid.reserved != 0 {
+            return Err(Error::argument(format!("grid.reserved is {}; it must be 0", grid.reserved)));
+        }
+        let [origin, across, down, normal] = [grid.origin, grid.across, grid.down, grid.normal].map(Vec3::from_array);
+        start(stage, Place::Grid { origin, across, down, normal }, params, job)
+    })
+}
+
+/// Starts a job that maps a mesh by its first set of texture coordinates: columns along u, rows along v. back is 0 for the
+/// side that its triangles' winding faces, 1 for the other. params may be NULL for the defaults. The caller releases *job.
+/// Any thread.
+/// LUXFER_INVALID_OPERATION if the scene is missing or a job runs already. The job may end with LUXFER_INVALID_ARGUMENT
+/// if the scene is not valid, has no such mesh, the mesh has no texture coordinates, or a setting is out of range.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_illuminance_start_mesh(
+    illuminance: *mut luxfer_illuminance,
+    mesh: u32,
+    back: u32,
+    params: *const luxfer_illuminance_params,
+    job: *mut *mut luxfer_job,
+) -> luxfer_status {
+    enter(illuminance, |stage| {
+        if back > 1 {
+            return Err(Error::argument(format!("back is {back}; it must be 0 or 1")));
+        }
+        start(stage, Place::Mesh { mesh: mesh as usize, front: back == 0 }, params, job)
+    })
+}
+
+fn start(
+    stage: &Arc<Stage<Inputs, Output>>,
+    place: Place,
+    params: *const luxfer_illuminance_params,
+    job: *mut *mut luxfer_job,
+) -> Result<()> {
+    let p = params::read(params)?;
+    let params =
+        illuminance::Params { columns: p.columns as usize, rows: p.rows as usize, samples: p.samples, seed: p.seed };
+    let object = need(&stage.inputs().scene, "luxfer_illuminance_set_scene")?.clone();
+    let scene = object.snapshot();
+    stage.start(job, move |_, _, job| {
+        let world = object.world(&scene, job.part(0.0, 0.05))?;
+        illuminance::run(&world, &place, &params, job.part(0.05, 1.0))
+    })
+}
+
+/// Gets an image of the calculation; which is a LUXFER_ILLUMINANCE_ value. The caller releases *image. Any thread.
+/// LUXFER_NOT_READY before a job has succeeded.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_illuminance_get_image(
+    illuminance: *mut luxfer_illuminance,
+    which: luxfer_illuminance_image,
+    image: *mut *mut luxfer_image,
+) -> luxfer_status {
+    enter(illuminance, |stage| {
+        let out = Out::new(image, "image")?;
+        let pick: fn(&Output) -> &Image = match which {
+            LUXFER_ILLUMINANCE_LUX => |o| &o.lux,
+            LUXFER_ILLUMINANCE_ERROR => |o| &o.error,
+            _ => return Err(Error::argument(format!("which is {which}; it must be a LUXFER_ILLUMINANCE_ value"))),
+        };
+        out.set(handle::give(Pixels::part(stage.context(), stage.output()?, pick)));
+        Ok(())
+    })
+}
+
+/// Tells the illuminance on the whole. Any thread.
+/// LUXFER_NOT_READY before a job has succeeded.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_illuminance_get_report(
+    illuminance: *mut luxfer_illuminance,
+    report: *mut luxfer_illuminance_report,
+) -> luxfer_status {
+    enter(illuminance, |stage| {
+        let out = Report::new(report)?;
+        let output = stage.output()?;
+        out.set(luxfer_illuminance_report {
+            points: output.points as u32,
+            least: output.least,
+            mean: output.mean,
+            largest: output.largest,
+            mean_error: output.mean_error,
+            ..luxfer_illuminance_report::defaults()
+        });
+        Ok(())
+    })
+}
+
+/// Adds a reference. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_illuminance_retain(illuminance: *mut luxfer_illuminance) -> luxfer_status {
+    handle::retain(illuminance)
+}
+
+/// Gives a reference back; a job that runs goes on. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_illuminance_release(illuminance: *mut luxfer_illuminance) -> luxfer_status {
+    handle::release(illuminance)
+}

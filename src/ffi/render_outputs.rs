@@ -1,0 +1,228 @@
+//! Outputs of a rendering
+//!
+//! Images beside the main one, made of the same paths: light that came by certain ways, chosen by light path expressions,
+//! and what the camera sees of surfaces. They are asked for before luxfer_render_start, and read as layers, while the job
+//! runs as well as after it: first those of the expressions in the order they were added, then those of surfaces in the
+//! order of their flags. The main image is the same bits with and without them.
+//!
+//! An expression is a regular expression over the events of a path, light first with L and E at its ends, as in
+//! "LDE", "LSE", "L.*DDE", "LD{1,2}E", "LS*DE" (S is all that is not diffuse), or camera first with C, as in Open Shading
+//! Language: "C<RD>L", "C[GS]+.*<L.'Lamp'>". Types are R T V, modes D G S s (a clear pane is both S and s), lights L O B;
+//! . [..] [^..] * + ? {n,m} | ( ) are what they are in regular expressions. Labels in quotes are names of meshes or of
+//! their materials; light0, light1, ... are the scene's lights in their order, environment is what surrounds it. Arnold's
+//! built-in names are known: direct, indirect, emission, background, and diffuse, specular, transmission, each alone or
+//! with _direct or _indirect.
+
+use super::guard::enter;
+use super::handle;
+use super::image::{Pixels, luxfer_image};
+use super::pointer::{Out, copy_text, text};
+use super::render::luxfer_render;
+use super::status::luxfer_status;
+use crate::error::{Error, ErrorKind, Result};
+use crate::image::io;
+use crate::render::lpe::EmitterAs;
+use crate::render::{Aov, Film, Layer};
+use std::ffi::c_char;
+use std::path::Path;
+
+/// Distance along the viewing direction, in metres; infinite where nothing is. Layer Depth, channel Z.
+pub const LUXFER_AOV_DEPTH: u32 = 1;
+/// Distance along the ray, in metres; infinite where nothing is. Layer Distance, channel Z.
+pub const LUXFER_AOV_DISTANCE: u32 = 2;
+/// Place in the world, in metres. Layer Position, channels X Y Z.
+pub const LUXFER_AOV_POSITION: u32 = 4;
+/// Shading normal in the world, towards the viewer; 0 where nothing is. Layer Normal, channels X Y Z.
+pub const LUXFER_AOV_NORMAL: u32 = 8;
+/// Normal of the triangle itself, likewise. Layer GeometricNormal, channels X Y Z.
+pub const LUXFER_AOV_GEOMETRIC_NORMAL: u32 = 16;
+/// Colour at normal incidence. Layer Albedo, channels R G B.
+pub const LUXFER_AOV_ALBEDO: u32 = 32;
+/// Index of the mesh plus 1, 0 where nothing is; of what most samples met. Layer IndexOB, channel X.
+pub const LUXFER_AOV_OBJECT: u32 = 64;
+/// Index of the material plus 1, likewise. Layer IndexMA, channel X.
+pub const LUXFER_AOV_MATERIAL: u32 = 128;
+/// Share of the pixel that is covered by surfaces. Layer Alpha, channel A.
+pub const LUXFER_AOV_ALPHA: u32 = 256;
+/// Luminance of the main image, in cd/m². Layer Luminance, channel Y.
+pub const LUXFER_AOV_LUMINANCE: u32 = 512;
+
+/// How emissive surfaces and the environment answer to the lights of camera-first expressions: a LUXFER_EMITTER_ value.
+pub type luxfer_emitter_as = i32;
+/// Surfaces are both L and O, the environment is both L and B: C<RD>L is all direct light. The default.
+pub const LUXFER_EMITTER_AS_BOTH: luxfer_emitter_as = 0;
+/// Every light is L only.
+pub const LUXFER_EMITTER_AS_LIGHT: luxfer_emitter_as = 1;
+/// As in Open Shading Language: surfaces are O, the environment is B.
+pub const LUXFER_EMITTER_AS_OBJECT: luxfer_emitter_as = 2;
+
+/// Adds a layer of the light that an expression describes. name is what the layer is called: 1 to 64 bytes in UTF-8
+/// without dots, quotes or control characters, and not the name of another layer. Any thread.
+/// LUXFER_INVALID_ARGUMENT if the name is not such a name, or the expression is none: the message tells the column. A label
+/// that nothing in the scene bears ends the job with LUXFER_NOT_FOUND, an expression that no path can match ends it with
+/// LUXFER_INVALID_ARGUMENT. LUXFER_INVALID_OPERATION while a job runs.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_render_add_expression(
+    render: *mut luxfer_render,
+    name: *const c_char,
+    expression: *const c_char,
+) -> luxfer_status {
+    enter(render, |stage| {
+        let (name, expression) = (text(name, "name")?, text(expression, "expression")?);
+        stage.change(|inputs| inputs.outputs.add(name, expression))
+    })
+}
+
+/// Forgets all expressions. Any thread.
+/// LUXFER_INVALID_OPERATION while a job runs.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_render_clear_expressions(render: *mut luxfer_render) -> luxfer_status {
+    enter(render, |stage| {
+        stage.change(|inputs| {
+            inputs.outputs.expressions.clear();
+            Ok(())
+        })
+    })
+}
+
+/// Says which letters emissive surfaces and the environment answer to; a LUXFER_EMITTER_AS_ value. Any thread.
+/// LUXFER_INVALID_OPERATION while a job runs.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_render_set_emitter_as(
+    render: *mut luxfer_render,
+    emitter_as: luxfer_emitter_as,
+) -> luxfer_status {
+    enter(render, |stage| {
+        let emitter_as = match emitter_as {
+            LUXFER_EMITTER_AS_BOTH => EmitterAs::Both,
+            LUXFER_EMITTER_AS_LIGHT => EmitterAs::Light,
+            LUXFER_EMITTER_AS_OBJECT => EmitterAs::Object,
+            _ => {
+                return Err(Error::argument(format!(
+                    "emitter_as is {emitter_as}; it must be a LUXFER_EMITTER_AS_ value"
+                )));
+            }
+        };
+        stage.change(|inputs| {
+            inputs.outputs.emitter_as = emitter_as;
+            Ok(())
+        })
+    })
+}
+
+/// Says which layers of surfaces are made: LUXFER_AOV_ flags together, or 0, the default. Any thread.
+/// LUXFER_INVALID_OPERATION while a job runs.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_render_set_aovs(render: *mut luxfer_render, flags: u32) -> luxfer_status {
+    enter(render, |stage| {
+        if flags >> Aov::ALL.len() != 0 {
+            return Err(Error::argument(format!("flags is {flags:#x}; only LUXFER_AOV_ flags may be set")));
+        }
+        let aovs = Aov::ALL.into_iter().enumerate().filter(|(bit, _)| flags >> bit & 1 == 1).map(|(_, aov)| aov);
+        stage.change(|inputs| {
+            inputs.outputs.aovs = aovs.collect();
+            Ok(())
+        })
+    })
+}
+
+/// Tells how many layers the rendering has. Any thread.
+/// LUXFER_NOT_READY before the first pass of a job.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_render_get_layer_count(render: *mut luxfer_render, count: *mut u32) -> luxfer_status {
+    enter(render, |stage| {
+        let out = Out::new(count, "count")?;
+        out.set(stage.output()?.layers.len() as u32);
+        Ok(())
+    })
+}
+
+/// Copies a layer's name into capacity bytes with a zero at its end, cut if need be; *needed receives the capacity for all
+/// of it, unless NULL. Any thread.
+/// LUXFER_NOT_FOUND if there is no such layer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_render_get_layer_name(
+    render: *mut luxfer_render,
+    index: u32,
+    buffer: *mut c_char,
+    capacity: usize,
+    needed: *mut usize,
+) -> luxfer_status {
+    enter(render, |stage| copy_text(&layer(&stage.output()?, index)?.name, buffer, capacity, needed))
+}
+
+/// Finds a layer by its name. Any thread.
+/// LUXFER_NOT_FOUND if there is none of that name.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_render_find_layer(
+    render: *mut luxfer_render,
+    name: *const c_char,
+    index: *mut u32,
+) -> luxfer_status {
+    enter(render, |stage| {
+        let (name, out) = (text(name, "name")?, Out::new(index, "index")?);
+        let output = stage.output()?;
+        let found = output.layers.iter().position(|l| l.name == name).ok_or_else(|| {
+            let names: Vec<&str> = output.layers.iter().map(|l| l.name.as_str()).collect();
+            Error::new(ErrorKind::NotFound, format!("there is no layer {name:?}; there are {names:?}"))
+        })?;
+        out.set(found as u32);
+        Ok(())
+    })
+}
+
+/// Gets a layer as far as it is: 3 channels of light in cd/m², or those of a surface's output. The caller releases *image.
+/// Any thread.
+/// LUXFER_NOT_READY before the first pass of a job; LUXFER_NOT_FOUND if there is no such layer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_render_get_layer(
+    render: *mut luxfer_render,
+    index: u32,
+    image: *mut *mut luxfer_image,
+) -> luxfer_status {
+    enter(render, |stage| {
+        let out = Out::new(image, "image")?;
+        let output = stage.output()?;
+        layer(&output, index)?;
+        out.set(handle::give(Pixels::part(stage.context(), output, move |film| &film.layers[index as usize].image)));
+        Ok(())
+    })
+}
+
+/// Writes the image and all layers into one OpenEXR file of 32-bit floating-point channels: R, G, B of the image, A if its
+/// coverage was asked for, and layer.channel of each layer, as Blender and Nuke read them; Depth.Z also as plain Z. The
+/// header tells the expression of each layer of light as luxfer.lpe.NAME. path is UTF-8; an existing file is replaced only
+/// by a complete one. Any thread.
+/// LUXFER_NOT_READY before the first pass of a job; LUXFER_IO if the file cannot be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_render_write_exr(render: *mut luxfer_render, path: *const c_char) -> luxfer_status {
+    enter(render, |stage| {
+        let path = text(path, "path")?;
+        io::write_file(Path::new(path), &encode(&*stage.output()?)?)
+    })
+}
+
+fn layer(film: &Film, index: u32) -> Result<&Layer> {
+    film.layers.get(index as usize).ok_or_else(|| {
+        let count = film.layers.len();
+        Error::new(ErrorKind::NotFound, format!("index is {index}; the rendering has {count} layers"))
+    })
+}
+
+fn encode(film: &Film) -> Result<Vec<u8>> {
+    let mut layers = vec![io::Layer { name: "", image: &film.beauty, channels: &["R", "G", "B"] }];
+    let mut notes = vec![("luxfer.unit".to_string(), "cd/m^2".to_string())];
+    for layer in &film.layers {
+        // Coverage belongs to the image itself; its depth is where programs without layers look for it.
+        if layer.name == Aov::Alpha.name() || layer.name == Aov::Depth.name() {
+            layers.push(io::Layer { name: "", image: &layer.image, channels: layer.channels });
+        }
+        if layer.name != Aov::Alpha.name() {
+            layers.push(io::Layer { name: &layer.name, image: &layer.image, channels: layer.channels });
+        }
+        if let Some(expression) = &layer.expression {
+            notes.push((format!("luxfer.lpe.{}", layer.name), expression.clone()));
+        }
+    }
+    io::encode_exr(&layers, &notes)
+}

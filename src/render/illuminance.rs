@@ -1,0 +1,213 @@
+//! Illuminance in lux on a calculation grid or over a surface, with the standard error of every point: what lighting
+//! standards ask for (EN 12464-1: mean and uniformity on task areas, walls and ceilings).
+//!
+//! Points of a grid need no surface beneath them. A surface is mapped by its texture coordinates: each texel is the point
+//! whose coordinates are its centre.
+//!
+//! Not modelled: maintenance factors, cylindrical illuminance, glare ratings.
+
+use super::path::{self, Contributions};
+use super::sampler::Sampler;
+use super::vertex::Vertex;
+use super::world::World;
+use super::{LightSource, PathSink};
+use crate::error::{Error, Result, check_range};
+use crate::exec;
+use crate::image::{Image, MAX_SIDE, colour, try_vec};
+use crate::job::Job;
+use crate::rng;
+use glam::{DVec3, Vec2, Vec3};
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct Params {
+    /// Points across and down, each in `[1, 65536]`.
+    pub columns: usize,
+    pub rows: usize,
+    /// Paths per point, in `[16, 1 << 24]`; rounded up to a multiple of 16.
+    pub samples: u32,
+    pub seed: u64,
+}
+
+impl Default for Params {
+    fn default() -> Self {
+        Self { columns: 32, rows: 32, samples: 1024, seed: 1 }
+    }
+}
+
+/// Where illuminance is wanted.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Place {
+    /// A parallelogram with a corner and two edges: its points are the centres of `columns × rows` cells, columns along
+    /// `across` and rows along `down`. They gather the light that arrives on the side of `normal`, which need not be theirs.
+    Grid { origin: Vec3, across: Vec3, down: Vec3, normal: Vec3 },
+    /// A mesh by its first set of texture coordinates, `(0, 0)` at the first texel's outer corner; the side its triangles'
+    /// winding faces, or the other.
+    Mesh { mesh: usize, front: bool },
+}
+
+/// Illuminance of each point, and what it is on the whole.
+#[derive(Clone, Debug)]
+pub struct Output {
+    /// In lux; NaN where a surface has no point.
+    pub lux: Image,
+    /// Standard error of each value, in lux.
+    pub error: Image,
+    /// Points that there are.
+    pub points: usize,
+    /// Least, mean and largest illuminance; all 0 if there are no points. Uniformity is least over mean.
+    pub least: f64,
+    pub mean: f64,
+    pub largest: f64,
+    /// Standard error of the mean: points are sampled independently.
+    pub mean_error: f64,
+}
+
+/// Independent estimates of each point, whose scatter is its error.
+const BATCHES: u32 = 16;
+
+/// To be called on the library's own pool.
+///
+/// # Errors
+/// Parameters out of range, a grid without normal, a mesh that is not there or has no texture coordinates;
+/// cancelled.
+pub fn run(world: &World, place: &Place, params: &Params, job: Job) -> Result<Output> {
+    check_range("columns", params.columns, 1, MAX_SIDE)?;
+    check_range("rows", params.rows, 1, MAX_SIDE)?;
+    check_range("samples", params.samples, BATCHES, 1 << 24)?;
+    let receivers = receivers(world, place, params)?;
+    let per_batch = params.samples.div_ceil(BATCHES);
+    let estimates = exec::map(params.columns * params.rows, job, |i| {
+        let (vertex, front) = receivers.at(world, i)?;
+        let mut luxes = [0.0; BATCHES as usize];
+        for (batch, lux) in luxes.iter_mut().enumerate() {
+            let mut sum = Sum(DVec3::ZERO);
+            let seed = rng::hash(params.seed, &[i as u64, batch as u64]);
+            for index in 0..per_batch {
+                if job.is_cancelled() {
+                    return None;
+                }
+                path::gather(world, &vertex, front, &mut Sampler::new(seed, index), &mut Contributions(&mut sum));
+            }
+            *lux = f64::from(colour::luminance((sum.0 / f64::from(per_batch)).as_vec3()));
+        }
+        let n = f64::from(BATCHES);
+        let mean = luxes.iter().sum::<f64>() / n;
+        let variance = luxes.iter().map(|l| (l - mean).powi(2)).sum::<f64>() / (n * (n - 1.0));
+        Some((mean, variance))
+    })?;
+    job.check()?;
+    summary(params, &estimates)
+}
+
+fn summary(params: &Params, estimates: &[Option<(f64, f64)>]) -> Result<Output> {
+    let mut lux = Image::new(params.columns, params.rows, 1)?;
+    let mut error = Image::new(params.columns, params.rows, 1)?;
+    let (mut points, mut sum, mut variances) = (0, 0.0, 0.0);
+    let (mut least, mut largest) = (f64::INFINITY, 0.0f64);
+    for (i, estimate) in estimates.iter().enumerate() {
+        let Some((mean, variance)) = *estimate else {
+            (lux.data[i], error.data[i]) = (f32::NAN, f32::NAN);
+            continue;
+        };
+        (lux.data[i], error.data[i]) = (mean as f32, variance.sqrt() as f32);
+        points += 1;
+        sum += mean;
+        variances += variance;
+        (least, largest) = (least.min(mean), largest.max(mean));
+    }
+    let n = f64::max(points as f64, 1.0);
+    let least = if points == 0 { 0.0 } else { least };
+    Ok(Output { lux, error, points, least, mean: sum / n, largest, mean_error: variances.sqrt() / n })
+}
+
+/// The points to gather at.
+enum Receivers {
+    Grid { origin: Vec3, across: Vec3, down: Vec3, normal: Vec3, columns: usize },
+    Texels { mesh: u32, front: bool, texels: Vec<Option<(u32, Vec2)>> },
+}
+
+impl Receivers {
+    fn at(&self, world: &World, i: usize) -> Option<(Vertex, bool)> {
+        match self {
+            Self::Grid { origin, across, down, normal, columns } => {
+                let (x, y) = ((i % columns) as f32 + 0.5, (i / columns) as f32 + 0.5);
+                Some((Vertex::free(world, *origin + *across * x + *down * y, *normal), true))
+            }
+            Self::Texels { mesh, front, texels } => {
+                let (triangle, barycentric) = texels[i]?;
+                let vertex = Vertex::new(world, *mesh, triangle, barycentric);
+                (vertex.normal != Vec3::ZERO).then_some((vertex, *front))
+            }
+        }
+    }
+}
+
+fn receivers(world: &World, place: &Place, params: &Params) -> Result<Receivers> {
+    match place {
+        Place::Grid { origin, across, down, normal } => {
+            let unit = normal.normalize_or_zero();
+            let finite = [origin, across, down, normal].iter().all(|v| v.is_finite());
+            if !finite || unit == Vec3::ZERO {
+                return Err(Error::argument(format!(
+                    "the grid's origin is {origin}, its edges are {across} and {down}, its normal is {normal}; all must \
+                     be finite and the normal not 0"
+                )));
+            }
+            let (columns, rows) = (params.columns, params.rows);
+            let (across, down) = (*across / columns as f32, *down / rows as f32);
+            Ok(Receivers::Grid { origin: *origin, across, down, normal: unit, columns })
+        }
+        Place::Mesh { mesh, front } => {
+            let texels = texels(world, *mesh, params)?;
+            Ok(Receivers::Texels { mesh: *mesh as u32, front: *front, texels })
+        }
+    }
+}
+
+/// The triangle at the centre of each texel, and where in it. Where several overlap it is the first.
+fn texels(world: &World, mesh: usize, params: &Params) -> Result<Vec<Option<(u32, Vec2)>>> {
+    let meshes = &world.scene().meshes;
+    let found = meshes
+        .get(mesh)
+        .ok_or_else(|| Error::argument(format!("mesh is {mesh}; the scene has {} meshes", meshes.len())))?;
+    let uvs = &found.uvs[0];
+    if uvs.is_empty() {
+        return Err(Error::argument(format!(
+            "mesh {mesh} ({:?}) has no texture coordinates to map it by; use a grid",
+            found.name
+        )));
+    }
+    let size = Vec2::new(params.columns as f32, params.rows as f32);
+    let mut texels = try_vec(params.columns * params.rows, None)?;
+    for (triangle, corners) in found.triangles.iter().enumerate() {
+        let [a, b, c] = corners.map(|i| uvs[i as usize] * size - 0.5);
+        let (e, f) = (b - a, c - a);
+        let area = e.perp_dot(f);
+        // Texels whose centres its bounding box holds.
+        let low = a.min(b).min(c).ceil().max(Vec2::ZERO);
+        let high = a.max(b).max(c).floor().min(size - 1.0);
+        if !(area != 0.0 && area.is_finite() && low.cmple(high).all()) {
+            continue;
+        }
+        for y in low.y as usize..=high.y as usize {
+            for x in low.x as usize..=high.x as usize {
+                let p = Vec2::new(x as f32, y as f32) - a;
+                let at = Vec2::new(p.perp_dot(f), e.perp_dot(p)) / area;
+                let texel = &mut texels[y * params.columns + x];
+                if texel.is_none() && at.min_element() >= 0.0 && at.element_sum() <= 1.0 {
+                    *texel = Some((triangle as u32, at));
+                }
+            }
+        }
+    }
+    Ok(texels)
+}
+
+/// Adds contributions up.
+struct Sum(DVec3);
+
+impl PathSink for Sum {
+    fn add(&mut self, _: LightSource, importance: Vec3, emission: Vec3) {
+        self.0 += (importance * emission).as_dvec3();
+    }
+}

@@ -1,0 +1,156 @@
+//! What the C boundary promises of a rendering's layers, its OpenEXR file, and of illuminance.
+
+mod host;
+
+use host::{context, made, message, scene};
+use luxfer::ffi::*;
+use std::ffi::{CStr, CString, c_char};
+use std::ptr::{null, null_mut};
+
+fn pixels(image: *mut luxfer_image) -> (usize, Vec<f32>) {
+    let (mut width, mut height, mut channels) = (0, 0, 0);
+    unsafe {
+        assert_eq!(luxfer_image_size(image, &mut width, &mut height, &mut channels), LUXFER_OK);
+        let mut data = vec![0.0f32; (width * height * channels) as usize];
+        let view = luxfer_image_view { channels, ..host::view(width, height, &mut data) };
+        assert_eq!(luxfer_image_read(image, 0, &view), LUXFER_OK);
+        assert_eq!(luxfer_image_release(image), LUXFER_OK);
+        (channels as usize, data)
+    }
+}
+
+fn finish(job: *mut luxfer_job) -> luxfer_status {
+    unsafe {
+        let status = luxfer_job_wait(job, -1, None, null_mut());
+        assert_eq!(luxfer_job_release(job), LUXFER_OK);
+        status
+    }
+}
+
+#[test]
+fn layers_are_found_read_and_written() {
+    let context = context(2);
+    let scene = scene(context);
+    let render = made(|out| unsafe { luxfer_render_create(context, out) });
+    let add = |name: &CStr, expression: &CStr| unsafe {
+        luxfer_render_add_expression(render, name.as_ptr(), expression.as_ptr())
+    };
+    let mut params = unsafe { std::mem::zeroed::<luxfer_render_params>() };
+    let mut count = 7;
+    unsafe {
+        assert_eq!(luxfer_render_params_init(&mut params, size_of_val(&params)), LUXFER_OK);
+        params = luxfer_render_params { width: 12, height: 8, samples: 8, ..params };
+        assert_eq!(luxfer_render_set_scene(render, scene), LUXFER_OK);
+        // What is refused, and where.
+        assert_eq!(add(c"LDE", c"LDXE"), LUXFER_INVALID_ARGUMENT);
+        assert!(message(context).contains("column 3"), "{}", message(context));
+        assert_eq!(add(c"a.b", c"LDE"), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_render_add_expression(render, null(), c"LDE".as_ptr()), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_render_add_expression(render, c"x".as_ptr(), null()), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_render_set_aovs(render, 1024), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_render_set_emitter_as(render, 3), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_render_get_layer_count(render, &mut count), LUXFER_NOT_READY);
+        assert_eq!(luxfer_render_write_exr(render, c"/tmp/never.exr".as_ptr()), LUXFER_NOT_READY);
+        // A label that nothing bears ends the job.
+        assert_eq!(add(c"lost", c"C<RD'Nothing'>L"), LUXFER_OK);
+        assert_eq!(finish(made(|out| luxfer_render_start(render, &params, out))), LUXFER_NOT_FOUND);
+        assert!(message(context).contains("'Lamp'"), "{}", message(context));
+        assert_eq!(luxfer_render_clear_expressions(render), LUXFER_OK);
+
+        assert_eq!(add(c"LDE", c"LDE"), LUXFER_OK);
+        assert_eq!(add(c"LDE", c"LSE"), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(add(c"Lampe \xc3\xbc", c"C.*<L.'Lamp'>"), LUXFER_OK);
+        assert_eq!(luxfer_render_set_emitter_as(render, LUXFER_EMITTER_AS_BOTH), LUXFER_OK);
+        let aovs = LUXFER_AOV_DEPTH | LUXFER_AOV_NORMAL | LUXFER_AOV_ALPHA;
+        assert_eq!(luxfer_render_set_aovs(render, aovs), LUXFER_OK);
+        assert_eq!(finish(made(|out| luxfer_render_start(render, &params, out))), LUXFER_OK);
+        assert_eq!(luxfer_render_get_layer_count(render, &mut count), LUXFER_OK);
+        assert_eq!(count, 5);
+        let mut names = Vec::new();
+        for index in 0..count {
+            let (mut buffer, mut found) = ([0 as c_char; 32], 99);
+            assert_eq!(luxfer_render_get_layer_name(render, index, buffer.as_mut_ptr(), 32, null_mut()), LUXFER_OK);
+            assert_eq!(luxfer_render_find_layer(render, buffer.as_ptr(), &mut found), LUXFER_OK);
+            assert_eq!(found, index);
+            names.push(CStr::from_ptr(buffer.as_ptr()).to_str().unwrap().to_string());
+        }
+        assert_eq!(names, ["LDE", "Lampe ü", "Depth", "Normal", "Alpha"]);
+        let mut image = null_mut();
+        assert_eq!(luxfer_render_get_layer(render, 5, &mut image), LUXFER_NOT_FOUND);
+        assert_eq!(luxfer_render_find_layer(render, c"LSE".as_ptr(), &mut count), LUXFER_NOT_FOUND);
+        // The room is closed and lit by its lamp alone: that layer is the image.
+        let beauty = pixels(made(|out| luxfer_render_get_image(render, LUXFER_RENDER_BEAUTY, out)));
+        let by_lamp = pixels(made(|out| luxfer_render_get_layer(render, 1, out)));
+        assert!(beauty.1.iter().zip(&by_lamp.1).all(|(a, b)| (a - b).abs() <= 1e-5 * a));
+        let direct = pixels(made(|out| luxfer_render_get_layer(render, 0, out)));
+        assert!(direct.1.iter().zip(&beauty.1).all(|(d, b)| *d <= *b * 1.00001));
+        let (channels, alpha) = pixels(made(|out| luxfer_render_get_layer(render, 4, out)));
+        assert!(channels == 1 && alpha.iter().all(|&a| a == 1.0));
+        assert_eq!(pixels(made(|out| luxfer_render_get_layer(render, 3, out))).0, 3);
+        // The file holds the image where programs without layers look for it.
+        let path = CString::new(format!("{}/layers.exr", env!("CARGO_TARGET_TMPDIR"))).unwrap();
+        assert_eq!(luxfer_render_write_exr(render, path.as_ptr()), LUXFER_OK, "{}", message(context));
+        let read = pixels(made(|out| luxfer_image_load(context, path.as_ptr(), LUXFER_COLOUR_LINEAR, out)));
+        assert_eq!(read.0, 4);
+        assert!(read.1.chunks(4).zip(beauty.1.chunks(3)).all(|(r, b)| r[..3] == *b && r[3] == 1.0));
+        let bytes = std::fs::read(path.to_str().unwrap()).unwrap();
+        let holds = |text: &str| bytes.windows(text.len()).any(|w| w == text.as_bytes());
+        for text in ["LDE.R", "Lampe ü.B", "Depth.Z", "Normal.X", "luxfer.lpe.LDE", "C.*<L.'Lamp'>"] {
+            assert!(holds(text), "{text}");
+        }
+        assert!(!holds("Alpha.A"));
+        let nowhere = c"/nonexistent/layers.exr".as_ptr();
+        assert_eq!(luxfer_render_write_exr(render, nowhere), LUXFER_IO);
+        assert_eq!(luxfer_render_release(render), LUXFER_OK);
+        assert_eq!(luxfer_scene_release(scene), LUXFER_OK);
+        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+    }
+}
+
+#[test]
+fn illuminance_comes_with_its_error() {
+    let context = context(2);
+    let scene = scene(context);
+    let stage = made(|out| unsafe { luxfer_illuminance_create(context, out) });
+    let mut grid = unsafe { std::mem::zeroed::<luxfer_illuminance_grid>() };
+    let mut params = unsafe { std::mem::zeroed::<luxfer_illuminance_params>() };
+    unsafe {
+        assert_eq!(luxfer_illuminance_grid_init(&mut grid, size_of_val(&grid)), LUXFER_OK);
+        assert_eq!(luxfer_illuminance_params_init(&mut params, size_of_val(&params)), LUXFER_OK);
+        params = luxfer_illuminance_params { columns: 4, rows: 3, samples: 256, ..params };
+        let mut job = null_mut();
+        assert_eq!(luxfer_illuminance_start_grid(stage, &grid, &params, &mut job), LUXFER_INVALID_OPERATION);
+        assert!(message(context).contains("luxfer_illuminance_set_scene"));
+        assert_eq!(luxfer_illuminance_set_scene(stage, scene), LUXFER_OK);
+        // A work plane of 2 × 2 m at the height of the room's middle.
+        let plane = luxfer_illuminance_grid {
+            origin: [-1.0, 0.0, -1.0],
+            across: [2.0, 0.0, 0.0],
+            down: [0.0, 0.0, 2.0],
+            ..grid
+        };
+        assert_eq!(finish(made(|out| luxfer_illuminance_start_grid(stage, &plane, &params, out))), LUXFER_OK);
+        let lux = pixels(made(|out| luxfer_illuminance_get_image(stage, LUXFER_ILLUMINANCE_LUX, out)));
+        let error = pixels(made(|out| luxfer_illuminance_get_image(stage, LUXFER_ILLUMINANCE_ERROR, out)));
+        assert_eq!((lux.0, lux.1.len(), error.1.len()), (1, 12, 12));
+        let mut report = std::mem::zeroed::<luxfer_illuminance_report>();
+        report.struct_size = size_of_val(&report) as u32;
+        assert_eq!(luxfer_illuminance_get_report(stage, &mut report), LUXFER_OK);
+        let mean = lux.1.iter().map(|&v| f64::from(v)).sum::<f64>() / 12.0;
+        assert!(report.points == 12 && (report.mean - mean).abs() < 1e-4 * mean && report.least > 0.0);
+        assert!(report.mean_error > 0.0 && report.mean_error < 0.1 * mean);
+        // What is refused.
+        let flat = luxfer_illuminance_grid { normal: [0.0; 3], ..plane };
+        let refused = |job| assert_eq!(finish(job), LUXFER_INVALID_ARGUMENT);
+        refused(made(|out| luxfer_illuminance_start_grid(stage, &flat, &params, out)));
+        refused(made(|out| luxfer_illuminance_start_mesh(stage, 9, 0, &params, out)));
+        refused(made(|out| luxfer_illuminance_start_mesh(stage, 0, 0, &params, out)));
+        assert!(message(context).contains("texture coordinates"), "{}", message(context));
+        assert_eq!(luxfer_illuminance_start_mesh(stage, 0, 2, &params, &mut job), LUXFER_INVALID_ARGUMENT);
+        let mut image = null_mut();
+        assert_eq!(luxfer_illuminance_get_image(stage, 2, &mut image), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_illuminance_release(stage), LUXFER_OK);
+        assert_eq!(luxfer_scene_release(scene), LUXFER_OK);
+        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+    }
+}
