@@ -14,7 +14,7 @@
 //! with _direct or _indirect.
 
 use super::guard::enter;
-use super::handle;
+use super::handle::{self, Owned};
 use super::image::{Pixels, luxfer_image};
 use super::pointer::{Out, copy_text, text};
 use super::render::luxfer_render;
@@ -148,7 +148,10 @@ pub unsafe extern "C" fn luxfer_render_get_layer_name(
     capacity: usize,
     needed: *mut usize,
 ) -> luxfer_status {
-    enter(render, |stage| copy_text(&layer(&stage.output()?, index)?.name, buffer, capacity, needed))
+    enter(render, |stage| {
+        let output = stage.output()?;
+        copy_text(&layer(&output, index)?.name, buffer, capacity, needed)
+    })
 }
 
 /// Finds a layer by its name. Any thread.
