@@ -2,6 +2,7 @@
 //! which threads reach them.
 
 /// Mixes 64 bits so that every input bit reaches every output bit (the finaliser of SplitMix64, Steele et al. 2014).
+#[inline]
 pub fn mix(mut x: u64) -> u64 {
     x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
@@ -9,6 +10,7 @@ pub fn mix(mut x: u64) -> u64 {
 }
 
 /// The hash of a seed and the coordinates of whatever is random about it.
+#[inline]
 pub fn hash(seed: u64, coordinates: &[u64]) -> u64 {
     coordinates.iter().fold(mix(seed.wrapping_add(0x9e37_79b9_7f4a_7c15)), |h, &c| {
         mix(h.wrapping_add(0x9e37_79b9_7f4a_7c15) ^ mix(c.wrapping_add(0x9e37_79b9_7f4a_7c15)))

@@ -88,7 +88,7 @@ fn nearest(world: &World, ray: &[u8]) -> [u32; 5] {
         *field = f32::from_ne_bytes([raw[0], raw[1], raw[2], raw[3]]);
     }
     let [ox, oy, oz, dx, dy, dz, t_max] = fields;
-    let ray = Ray { origin: Vec3::new(ox, oy, oz), direction: Vec3::new(dx, dy, dz), t_max };
+    let ray = Ray { t_max, ..world.ray(Vec3::new(ox, oy, oz), Vec3::new(dx, dy, dz)) };
     match world.accel().closest(&ray, |_| true) {
         Some(hit) => {
             let (mesh, triangle) = world.locate(hit.triangle);

@@ -8,6 +8,7 @@
 
 use super::bsdf::Bsdf;
 use super::vertex::Vertex;
+use super::world::World;
 use glam::{DVec3, Vec3};
 
 /// An image of the surfaces seen.
@@ -120,11 +121,12 @@ pub struct Surfaces {
 
 impl Surfaces {
     /// `depth` is along the camera's viewing direction.
-    pub fn meet(&mut self, vertex: &Vertex, bsdf: &Bsdf, material: usize, distance: f32, depth: f32) {
+    pub fn meet(&mut self, world: &World, vertex: &Vertex, bsdf: &Bsdf, distance: f32, depth: f32) {
+        let material = world.scene().meshes[vertex.mesh as usize].material;
         self.hits += 1;
         self.depth += f64::from(depth);
         self.distance += f64::from(distance);
-        self.position += vertex.position.as_dvec3();
+        self.position += world.in_scene(vertex.position).as_dvec3();
         self.normal += bsdf.normal().as_dvec3();
         self.geometric += bsdf.geometric_normal().as_dvec3();
         self.albedo += bsdf.colour().min(Vec3::ONE).as_dvec3();

@@ -9,7 +9,7 @@
 
 use super::ggx::{self, AlbedoTable};
 use glam::{Vec2, Vec3};
-use std::f32::consts::{FRAC_1_PI, TAU};
+use std::f32::consts::FRAC_1_PI;
 
 /// Below this perceptual roughness a surface is a perfect mirror.
 pub const MIRROR_ROUGHNESS: f32 = 1e-3;
@@ -30,6 +30,12 @@ pub struct Substance {
 }
 
 impl Substance {
+    /// Whether the diffuse layer is all there is.
+    #[inline]
+    pub fn is_matt(&self) -> bool {
+        self.f90 == 0.0 && self.transmission == Vec3::ZERO
+    }
+
     /// What passes straight through at an angle.
     pub fn through(&self, cosine: f32) -> Vec3 {
         if self.transmission == Vec3::ZERO {
@@ -42,17 +48,27 @@ impl Substance {
 
 /// A substance with its frame, seen from one direction.
 pub struct Bsdf<'a> {
-    substance: Substance,
-    /// Tangents and shading normal, which is on the side of the viewer.
-    frame: [Vec3; 3],
-    /// Geometric normal on the side of the viewer.
+    /// Albedo of the diffuse layer.
+    diffuse: Vec3,
+    /// Shading and geometric normal, both on the side of the viewer.
+    normal: Vec3,
     geometric: Vec3,
+    /// Everything else; none where the diffuse layer is all there is.
+    layers: Option<Layers<'a>>,
+}
+
+/// What lies on the diffuse layer or lets light past it.
+struct Layers<'a> {
+    substance: Substance,
+    /// Completed by the shading normal.
+    tangents: [Vec3; 2],
     wo: Vec3,
-    /// Cosine of the viewer with the geometric normal.
-    upright: f32,
-    /// Probabilities of choosing the diffuse layer, the top layer and straight through.
-    shares: [f32; 3],
-    table: Option<&'a AlbedoTable>,
+    /// What passes straight through in the direction of the viewer.
+    through: Vec3,
+    /// Probabilities of choosing the diffuse layer and the top layer; the rest goes straight through.
+    shares: [f32; 2],
+    /// How much the top layer reflects, if it spreads light.
+    lobe: Option<(ggx::Lobe, TopAlbedo<'a>)>,
     /// What the top layer leaves for the diffuse one on the way to the viewer, divided by the mean it leaves.
     left_over: f32,
 }
@@ -67,6 +83,7 @@ pub struct Lobes {
 impl Lobes {
     pub const NONE: Self = Self { diffuse: Vec3::ZERO, glossy: Vec3::ZERO };
 
+    #[inline]
     pub fn sum(&self) -> Vec3 {
         self.diffuse + self.glossy
     }
@@ -92,39 +109,31 @@ pub enum Kind {
 
 impl<'a> Bsdf<'a> {
     /// `wo` points to the viewer; both normals are flipped to its side. Reflection is two-sided whatever the material
-    /// says: rooms are often modelled with their walls facing outwards.
-    pub fn new(substance: Substance, shading: Vec3, geometric: Vec3, wo: Vec3, table: Option<&'a AlbedoTable>) -> Self {
-        let side = if geometric.dot(wo) < 0.0 { -1.0 } else { 1.0 };
+    /// says: rooms are often modelled with their walls facing outwards. `table` may be missing where nothing has a top layer.
+    #[inline]
+    pub fn new(
+        substance: &Substance,
+        shading: Vec3,
+        geometric: Vec3,
+        wo: Vec3,
+        table: Option<&'a AlbedoTable>,
+    ) -> Self {
+        let side = 1f32.copysign(geometric.dot(wo));
         let geometric = geometric * side;
         let normal = face_viewer(shading * side, wo);
-        let (t, b) = normal.any_orthonormal_pair();
-        let frame = [t, b, normal];
-        let local = to_local(&frame, wo);
-        let upright = geometric.dot(wo);
-        let shares = [1.0, 0.0, 0.0];
-        let mut this = Self { substance, frame, geometric, wo: local, upright, shares, table, left_over: 1.0 };
-        if this.has_top() || substance.transmission != Vec3::ZERO {
-            this.weigh_layers();
-        }
-        this
+        let diffuse = substance.diffuse;
+        let layers = (!substance.is_matt()).then(|| Layers::new(substance, normal, geometric.dot(wo), wo, table));
+        Self { diffuse, normal, geometric, layers }
     }
 
     /// What receives light from all of a hemisphere alike: its response to radiance is irradiance.
     pub fn receiver(normal: Vec3) -> Self {
-        let substance = Substance {
-            diffuse: Vec3::splat(std::f32::consts::PI),
-            f0: Vec3::ZERO,
-            f90: 0.0,
-            roughness: 1.0,
-            transmission: Vec3::ZERO,
-            dielectric_f0: 0.0,
-        };
-        Self::new(substance, normal, normal, normal, None)
+        Self { diffuse: Vec3::splat(std::f32::consts::PI), normal, geometric: normal, layers: None }
     }
 
     /// Shading normal and geometric normal on the side of the viewer.
     pub fn normal(&self) -> Vec3 {
-        self.frame[2]
+        self.normal
     }
 
     pub fn geometric_normal(&self) -> Vec3 {
@@ -133,130 +142,168 @@ impl<'a> Bsdf<'a> {
 
     /// Colour at normal incidence: what is reflected by either layer or let through.
     pub fn colour(&self) -> Vec3 {
-        self.substance.diffuse + self.substance.f0 + self.substance.transmission
-    }
-
-    fn has_top(&self) -> bool {
-        self.substance.f90 > 0.0
-    }
-
-    fn is_mirror(&self) -> bool {
-        self.substance.roughness < MIRROR_ROUGHNESS
-    }
-
-    fn alpha(&self) -> f32 {
-        self.substance.roughness * self.substance.roughness
-    }
-
-    fn weigh_layers(&mut self) {
-        let s = &self.substance;
-        let top = if !self.has_top() {
-            0.0
-        } else if let (Some(table), false) = (self.table, self.is_mirror()) {
-            let albedo = table.directional(self.wo.z, s.roughness);
-            s.f0.max_element() * albedo.x + s.f90 * albedo.y
-        } else {
-            ggx::schlick(s.f0, s.f90, self.wo.z).max_element()
-        };
-        if s.diffuse != Vec3::ZERO && self.has_top() {
-            self.left_over = self.passes_top(self.wo.z) / self.mean_passing_top().max(1e-3);
-        }
-        let diffuse = s.diffuse.max_element() * (1.0 - self.top_albedo(self.wo.z));
-        let through = s.through(self.upright).max_element();
-        let sum = diffuse + top + through;
-        self.shares = if sum > 0.0 { [diffuse / sum, top / sum, through / sum] } else { [1.0, 0.0, 0.0] };
-    }
-
-    /// Share of light the dielectric top layer sends back.
-    fn top_albedo(&self, cosine: f32) -> f32 {
-        let s = &self.substance;
-        match self.table {
-            _ if !self.has_top() => 0.0,
-            Some(table) if !self.is_mirror() => {
-                table.directional(cosine, s.roughness).dot(Vec2::new(s.dielectric_f0, s.f90))
-            }
-            _ => ggx::schlick(Vec3::splat(s.dielectric_f0), s.f90, cosine).x,
-        }
-    }
-
-    fn passes_top(&self, cosine: f32) -> f32 {
-        (1.0 - self.top_albedo(cosine)).max(0.0)
-    }
-
-    fn mean_passing_top(&self) -> f32 {
-        let s = &self.substance;
-        match self.table {
-            Some(table) if !self.is_mirror() => 1.0 - table.average(s.roughness).dot(Vec2::new(s.dielectric_f0, s.f90)),
-            // The cosine-weighted mean of Schlick's fifth power is 1/21.
-            _ => 1.0 - (s.dielectric_f0 + (s.f90 - s.dielectric_f0) / 21.0),
-        }
+        let above = self.layers.as_ref().map(|l| l.substance.f0 + l.substance.transmission);
+        self.diffuse + above.unwrap_or(Vec3::ZERO)
     }
 
     /// Whether any light but that of single directions is scattered.
+    #[inline]
     pub fn spreads(&self) -> bool {
-        self.shares[0] > 0.0 || (self.shares[1] > 0.0 && !self.is_mirror())
+        match &self.layers {
+            None => self.diffuse != Vec3::ZERO,
+            Some(layers) => layers.shares[0] > 0.0 || (layers.shares[1] > 0.0 && layers.lobe.is_some()),
+        }
     }
 
     /// The spread part of the BSDF times the cosine, and the density with which [`Bsdf::sample`] chooses `direction`.
+    #[inline]
     pub fn eval(&self, direction: Vec3) -> (Lobes, f32) {
-        let wi = to_local(&self.frame, direction);
-        if wi.z <= 0.0 || self.wo.z <= 0.0 || direction.dot(self.geometric) <= 0.0 {
+        let cosine = direction.dot(self.normal);
+        if cosine <= 0.0 || direction.dot(self.geometric) <= 0.0 {
             return (Lobes::NONE, 0.0);
         }
-        let s = &self.substance;
-        let mut lobes = Lobes::NONE;
-        let mut density = 0.0;
-        if self.shares[0] > 0.0 {
-            let left = if self.has_top() { self.left_over * self.passes_top(wi.z) } else { 1.0 };
-            lobes.diffuse = s.diffuse * (left * wi.z * FRAC_1_PI);
-            density += self.shares[0] * wi.z * FRAC_1_PI;
+        let projected = cosine * FRAC_1_PI;
+        match &self.layers {
+            None => (Lobes { diffuse: self.diffuse * projected, glossy: Vec3::ZERO }, projected),
+            Some(layers) => layers.eval(direction, cosine),
         }
-        if self.shares[1] > 0.0 && !self.is_mirror() {
+    }
+
+    /// Chooses where a path goes on: `choice` the layer, `u` the direction. None where the light is absorbed.
+    #[inline]
+    pub fn sample(&self, choice: f32, u: Vec2) -> Option<Scattered> {
+        if let Some(layers) = &self.layers {
+            return layers.sample(self, choice, u);
+        }
+        let local = cosine_hemisphere(u);
+        let (t, b) = self.normal.any_orthonormal_pair();
+        let direction = from_local(&[t, b, self.normal], local);
+        if !(local.z > 0.0 && direction.dot(self.geometric) > 0.0) || self.diffuse == Vec3::ZERO {
+            return None;
+        }
+        let density = local.z * FRAC_1_PI;
+        let lobes = Lobes { diffuse: self.diffuse * density, glossy: Vec3::ZERO };
+        Some(Scattered { direction, weight: self.diffuse, lobes, kind: Kind::Spread(density) })
+    }
+}
+
+impl<'a> Layers<'a> {
+    fn new(substance: &Substance, normal: Vec3, upright: f32, wo: Vec3, table: Option<&'a AlbedoTable>) -> Self {
+        let s = substance;
+        let (t, b) = normal.any_orthonormal_pair();
+        let wo = to_local(&[t, b, normal], wo);
+        // What the top layer sends back of light to the viewer: in all, and of the dielectric part alone.
+        let has_top = s.f90 > 0.0;
+        let lobe = match table {
+            Some(table) if has_top && s.roughness >= MIRROR_ROUGHNESS => {
+                Some((ggx::Lobe::new(wo, s.roughness * s.roughness), TopAlbedo::new(table, s)))
+            }
+            _ => None,
+        };
+        let (mut top, mut taken, mut mean_taken) = (0.0, 0.0, 0.0);
+        if let Some((_, albedo)) = &lobe {
+            let share = albedo.row.directional(wo.z);
+            (top, taken) = (s.f0.max_element() * share.x + s.f90 * share.y, albedo.of(share));
+            mean_taken = albedo.of(albedo.row.average());
+        } else if has_top {
+            top = ggx::schlick(s.f0, s.f90, wo.z).max_element();
+            taken = ggx::schlick(Vec3::splat(s.dielectric_f0), s.f90, wo.z).x;
+            // The cosine-weighted mean of Schlick's fifth power is 1/21.
+            mean_taken = s.dielectric_f0 + (s.f90 - s.dielectric_f0) / 21.0;
+        }
+        let left_over = (1.0 - taken).max(0.0) / (1.0 - mean_taken).max(1e-3);
+        // Choose among the layers by what they send back.
+        let diffuse = s.diffuse.max_element() * (1.0 - taken);
+        let through = s.through(upright);
+        let sum = diffuse + top + through.max_element();
+        let shares = if sum > 0.0 { [diffuse / sum, top / sum] } else { [0.0; 2] };
+        Self { substance: *s, tangents: [t, b], wo, through, shares, lobe, left_over }
+    }
+
+    fn eval(&self, direction: Vec3, cosine: f32) -> (Lobes, f32) {
+        let (mut lobes, mut density) = (Lobes::NONE, 0.0);
+        if self.wo.z <= 0.0 {
+            return (lobes, density);
+        }
+        let s = &self.substance;
+        let [diffuse, top] = self.shares;
+        if diffuse > 0.0 {
+            let left = self.left_over * (1.0 - self.taken(cosine)).max(0.0);
+            lobes.diffuse = s.diffuse * (left * cosine * FRAC_1_PI);
+            density += diffuse * cosine * FRAC_1_PI;
+        }
+        if let Some((lobe, _)) = &self.lobe
+            && top > 0.0
+        {
+            let [t, b] = self.tangents;
+            let wi = Vec3::new(direction.dot(t), direction.dot(b), cosine);
             let h = (self.wo + wi).normalize_or(Vec3::Z);
-            lobes.glossy = ggx::schlick(s.f0, s.f90, self.wo.dot(h)) * ggx::lobe(self.wo, wi, h, self.alpha());
-            density += self.shares[1] * ggx::density(self.wo, h, self.alpha());
+            let (value, chosen) = lobe.eval(wi, h);
+            lobes.glossy = ggx::schlick(s.f0, s.f90, self.wo.dot(h)) * value;
+            density += top * chosen;
         }
         (lobes, density)
     }
 
-    /// Chooses where a path goes on: `choice` the layer, `u` the direction. None where the light is absorbed.
-    pub fn sample(&self, choice: f32, u: Vec2) -> Option<Scattered> {
-        let [diffuse, top, _] = self.shares;
+    /// Share of light the dielectric top layer sends back.
+    fn taken(&self, cosine: f32) -> f32 {
+        let s = &self.substance;
+        match &self.lobe {
+            Some((_, albedo)) => albedo.of(albedo.row.directional(cosine)),
+            None if s.f90 > 0.0 => ggx::schlick(Vec3::splat(s.dielectric_f0), s.f90, cosine).x,
+            None => 0.0,
+        }
+    }
+
+    fn sample(&self, bsdf: &Bsdf, choice: f32, u: Vec2) -> Option<Scattered> {
+        let [diffuse, top] = self.shares;
+        let frame = [self.tangents[0], self.tangents[1], bsdf.normal];
         let local = if choice < diffuse {
             cosine_hemisphere(u)
         } else if choice < diffuse + top {
-            if self.is_mirror() {
-                return self.reflect(top);
-            }
-            let h = ggx::sample_normal(self.wo, self.alpha(), u);
+            let Some((lobe, _)) = &self.lobe else { return self.reflect(&frame, bsdf.geometric) };
+            let h = lobe.sample_normal(u);
             h * (2.0 * self.wo.dot(h)) - self.wo
         } else {
-            return self.pass_through();
+            return self.pass_through(&frame);
         };
-        let direction = from_local(&self.frame, local);
-        let (lobes, density) = self.eval(direction);
+        let direction = from_local(&frame, local);
+        let (lobes, density) = bsdf.eval(direction);
         if !(density > 0.0 && density.is_finite()) {
             return None;
         }
         Some(Scattered { direction, weight: lobes.sum() / density, lobes, kind: Kind::Spread(density) })
     }
 
-    fn reflect(&self, share: f32) -> Option<Scattered> {
-        let direction = from_local(&self.frame, Vec3::new(-self.wo.x, -self.wo.y, self.wo.z));
-        let weight = ggx::schlick(self.substance.f0, self.substance.f90, self.wo.z) / share;
-        (direction.dot(self.geometric) > 0.0).then_some(Scattered {
-            direction,
-            weight,
-            lobes: Lobes::NONE,
-            kind: Kind::Mirrored,
-        })
+    fn reflect(&self, frame: &[Vec3; 3], geometric: Vec3) -> Option<Scattered> {
+        let direction = from_local(frame, Vec3::new(-self.wo.x, -self.wo.y, self.wo.z));
+        let weight = ggx::schlick(self.substance.f0, self.substance.f90, self.wo.z) / self.shares[1];
+        let scattered = Scattered { direction, weight, lobes: Lobes::NONE, kind: Kind::Mirrored };
+        (direction.dot(geometric) > 0.0).then_some(scattered)
     }
 
-    fn pass_through(&self) -> Option<Scattered> {
-        let share = self.shares[2];
-        let direction = -from_local(&self.frame, self.wo);
-        let weight = self.substance.through(self.upright) / share;
-        (share > 0.0).then_some(Scattered { direction, weight, lobes: Lobes::NONE, kind: Kind::Through })
+    fn pass_through(&self, frame: &[Vec3; 3]) -> Option<Scattered> {
+        let share = 1.0 - self.shares[0] - self.shares[1];
+        let direction = -from_local(frame, self.wo);
+        let scattered = Scattered { direction, weight: self.through / share, lobes: Lobes::NONE, kind: Kind::Through };
+        (share > 0.0 && self.through != Vec3::ZERO).then_some(scattered)
+    }
+}
+
+/// Share of light that a rough dielectric top layer sends back.
+struct TopAlbedo<'a> {
+    row: ggx::AlbedoRow<'a>,
+    /// Weights of the table's scale and bias.
+    weights: Vec2,
+}
+
+impl<'a> TopAlbedo<'a> {
+    fn new(table: &'a AlbedoTable, substance: &Substance) -> Self {
+        Self { row: table.row(substance.roughness), weights: Vec2::new(substance.dielectric_f0, substance.f90) }
+    }
+
+    fn of(&self, scale_and_bias: Vec2) -> f32 {
+        scale_and_bias.dot(self.weights)
     }
 }
 
@@ -267,15 +314,19 @@ fn face_viewer(normal: Vec3, wo: Vec3) -> Vec3 {
     if cosine >= LEAST { normal } else { (normal + wo * (LEAST - cosine)).normalize_or(wo) }
 }
 
+/// By the cosine: a point of the unit disc, raised to the hemisphere (Malley).
+#[inline]
 fn cosine_hemisphere(u: Vec2) -> Vec3 {
-    let (radius, angle) = (u.x.sqrt(), TAU * u.y);
-    Vec3::new(radius * angle.cos(), radius * angle.sin(), (1.0 - u.x).max(0.0).sqrt())
+    let (p, r2) = ggx::disc(u);
+    Vec3::new(p.x, p.y, (1.0 - r2).max(0.0).sqrt())
 }
 
+#[inline]
 fn to_local(frame: &[Vec3; 3], w: Vec3) -> Vec3 {
     Vec3::new(w.dot(frame[0]), w.dot(frame[1]), w.dot(frame[2]))
 }
 
+#[inline]
 fn from_local(frame: &[Vec3; 3], w: Vec3) -> Vec3 {
     frame[0] * w.x + frame[1] * w.y + frame[2] * w.z
 }
@@ -284,6 +335,7 @@ fn from_local(frame: &[Vec3; 3], w: Vec3) -> Vec3 {
 mod tests {
     use super::*;
     use crate::rng::Rng;
+    use std::f32::consts::TAU;
 
     fn substances() -> Vec<Substance> {
         let mut all = Vec::new();
@@ -320,7 +372,7 @@ mod tests {
         let n = 20_000;
         for (number, substance) in substances().into_iter().enumerate() {
             for view in [0.95, 0.6, 0.15] {
-                let bsdf = Bsdf::new(substance, Vec3::Z, Vec3::Z, direction(view, 0.3), Some(&table));
+                let bsdf = Bsdf::new(&substance, Vec3::Z, Vec3::Z, direction(view, 0.3), Some(&table));
                 // Expected counts of bins that are even in cosine and angle, the last one for absorbed light.
                 let mut expected = vec![0.0; ROWS * COLUMNS + 1];
                 const SUB: usize = 24;
@@ -380,7 +432,7 @@ mod tests {
             for _ in 0..200 {
                 let a = direction(rng.next_f32() * 0.98 + 0.01, TAU * rng.next_f32());
                 let b = direction(rng.next_f32() * 0.98 + 0.01, TAU * rng.next_f32());
-                let value = |o, i: Vec3| Bsdf::new(substance, Vec3::Z, Vec3::Z, o, Some(&table)).eval(i).0.sum() / i.z;
+                let value = |o, i: Vec3| Bsdf::new(&substance, Vec3::Z, Vec3::Z, o, Some(&table)).eval(i).0.sum() / i.z;
                 let (there, back) = (value(a, b), value(b, a));
                 assert!((there - back).abs().max_element() <= 1e-3 * there.max_element(), "{there} and {back}");
             }
@@ -401,7 +453,7 @@ mod tests {
                     transmission: Vec3::ZERO,
                     dielectric_f0: 0.04,
                 };
-                let bsdf = Bsdf::new(substance, Vec3::Z, Vec3::Z, direction(view, 0.0), Some(&table));
+                let bsdf = Bsdf::new(&substance, Vec3::Z, Vec3::Z, direction(view, 0.0), Some(&table));
                 let n = 40_000;
                 let mut rng = Rng::new(13, &[]);
                 let total: f64 = (0..n)

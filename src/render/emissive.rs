@@ -7,6 +7,7 @@
 //! (or too many texels to enumerate) are sampled uniformly.
 
 use super::distribution::Distribution;
+use super::facet::Facet;
 use crate::error::Result;
 use crate::image::try_vec;
 use crate::scene::{Scene, Texture, Wrap};
@@ -92,9 +93,10 @@ impl Emitter {
 }
 
 impl Emitters {
-    /// `triangles` yields (mesh, triangle in mesh, id) of every triangle of a scene whose indices have been checked.
-    pub fn build(scene: &Scene, triangles: impl Iterator<Item = (u32, u32, u32)>) -> Result<Self> {
-        let mut emitters: Vec<Emitter> = triangles.filter_map(|t| emitter(scene, t)).collect();
+    /// `facets` are the triangles of a scene whose indices have been checked, `first` the number of each mesh's first.
+    pub fn build(scene: &Scene, facets: &[Facet], first: &[u32]) -> Result<Self> {
+        let numbered = facets.iter().zip(0..);
+        let mut emitters: Vec<Emitter> = numbered.filter_map(|(f, id)| emitter(scene, f, id, first)).collect();
         let block = lay_out_cells(scene, &mut emitters);
         let count = emitters.last().map_or(0, |e| e.cells.first + e.cells.columns * e.cells.rows);
         let means = block_means(scene, &emitters, block)?;
@@ -189,13 +191,14 @@ pub fn mean_channel(v: Vec3) -> f32 {
     v.element_sum() / 3.0
 }
 
-fn emitter(scene: &Scene, (mesh, triangle, id): (u32, u32, u32)) -> Option<Emitter> {
+fn emitter(scene: &Scene, facet: &Facet, id: u32, first: &[u32]) -> Option<Emitter> {
+    let (mesh, triangle) = (facet.mesh, id - first[facet.mesh as usize]);
     let m = &scene.meshes[mesh as usize];
     let material = &scene.materials[m.material];
     if material.emission.max_element() <= 0.0 {
         return None;
     }
-    let corners = m.corners(triangle as usize);
+    let corners = facet.corners();
     let doubled = (corners[1].as_dvec3() - corners[0].as_dvec3()).cross(corners[2].as_dvec3() - corners[0].as_dvec3());
     let area = (doubled.length() / 2.0) as f32;
     if !(area.is_finite() && area > 0.0) {
@@ -458,7 +461,11 @@ mod tests {
     }
 
     fn emitters(scene: &Scene) -> Emitters {
-        Emitters::build(scene, [(0, 0, 0), (1, 0, 1)].into_iter()).unwrap()
+        let facet = |mesh: u32| {
+            let m = &scene.meshes[mesh as usize];
+            Facet::new(m.corners(0), mesh, m, 0)
+        };
+        Emitters::build(scene, &[facet(0), facet(1)], &[0, 1, 2]).unwrap()
     }
 
     fn coordinates() -> Vec<[Vec2; 3]> {

@@ -15,7 +15,6 @@ use crate::image::{Image, try_vec};
 use crate::job::Job;
 use crate::rng;
 use crate::scene::Camera;
-use crate::scene::accel::Ray;
 use glam::{DVec3, Vec3};
 
 /// Side of a tile in pixels: the unit of work.
@@ -161,7 +160,7 @@ fn radiance(
     let u = ((x as f64 + place.fine(0)) / params.width as f64) as f32;
     let v = ((y as f64 + place.fine(1)) / params.height as f64) as f32;
     let aspect = params.width as f32 / params.height as f32;
-    let ray = Ray::new(camera.position, camera.direction(u, v, aspect).normalize_or_zero());
+    let ray = world.ray(camera.position, camera.direction(u, v, aspect).normalize_or_zero());
     match recorder {
         None => {
             let mut sum = Sum(Vec3::ZERO);

@@ -4,19 +4,13 @@
 //! Directions are in a frame whose third axis is the normal; `alpha` is the squared roughness.
 
 use glam::{Vec2, Vec3};
-use std::f32::consts::{PI, TAU};
+use std::f32::consts::{FRAC_PI_4, PI};
 
 /// Fresnel reflectance by Schlick's approximation, from that at normal incidence and that at grazing.
+#[inline]
 pub fn schlick(f0: Vec3, f90: f32, cosine: f32) -> Vec3 {
     let m = (1.0 - cosine).clamp(0.0, 1.0);
     f0 + (Vec3::splat(f90) - f0) * (m * m * m * m * m)
-}
-
-/// Density of facet normals per steradian and projected area.
-fn distribution(h: Vec3, alpha: f32) -> f32 {
-    let a2 = alpha * alpha;
-    let d = (h.x * h.x + h.y * h.y) / a2 + h.z * h.z;
-    1.0 / (PI * a2 * d * d)
 }
 
 fn lambda(w: Vec3, alpha: f32) -> f32 {
@@ -24,29 +18,58 @@ fn lambda(w: Vec3, alpha: f32) -> f32 {
     ((1.0 + alpha * alpha * tangent2).sqrt() - 1.0) / 2.0
 }
 
-/// The lobe times the cosine of `wi`, without Fresnel's factor; both directions above the surface.
-pub fn lobe(wo: Vec3, wi: Vec3, h: Vec3, alpha: f32) -> f32 {
-    distribution(h, alpha) / (4.0 * wo.z * (1.0 + lambda(wo, alpha) + lambda(wi, alpha)))
+/// The lobe seen from one direction, which is above the surface.
+pub struct Lobe {
+    wo: Vec3,
+    alpha: f32,
+    /// One more than Smith's function of the viewer's direction.
+    masking: f32,
 }
 
-/// Density per steradian of the directions that [`sample_normal`] and a reflection lead to.
-pub fn density(wo: Vec3, h: Vec3, alpha: f32) -> f32 {
-    distribution(h, alpha) / (4.0 * wo.z * (1.0 + lambda(wo, alpha)))
+impl Lobe {
+    pub fn new(wo: Vec3, alpha: f32) -> Self {
+        Self { wo, alpha, masking: 1.0 + lambda(wo, alpha) }
+    }
+
+    /// The lobe times the cosine of `wi` (above the surface), without Fresnel's factor; and the density per steradian
+    /// with which a reflection about [`Lobe::sample_normal`] leads there. `h` is the half vector.
+    pub fn eval(&self, wi: Vec3, h: Vec3) -> (f32, f32) {
+        // Density of facet normals per steradian and projected area.
+        let a2 = self.alpha * self.alpha;
+        let d = (h.x * h.x + h.y * h.y) / a2 + h.z * h.z;
+        let facets = 1.0 / (4.0 * PI * a2 * d * d * self.wo.z);
+        (facets / (self.masking + lambda(wi, self.alpha)), facets / self.masking)
+    }
+
+    /// A facet normal among those that the viewer sees.
+    pub fn sample_normal(&self, u: Vec2) -> Vec3 {
+        let (wo, alpha) = (self.wo, self.alpha);
+        // Stretch, so that the facets lie on a hemisphere; choose a point of its projection along the view; go back.
+        let v = Vec3::new(alpha * wo.x, alpha * wo.y, wo.z).normalize();
+        let across = v.x * v.x + v.y * v.y;
+        let t1 = if across > 0.0 { Vec3::new(-v.y, v.x, 0.0) / across.sqrt() } else { Vec3::X };
+        let t2 = v.cross(t1);
+        let p = disc(u).0;
+        let s = 0.5 * (1.0 + v.z);
+        let p2 = (1.0 - s) * (1.0 - p.x * p.x).max(0.0).sqrt() + s * p.y;
+        let n = t1 * p.x + t2 * p2 + v * (1.0 - p.x * p.x - p2 * p2).max(0.0).sqrt();
+        Vec3::new(alpha * n.x, alpha * n.y, n.z.max(1e-6)).normalize()
+    }
 }
 
-/// A facet normal among those that `wo` sees.
-pub fn sample_normal(wo: Vec3, alpha: f32, u: Vec2) -> Vec3 {
-    // Stretch, so that the facets lie on a hemisphere; choose a point of its projection along the view; go back.
-    let v = Vec3::new(alpha * wo.x, alpha * wo.y, wo.z).normalize();
-    let across = v.x * v.x + v.y * v.y;
-    let t1 = if across > 0.0 { Vec3::new(-v.y, v.x, 0.0) / across.sqrt() } else { Vec3::X };
-    let t2 = v.cross(t1);
-    let (radius, angle) = (u.x.sqrt(), TAU * u.y);
-    let p1 = radius * angle.cos();
-    let s = 0.5 * (1.0 + v.z);
-    let p2 = (1.0 - s) * (1.0 - p1 * p1).max(0.0).sqrt() + s * radius * angle.sin();
-    let n = t1 * p1 + t2 * p2 + v * (1.0 - p1 * p1 - p2 * p2).max(0.0).sqrt();
-    Vec3::new(alpha * n.x, alpha * n.y, n.z.max(1e-6)).normalize()
+/// A point uniform in the unit disc, and its squared distance from the centre: squares become rings (Shirley and Chiu
+/// 1997), so that neighbours stay neighbours. Sine and cosine of up to 45 degrees by their series.
+#[inline]
+pub fn disc(u: Vec2) -> (Vec2, f32) {
+    let p = u * 2.0 - 1.0;
+    let wide = p.x.abs() > p.y.abs();
+    let (radius, other) = if wide { (p.x, p.y) } else { (p.y, p.x) };
+    let angle = if radius == 0.0 { 0.0 } else { other / radius * FRAC_PI_4 };
+    let a2 = angle * angle;
+    let sine = angle * (1.0 + a2 * (-1.0 / 6.0 + a2 * (1.0 / 120.0 + a2 * (-1.0 / 5040.0 + a2 * (1.0 / 362_880.0)))));
+    let cosine = 1.0 + a2 * (-0.5 + a2 * (1.0 / 24.0 + a2 * (-1.0 / 720.0 + a2 * (1.0 / 40320.0))));
+    let (along, across) = (radius * cosine, radius * sine);
+    (if wide { Vec2::new(along, across) } else { Vec2::new(across, along) }, radius * radius)
 }
 
 /// Share of light the lobe sends back, by direction and roughness: `f0 * scale + f90 * bias`. What remains is the diffuse
@@ -70,18 +93,34 @@ impl AlbedoTable {
         Self { entries, averages }
     }
 
-    /// Scale and bias for a direction whose cosine with the normal is given.
-    pub fn directional(&self, cosine: f32, roughness: f32) -> Vec2 {
+    /// The entries of one roughness.
+    pub fn row(&self, roughness: f32) -> AlbedoRow<'_> {
         let (row, t) = cell(roughness);
+        AlbedoRow { table: self, row, t }
+    }
+}
+
+/// The table at one roughness, between two of its rows.
+pub struct AlbedoRow<'a> {
+    table: &'a AlbedoTable,
+    row: usize,
+    t: f32,
+}
+
+impl AlbedoRow<'_> {
+    /// Scale and bias for a direction whose cosine with the normal is given.
+    pub fn directional(&self, cosine: f32) -> Vec2 {
         let (column, s) = cell(cosine);
-        let at = |row: usize| self.entries[row * SIDE + column].lerp(self.entries[row * SIDE + column + 1], s);
-        at(row).lerp(at(row + 1), t)
+        let at = |row: usize| {
+            let first = row * SIDE + column;
+            self.table.entries[first].lerp(self.table.entries[first + 1], s)
+        };
+        at(self.row).lerp(at(self.row + 1), self.t)
     }
 
     /// Scale and bias for light from everywhere.
-    pub fn average(&self, roughness: f32) -> Vec2 {
-        let (row, t) = cell(roughness);
-        self.averages[row].lerp(self.averages[row + 1], t)
+    pub fn average(&self) -> Vec2 {
+        self.table.averages[self.row].lerp(self.table.averages[self.row + 1], self.t)
     }
 }
 
@@ -107,13 +146,14 @@ fn cosine_average(row: &[Vec2]) -> Vec2 {
 fn directional_albedo(cosine: f32, alpha: f32) -> Vec2 {
     const N: u32 = 256;
     let wo = Vec3::new((1.0 - cosine * cosine).sqrt(), 0.0, cosine);
+    let lobe = Lobe::new(wo, alpha);
     let mut sum = Vec2::ZERO;
     for i in 0..N {
         let u = Vec2::new((i as f32 + 0.5) / N as f32, i.reverse_bits() as f32 * (1.0 / 4_294_967_296.0));
-        let h = sample_normal(wo, alpha, u);
+        let h = lobe.sample_normal(u);
         let wi = h * (2.0 * wo.dot(h)) - wo;
         if wi.z > 0.0 {
-            let weight = (1.0 + lambda(wo, alpha)) / (1.0 + lambda(wo, alpha) + lambda(wi, alpha));
+            let weight = lobe.masking / (lobe.masking + lambda(wi, alpha));
             let grazing = (1.0 - wo.dot(h)).clamp(0.0, 1.0).powi(5);
             sum += Vec2::new(1.0 - grazing, grazing) * weight;
         }

@@ -135,7 +135,7 @@ impl Receivers {
             }
             Self::Texels { mesh, front, texels } => {
                 let (triangle, barycentric) = texels[i]?;
-                let vertex = Vertex::new(world, *mesh, triangle, barycentric);
+                let vertex = Vertex::new(world, world.id(*mesh, triangle), barycentric);
                 (vertex.normal != Vec3::ZERO).then_some((vertex, *front))
             }
         }

@@ -211,8 +211,7 @@ impl Observer for Recorder<'_> {
         }
         let camera = self.layers.camera;
         let depth = (vertex.position - camera.position).dot(camera.forward.normalize_or_zero());
-        let material = self.world.scene().meshes[vertex.mesh as usize].material;
-        self.surfaces.meet(vertex, bsdf, material, distance, depth);
+        self.surfaces.meet(self.world, vertex, bsdf, distance, depth);
     }
 
     fn survive(&mut self, chance: f32) {

@@ -10,12 +10,14 @@ use super::environment::{self, EnvironmentSampler};
 use super::sampler::Block;
 use crate::error::Result;
 use crate::scene::{PunctualLight, Scene};
-use glam::{Vec2, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 use std::f64::consts::PI;
 
 pub struct Lights {
     pub emitters: Emitters,
     punctual: Distribution,
+    /// The scene's punctual lights, relative to the world's centre.
+    punctual_lights: Vec<PunctualLight>,
     environment: Option<EnvironmentSampler>,
     /// Probabilities of the groups: surfaces, punctual, environment.
     groups: [f64; 3],
@@ -43,7 +45,7 @@ pub enum LightEnd {
 }
 
 impl Lights {
-    pub fn build(scene: &Scene, emitters: Emitters, radius: f32) -> Result<Self> {
+    pub fn build(scene: &Scene, emitters: Emitters, centre: DVec3, radius: f32) -> Result<Self> {
         let punctual = Distribution::new(scene.lights.iter().map(|light| flux(light, radius)))?;
         let (environment, mean) = match scene.environment.as_ref().map(EnvironmentSampler::build).transpose()?.flatten()
         {
@@ -56,7 +58,8 @@ impl Lights {
         let present = powers.iter().filter(|&&p| p > 0.0).count().max(1) as f64;
         let total = powers.iter().sum::<f64>().max(f64::MIN_POSITIVE);
         let groups = powers.map(|p| if p > 0.0 { 0.5 / present + 0.5 * p / total } else { 0.0 });
-        Ok(Self { emitters, punctual, environment, groups })
+        let punctual_lights = scene.lights.iter().map(|light| relative(light, centre)).collect();
+        Ok(Self { emitters, punctual, punctual_lights, environment, groups })
     }
 
     /// Chooses a light for a point: the first dimension of `block` chooses which, the next two where on it.
@@ -67,7 +70,7 @@ impl Lights {
         if u < surfaces {
             self.sample_surface(scene, from, within(0.0, surfaces), Vec2::new(block.get(1), block.get(2)))
         } else if u < surfaces + punctual {
-            self.sample_punctual(scene, from, within(surfaces, punctual))
+            self.sample_punctual(from, within(surfaces, punctual))
         } else if environment > 0.0 {
             let direction_density = self.environment.as_ref()?.sample(block.fine(1), block.get(2));
             let (direction, density) = direction_density;
@@ -107,7 +110,7 @@ impl Lights {
         })
     }
 
-    fn sample_punctual(&self, scene: &Scene, from: Vec3, u: f64) -> Option<LightSample> {
+    fn sample_punctual(&self, from: Vec3, u: f64) -> Option<LightSample> {
         let index = self.punctual.sample(u).0;
         let probability = (self.groups[1] * self.punctual.probability(index)) as f32;
         let source = LightSource::Punctual(index as u32);
@@ -126,7 +129,7 @@ impl Lights {
             (density > 0.0 && intensity != Vec3::ZERO)
                 .then(|| sample(offset / distance, Some(LightEnd::Point(position)), intensity, density))
         };
-        match scene.lights[index] {
+        match self.punctual_lights[index] {
             PunctualLight::Point { position, intensity } => at(position, intensity),
             PunctualLight::Spot { position, direction, intensity, inner_angle, outer_angle } => {
                 let cosine = (from - position).normalize_or_zero().dot(direction.normalize_or_zero());
@@ -161,6 +164,18 @@ fn spot_falloff(cosine: f32, inner: f32, outer: f32) -> f32 {
     let scale = 1.0 / (cos_inner - cos_outer).max(1e-4);
     let x = (scale * (cosine - cos_outer)).clamp(0.0, 1.0);
     x * x
+}
+
+/// The light with its place relative to a centre.
+fn relative(light: &PunctualLight, centre: DVec3) -> PunctualLight {
+    let mut light = *light;
+    match &mut light {
+        PunctualLight::Point { position, .. } | PunctualLight::Spot { position, .. } => {
+            *position = (position.as_dvec3() - centre).as_vec3();
+        }
+        PunctualLight::Directional { .. } => {}
+    }
+    light
 }
 
 /// Luminous flux in lumens, of directional lights that which enters a sphere around the scene.

@@ -14,7 +14,9 @@ mod bsdf;
 mod distribution;
 mod emissive;
 mod environment;
+mod facet;
 mod film;
+mod finish;
 mod ggx;
 pub mod illuminance;
 mod layers;
@@ -76,7 +78,7 @@ pub struct SurfacePoint {
 pub fn irradiance<S: PathSink>(world: &World, point: &SurfacePoint, seed: u64, sample: u32, sink: &mut S) {
     let mesh = world.scene().meshes.get(point.mesh as usize);
     if mesh.is_some_and(|m| (point.triangle as usize) < m.triangles.len()) {
-        let vertex = Vertex::new(world, point.mesh, point.triangle, point.barycentric);
+        let vertex = Vertex::new(world, world.id(point.mesh, point.triangle), point.barycentric);
         if vertex.normal != Vec3::ZERO {
             let observer = &mut path::Contributions(sink);
             path::gather(world, &vertex, point.front, &mut Sampler::new(seed, sample), observer);

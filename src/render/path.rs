@@ -66,11 +66,13 @@ struct Leg {
     /// Where the light was last sampled for, and the density of the direction then chosen; none if only scattering could
     /// find what lies ahead.
     rival: Option<(Vec3, f32)>,
+    /// Uniform in `[0, 1)`: decides whether the path ends by chance at the next vertex.
+    fate: f32,
 }
 
 /// Makes one estimate of the radiance that arrives along a ray (of unit direction).
 pub fn trace<O: Observer>(world: &World, ray: Ray, sampler: &mut Sampler, observer: &mut O) {
-    walk(world, Leg { ray, from: NONE, throughput: Vec3::ONE, rival: None }, 1.0, sampler, observer);
+    walk(world, Leg { ray, from: NONE, throughput: Vec3::ONE, rival: None, fate: 0.0 }, 1.0, sampler, observer);
 }
 
 /// Makes one estimate of the irradiance at a point.
@@ -86,7 +88,7 @@ pub fn gather<O: Observer>(world: &World, vertex: &Vertex, front: bool, sampler:
 /// Follows a path to its end. `scale` is what counts as full throughput.
 fn walk<O: Observer>(world: &World, mut leg: Leg, scale: f32, sampler: &mut Sampler, observer: &mut O) {
     for bounce in 0..MOST_VERTICES {
-        let Some(hit) = world.closest(&leg.ray, leg.from, sampler.ray_seed()) else {
+        let Some(hit) = world.closest(&leg.ray, leg.from, || sampler.ray_seed()) else {
             return add_environment(world, &leg, observer);
         };
         let vertex = Vertex::of_hit(world, &hit);
@@ -95,8 +97,7 @@ fn walk<O: Observer>(world: &World, mut leg: Leg, scale: f32, sampler: &mut Samp
         let mut throughput = leg.throughput;
         if bounce + 1 >= ROULETTE_FROM {
             let survival = (throughput.max_element() / scale).min(SUREST);
-            let u = (crate::rng::mix(sampler.ray_seed() ^ 0x5c) >> 40) as f32 / (1 << 24) as f32;
-            if !(u < survival) {
+            if !(leg.fate < survival) {
                 return;
             }
             throughput /= survival;
@@ -139,7 +140,7 @@ fn scatter<O: Observer>(
         Kind::Mirrored => None,
         Kind::Through => rival,
     };
-    Some(Leg { ray: vertex.ray(scattered.direction), from: vertex.id, throughput, rival })
+    Some(Leg { ray: vertex.ray(scattered.direction), from: vertex.id, throughput, rival, fate: choice.get(3) })
 }
 
 fn add_light<O: Observer>(
@@ -163,7 +164,7 @@ fn add_light<O: Observer>(
         Some(LightEnd::Point(p)) => (Ray { origin, direction: p - origin, t_max: 1.0 }, NONE),
         Some(LightEnd::Emitter(index, barycentric)) => {
             let emitter = &world.lights().emitters.emitters[index];
-            let target = Vertex::new(world, emitter.mesh, emitter.triangle, barycentric);
+            let target = Vertex::new(world, emitter.id, barycentric);
             let p = target.off_surface(-light.direction);
             (Ray { origin, direction: p - origin, t_max: 1.0 }, emitter.id)
         }

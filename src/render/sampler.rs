@@ -8,6 +8,7 @@ use crate::rng;
 /// The numbers of one path.
 #[derive(Clone)]
 pub struct Sampler {
+    /// The path's number among those of its seed, its bits in reverse.
     index: u32,
     seed: u64,
     block: u64,
@@ -19,11 +20,14 @@ pub struct Block([u32; 4]);
 
 impl Block {
     /// Uniform in `[0, 1)`.
+    #[inline]
     pub fn get(&self, dimension: usize) -> f32 {
-        (self.0[dimension] >> 8) as f32 * (1.0 / (1u32 << 24) as f32)
+        // Signed conversions are one instruction; 24 bits have no sign.
+        (self.0[dimension] >> 8) as i32 as f32 * (1.0 / (1u32 << 24) as f32)
     }
 
     /// The same with all 32 bits, for choices among very many.
+    #[inline]
     pub fn fine(&self, dimension: usize) -> f64 {
         f64::from(self.0[dimension]) * (1.0 / 4_294_967_296.0)
     }
@@ -31,19 +35,21 @@ impl Block {
 
 impl Sampler {
     /// The path of number `index` among those that share `seed`.
+    #[inline]
     pub fn new(seed: u64, index: u32) -> Self {
-        Self { index, seed, block: 0 }
+        Self { index: index.reverse_bits(), seed: rng::mix(seed), block: 0 }
     }
 
     /// The next four dimensions.
+    #[inline]
     pub fn next(&mut self) -> Block {
-        let seed = rng::hash(self.seed, &[self.block]);
-        self.block += 1;
-        let index = scramble(self.index, seed as u32);
-        let point = sobol(index);
-        let (a, b) = (rng::mix(seed ^ 1), rng::mix(seed ^ 2));
-        let seeds = [a as u32, (a >> 32) as u32, b as u32, (b >> 32) as u32];
-        Block(std::array::from_fn(|d| scramble(point[d], seeds[d])))
+        // One stream of hashes per seed (Steele et al. 2014), three for each block.
+        self.block = self.block.wrapping_add(1);
+        let base = self.seed.wrapping_add(self.block.wrapping_mul(STEP));
+        let (a, b, c) = (rng::mix(base), rng::mix(base ^ FIRST_PAIR), rng::mix(base ^ SECOND_PAIR));
+        let point = sobol(scramble(self.index, a as u32));
+        let seeds = [b as u32, (b >> 32) as u32, c as u32, (c >> 32) as u32];
+        Block(std::array::from_fn(|d| scramble(point[d], seeds[d]).reverse_bits()))
     }
 
     /// A number that belongs to this path and this point of it, for decisions that need no stratification.
@@ -52,28 +58,28 @@ impl Sampler {
     }
 }
 
+/// Far apart from each other, odd the first.
+const STEP: u64 = 0x9e37_79b9_7f4a_7c15;
+const FIRST_PAIR: u64 = 0x6a09_e667_f3bc_c908;
+const SECOND_PAIR: u64 = 0xbb67_ae85_84ca_a73b;
+
 /// Nested uniform scrambling: each bit is flipped by a hash of the bits above it (Laine and Karras 2011, with the
-/// constants of Vegdahl 2021).
-fn scramble(x: u32, seed: u32) -> u32 {
-    let mut x = x.reverse_bits();
+/// constants of Vegdahl 2021). Bits are in reverse, before and after: carries run from the high bits to the low.
+#[inline]
+fn scramble(mut x: u32, seed: u32) -> u32 {
     x ^= x.wrapping_mul(0x3d20_adea);
     x = x.wrapping_add(seed);
     x = x.wrapping_mul((seed >> 16) | 1);
     x ^= x.wrapping_mul(0x0552_6c56);
-    x ^= x.wrapping_mul(0x53a2_2864);
-    x.reverse_bits()
+    x ^ x.wrapping_mul(0x53a2_2864)
 }
 
-/// The first four dimensions of the Sobol' sequence, the bits of the index taken eight at a time.
+/// The first four dimensions of the Sobol' sequence, the bits of the index taken eight at a time; all bits in reverse.
+#[inline]
 fn sobol(index: u32) -> [u32; 4] {
-    let mut point = [0; 4];
-    for (byte, table) in SOBOL.iter().enumerate() {
-        let row = table[(index >> (8 * byte)) as usize & 255];
-        for (p, r) in point.iter_mut().zip(row) {
-            *p ^= r;
-        }
-    }
-    point
+    let row = |byte: usize| &SOBOL[byte][(index >> (8 * byte)) as usize & 255];
+    let (a, b, c, d) = (row(0), row(1), row(2), row(3));
+    std::array::from_fn(|i| a[i] ^ b[i] ^ c[i] ^ d[i])
 }
 
 static SOBOL: [[[u32; 4]; 256]; 4] = sobol_tables();
@@ -90,7 +96,7 @@ const fn sobol_tables() -> [[[u32; 4]; 256]; 4] {
                 if value >> bit & 1 == 1 {
                     let mut d = 0;
                     while d < 4 {
-                        tables[byte][value][d] ^= directions[d][8 * byte + bit];
+                        tables[byte][value][d] ^= directions[d][31 - (8 * byte + bit)].reverse_bits();
                         d += 1;
                     }
                 }

@@ -1,29 +1,30 @@
 //! A scene made ready for tracing.
 
 use super::emissive::Emitters;
+use super::facet::{self, Facet};
+use super::finish::Finish;
 use super::ggx::AlbedoTable;
 use super::light::Lights;
-use super::vertex::{geometric_normal, opacity, substance};
+use super::vertex::Spot;
 use crate::error::{Error, Result};
 use crate::image::try_vec;
 use crate::job::Job;
 use crate::rng;
 use crate::scene::accel::{Accel, Hit, Ray};
 use crate::scene::{AlphaMode, Environment, Material, Mesh, Scene, TextureRef};
-use glam::{Vec2, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 use std::sync::Arc;
 
 /// A scene made ready for tracing: acceleration structure and light distributions. Triangles are numbered through the
-/// meshes in order.
+/// meshes in order. Inside, all coordinates are relative to a centre, so that scenes far from the origin lose nothing.
 pub struct World {
     scene: Arc<Scene>,
     accel: Accel,
+    centre: DVec3,
     /// Number of the first triangle of each mesh, and of all triangles at the end.
     first: Vec<u32>,
-    /// Mesh of each triangle.
-    mesh_of: Vec<u32>,
-    /// Index of the emitter of each triangle, or `NONE`; empty where no surface emits.
-    emitter_of: Vec<u32>,
+    facets: Vec<Facet>,
+    finishes: Vec<Finish>,
     lights: Lights,
     albedo_table: Option<AlbedoTable>,
     /// Whether light passes through any material: only then do rays ask what they hit.
@@ -57,49 +58,59 @@ impl World {
         if count >= 1 << 31 {
             return Err(Error::argument(format!("scene has {count} triangles; at most 2^31 - 1 are allowed")));
         }
-        // Number the triangles through all meshes.
+        // Number the triangles through all meshes, and move them to the centre.
+        let centre = facet::centre(&scene.meshes);
         let mut first = Vec::with_capacity(scene.meshes.len() + 1);
-        let mut mesh_of = try_vec(count, 0u32)?;
+        let mut facets = try_vec(count, Facet::EMPTY)?;
         let mut triangles = try_vec(count, [Vec3::ZERO; 3])?;
         let mut next = 0;
         for (index, mesh) in scene.meshes.iter().enumerate() {
             job.check()?;
             first.push(next as u32);
             for triangle in 0..mesh.triangles.len() {
-                mesh_of[next] = index as u32;
-                triangles[next] = mesh.corners(triangle);
+                triangles[next] = mesh.corners(triangle).map(|p| (p.as_dvec3() - centre).as_vec3());
+                facets[next] = Facet::new(triangles[next], index as u32, mesh, triangle);
                 next += 1;
             }
         }
         first.push(next as u32);
         let accel = Accel::build(&triangles, job.part(0.0, 0.8))?;
         // Gather the lights.
-        let numbered = (0..count as u32).map(|id| {
-            let mesh = mesh_of[id as usize];
-            (mesh, id - first[mesh as usize], id)
-        });
-        let emitters = Emitters::build(&scene, numbered)?;
-        let mut emitter_of = Vec::new();
-        if !emitters.emitters.is_empty() {
-            emitter_of = try_vec(count, NONE)?;
-            emitters.emitters.iter().enumerate().for_each(|(i, e)| emitter_of[e.id as usize] = i as u32);
-        }
+        let emitters = Emitters::build(&scene, &facets, &first)?;
+        emitters.emitters.iter().enumerate().for_each(|(i, e)| facets[e.id as usize].emitter = i as u32);
         job.check()?;
         let (low, high) = accel.bounds();
-        let lights = Lights::build(&scene, emitters, (high - low).length() / 2.0)?;
-        let layered = |m: &Material| m.ior > 1.0 && m.metallic < 1.0;
-        let albedo_table = scene.materials.iter().any(layered).then(AlbedoTable::new);
-        let any_see_through = scene.materials.iter().any(|m| m.alpha_mode != AlphaMode::Opaque || m.transmission > 0.0);
+        let lights = Lights::build(&scene, emitters, centre, (high - low).length() / 2.0)?;
+        let finishes: Vec<Finish> = scene.materials.iter().map(Finish::new).collect();
+        let has_top = |m: &Material| m.ior > 1.0 || m.metallic > 0.0;
+        let albedo_table = scene.materials.iter().any(has_top).then(AlbedoTable::new);
+        let any_see_through = finishes.iter().any(|f| f.see_through);
         job.report(1.0);
-        Ok(Self { scene, accel, first, mesh_of, emitter_of, lights, albedo_table, any_see_through })
+        Ok(Self { scene, accel, centre, first, facets, finishes, lights, albedo_table, any_see_through })
     }
 
     pub fn scene(&self) -> &Arc<Scene> {
         &self.scene
     }
 
+    /// Takes rays made by [`World::ray`]: its coordinates are relative to the centre.
     pub fn accel(&self) -> &Accel {
         &self.accel
+    }
+
+    /// A ray of the scene's coordinates, for tracing.
+    pub fn ray(&self, origin: Vec3, direction: Vec3) -> Ray {
+        Ray::new(self.from_scene(origin), direction)
+    }
+
+    /// A point of the scene's coordinates, for tracing.
+    pub fn from_scene(&self, position: Vec3) -> Vec3 {
+        (position.as_dvec3() - self.centre).as_vec3()
+    }
+
+    /// A point of tracing in the scene's coordinates.
+    pub fn in_scene(&self, position: Vec3) -> Vec3 {
+        (position.as_dvec3() + self.centre).as_vec3()
     }
 
     /// Number of the triangle of a mesh among all triangles.
@@ -109,40 +120,64 @@ impl World {
 
     /// The mesh and the triangle in it of a number.
     pub fn locate(&self, id: u32) -> (u32, u32) {
-        let mesh = self.mesh_of[id as usize];
-        (mesh, id - self.first[mesh as usize])
+        let mesh = self.facets[id as usize].mesh;
+        (mesh, id - self.first(mesh))
     }
 
+    /// Number of the first triangle of a mesh.
+    #[inline]
+    pub(super) fn first(&self, mesh: u32) -> u32 {
+        self.first[mesh as usize]
+    }
+
+    #[inline]
+    pub(super) fn facet(&self, id: u32) -> &Facet {
+        &self.facets[id as usize]
+    }
+
+    #[inline]
+    pub(super) fn finish(&self, facet: &Facet) -> &Finish {
+        &self.finishes[facet.material()]
+    }
+
+    #[inline]
     pub(super) fn lights(&self) -> &Lights {
         &self.lights
     }
 
+    #[inline]
     pub(super) fn albedo_table(&self) -> Option<&AlbedoTable> {
         self.albedo_table.as_ref()
     }
 
     /// The emitter that a triangle is.
+    #[inline]
     pub(super) fn emitter_of(&self, id: u32) -> Option<usize> {
-        self.emitter_of.get(id as usize).filter(|&&e| e != NONE).map(|&e| e as usize)
+        let emitter = self.facet(id).emitter;
+        (emitter != NONE).then_some(emitter as usize)
     }
 
     /// The nearest hit of a ray that leaves triangle `from`; `seed` decides whether it meets what is only partly there.
-    pub(super) fn closest(&self, ray: &Ray, from: u32, seed: u64) -> Option<Hit> {
+    #[inline]
+    pub(super) fn closest(&self, ray: &Ray, from: u32, seed: impl Fn() -> u64) -> Option<Hit> {
         if !self.any_see_through {
             return self.accel.closest(ray, |hit| hit.triangle != from);
         }
-        self.accel.closest(ray, |hit| hit.triangle != from && self.is_there(hit, seed))
+        self.accel.closest(ray, |hit| hit.triangle != from && self.is_there(hit, &seed))
     }
 
-    fn is_there(&self, hit: &Hit, seed: u64) -> bool {
-        let (mesh, material, triangle) = self.described(hit);
-        let opacity = || opacity(self, mesh, material, triangle, Vec2::new(hit.u, hit.v));
-        match material.alpha_mode {
+    fn is_there(&self, hit: &Hit, seed: &impl Fn() -> u64) -> bool {
+        let facet = self.facet(hit.triangle);
+        if !self.finish(facet).partial {
+            return true;
+        }
+        let spot = self.spot(facet, hit);
+        match spot.material.alpha_mode {
             AlphaMode::Opaque => true,
-            AlphaMode::Mask(cutoff) => opacity() >= cutoff,
+            AlphaMode::Mask(cutoff) => spot.opacity() >= cutoff,
             AlphaMode::Blend => {
-                let u = (rng::hash(seed, &[u64::from(hit.triangle)]) >> 40) as f32 / (1 << 24) as f32;
-                u < opacity()
+                let u = (rng::hash(seed(), &[u64::from(hit.triangle)]) >> 40) as f32 / (1 << 24) as f32;
+                u < spot.opacity()
             }
         }
     }
@@ -159,7 +194,7 @@ impl World {
             return if blocked { Vec3::ZERO } else { Vec3::ONE };
         }
         // In f64, so that the order in which surfaces are met does not show after rounding.
-        let mut share = glam::DVec3::ONE;
+        let mut share = DVec3::ONE;
         let blocked = self.accel.occluded(ray, |hit| {
             if ends.contains(&hit.triangle) {
                 return false;
@@ -169,32 +204,33 @@ impl World {
             if let Some(panes) = &mut panes {
                 panes.push(pane);
             }
-            share == glam::DVec3::ZERO
+            share == DVec3::ZERO
         });
         if blocked { Vec3::ZERO } else { share.as_vec3() }
     }
 
     fn pane(&self, hit: &Hit, direction: Vec3) -> Pane {
-        let (mesh, material, triangle) = self.described(hit);
-        let at = Vec2::new(hit.u, hit.v);
-        let there = match material.alpha_mode {
+        let facet = self.facet(hit.triangle);
+        let finish = self.finish(facet);
+        if !finish.see_through {
+            return Pane { t: hit.t, triangle: hit.triangle, beside: 0.0, through: Vec3::ZERO };
+        }
+        let spot = self.spot(facet, hit);
+        let there = match spot.material.alpha_mode {
             AlphaMode::Opaque => 1.0,
-            AlphaMode::Mask(cutoff) => f32::from(u8::from(opacity(self, mesh, material, triangle, at) >= cutoff)),
-            AlphaMode::Blend => opacity(self, mesh, material, triangle, at).clamp(0.0, 1.0),
+            AlphaMode::Mask(cutoff) => f32::from(u8::from(spot.opacity() >= cutoff)),
+            AlphaMode::Blend => spot.opacity().clamp(0.0, 1.0),
         };
-        let through = if material.transmission > 0.0 && there > 0.0 {
-            let normal = geometric_normal(mesh.corners(triangle as usize));
-            substance(self, mesh, material, triangle, at).through(normal.dot(direction.normalize_or_zero()))
+        let through = if spot.material.transmission > 0.0 && there > 0.0 {
+            spot.substance(finish).through(facet.normal.dot(direction.normalize_or_zero()))
         } else {
             Vec3::ZERO
         };
         Pane { t: hit.t, triangle: hit.triangle, beside: 1.0 - there, through: through * there }
     }
 
-    fn described(&self, hit: &Hit) -> (&Mesh, &Material, u32) {
-        let (mesh, triangle) = self.locate(hit.triangle);
-        let mesh = &self.scene.meshes[mesh as usize];
-        (mesh, &self.scene.materials[mesh.material], triangle)
+    fn spot(&self, facet: &Facet, hit: &Hit) -> Spot<'_> {
+        Spot::new(self, facet, hit.triangle - self.first(facet.mesh), Vec2::new(hit.u, hit.v))
     }
 }
 

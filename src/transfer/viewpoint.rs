@@ -1,7 +1,6 @@
 //! A camera for scenes that come without one: in the corner of the room under the lit surface from where most is seen.
 
 use crate::render::World;
-use crate::scene::accel::Ray;
 use crate::scene::surface::Surface;
 use crate::scene::{Camera, Scene};
 use glam::{Vec2, Vec3};
@@ -58,7 +57,7 @@ fn openness(world: &World, camera: &Camera, cap: f32) -> f32 {
         let x = ((i % RAYS[0]) as f32 + 0.5) / RAYS[0] as f32;
         let y = ((i / RAYS[0]) as f32 + 0.5) / RAYS[1] as f32;
         let direction: Vec3 = camera.direction(x, y, 16.0 / 9.0).normalize();
-        let hit = world.accel().closest(&Ray::new(camera.position, direction), |_| true);
+        let hit = world.accel().closest(&world.ray(camera.position, direction), |_| true);
         // Leaving the scene is no better than seeing its far end.
         sum += hit.map_or(cap / 2.0, |h| h.t.min(cap));
     }

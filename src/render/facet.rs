@@ -1,0 +1,156 @@
+//! What a hit needs to know of its triangle, in one line of the cache.
+
+use super::world::NONE;
+use crate::scene::Mesh;
+use glam::{DVec3, Vec2, Vec3};
+
+/// A triangle made ready for tracing. Coordinates are relative to the world's centre.
+#[repr(C, align(64))]
+#[derive(Clone, Copy)]
+pub struct Facet {
+    corner: Vec3,
+    /// From the first corner to the second and the third.
+    sides: [Vec3; 2],
+    /// Unit geometric normal of the front face; zero where the triangle has no area.
+    pub normal: Vec3,
+    /// Distance that clears the rounding of a point on it.
+    pub offset: f32,
+    pub mesh: u32,
+    /// Index into the scene's materials; the highest bit tells whether the shading normal varies.
+    material: u32,
+    /// Index of the emitter it is, or `NONE`.
+    pub emitter: u32,
+}
+
+/// Rounding of an interpolated point: sixteen errors of 2^-24 of its largest coordinate.
+pub const OFFSET: f32 = 1.0 / (1 << 20) as f32;
+const SMOOTH: u32 = 1 << 31;
+
+impl Facet {
+    pub const EMPTY: Self = Self {
+        corner: Vec3::ZERO,
+        sides: [Vec3::ZERO; 2],
+        normal: Vec3::ZERO,
+        offset: 0.0,
+        mesh: 0,
+        material: 0,
+        emitter: NONE,
+    };
+
+    /// From the corners relative to the world's centre; `triangle` is the index in the mesh.
+    pub fn new(corners: [Vec3; 3], index: u32, mesh: &Mesh, triangle: usize) -> Self {
+        // In f64: the sides and the normal of a small triangle far from the centre cancel.
+        let [a, b, c] = corners.map(|p| p.as_dvec3());
+        let normal = (b - a).cross(c - a).normalize_or_zero().as_vec3();
+        let smooth = if is_flat(mesh, triangle, normal) { 0 } else { SMOOTH };
+        let largest = corners[0].abs().max(corners[1].abs()).max(corners[2].abs()).max_element();
+        Self {
+            corner: corners[0],
+            sides: [(b - a).as_vec3(), (c - a).as_vec3()],
+            normal,
+            offset: largest * OFFSET,
+            mesh: index,
+            material: mesh.material as u32 | smooth,
+            emitter: NONE,
+        }
+    }
+
+    #[inline]
+    pub fn point(&self, b: Vec2) -> Vec3 {
+        self.corner + self.sides[0] * b.x + self.sides[1] * b.y
+    }
+
+    pub fn corners(&self) -> [Vec3; 3] {
+        [self.corner, self.corner + self.sides[0], self.corner + self.sides[1]]
+    }
+
+    #[inline]
+    pub fn material(&self) -> usize {
+        (self.material & !SMOOTH) as usize
+    }
+
+    /// Whether the normals of the mesh bend it.
+    #[inline]
+    pub fn is_smooth(&self) -> bool {
+        self.material & SMOOTH != 0
+    }
+}
+
+/// Whether the mesh has no normals, or the triangle's are all its geometric one but for rounding.
+fn is_flat(mesh: &Mesh, triangle: usize, normal: Vec3) -> bool {
+    if mesh.normals.is_empty() {
+        return true;
+    }
+    let [a, b, c] = mesh.triangles[triangle].map(|i| mesh.normals[i as usize].normalize_or_zero());
+    // Normals that point to the other side than the winding are taken to mean the axis only.
+    let side = if a.dot(normal) < 0.0 { -normal } else { normal };
+    [a, b, c].iter().all(|n| (*n - side).abs().max_element() < 1e-6)
+}
+
+/// The origin of tracing: a point in the middle of the corners, on a grid so coarse that moving there rounds nothing.
+///
+/// Coordinates in f32 far from the origin are multiples of a step that grows with the distance. A grid of a power of two
+/// no smaller than the scene is a multiple of that step wherever the scene lies a grid cell or more from the origin; so
+/// differences to its points are exact. Nearer scenes stay where they are: there is next to nothing to be gained.
+pub fn centre(meshes: &[Mesh]) -> DVec3 {
+    let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+    for mesh in meshes {
+        for p in mesh.triangles.iter().flatten().map(|&i| mesh.positions[i as usize]) {
+            (low, high) = (low.min(p), high.max(p));
+        }
+    }
+    let (low, high) = (low.as_dvec3(), high.as_dvec3());
+    let extent = (high - low).max_element();
+    if !(extent > 0.0 && extent.is_finite()) {
+        return if low.is_finite() { low } else { DVec3::ZERO };
+    }
+    let grid = 2f64.powi(extent.log2().ceil() as i32);
+    let middle = (low + high) / 2.0;
+    DVec3::select(middle.abs().cmplt(DVec3::splat(grid)), DVec3::ZERO, (middle / grid).round() * grid)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rng::Rng;
+
+    fn sheet(at: Vec3, size: f32) -> Mesh {
+        let corner = |x: f32, z: f32| at + Vec3::new(x, 0.0, z) * size;
+        let positions = vec![corner(0.0, 0.0), corner(0.0, 1.0), corner(1.0, 1.0), corner(1.0, 0.0)];
+        Mesh { positions, triangles: vec![[0, 1, 2], [0, 2, 3]], ..Mesh::default() }
+    }
+
+    #[test]
+    fn moving_to_the_centre_rounds_nothing() {
+        let mut rng = Rng::new(31, &[]);
+        for _ in 0..2000 {
+            let exponent = |rng: &mut Rng, range: f32| (rng.next_f32() * 2.0 * range - range).exp2();
+            let size = exponent(&mut rng, 13.0);
+            let place = Vec3::new(rng.next_f32(), rng.next_f32(), rng.next_f32()) * 2.0 - 1.0;
+            let mesh = sheet(place * size * exponent(&mut rng, 13.0), size);
+            let centre = centre(std::slice::from_ref(&mesh));
+            for p in &mesh.positions {
+                let exact = p.as_dvec3() - centre;
+                assert_eq!(exact.as_vec3().as_dvec3(), exact, "{p} from {centre}");
+                let bound = f64::from(size) * 4.0;
+                assert!(exact.abs().max_element() <= bound, "{exact} with a size of {size}");
+            }
+        }
+    }
+
+    #[test]
+    fn normals_that_repeat_the_faces_do_not_bend_them() {
+        let mut mesh = sheet(Vec3::ZERO, 2.0);
+        let facet = |mesh: &Mesh| {
+            let corners = mesh.corners(0);
+            Facet::new(corners, 0, mesh, 0)
+        };
+        assert!(!facet(&mesh).is_smooth());
+        mesh.normals = vec![Vec3::Y; 4];
+        assert!(!facet(&mesh).is_smooth());
+        mesh.normals = vec![Vec3::NEG_Y; 4];
+        assert!(!facet(&mesh).is_smooth());
+        mesh.normals[1] = Vec3::new(0.0, 1.0, 1e-3);
+        assert!(facet(&mesh).is_smooth());
+    }
+}

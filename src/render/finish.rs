@@ -1,0 +1,51 @@
+//! Materials made ready for tracing: what no texture varies is worked out once.
+
+use super::bsdf::Substance;
+use crate::scene::{AlphaMode, Material};
+use glam::Vec3;
+
+/// How a material is to be looked at.
+#[derive(Clone, Copy)]
+pub struct Finish {
+    /// What it is made of, its textures taken as white.
+    pub substance: Substance,
+    /// Whether textures vary what it is made of.
+    pub varies: bool,
+    /// Whether a texture bends its normals.
+    pub bumpy: bool,
+    /// Whether parts of it may not be there.
+    pub partial: bool,
+    /// Whether light may go straight through it, for either reason.
+    pub see_through: bool,
+}
+
+impl Finish {
+    pub fn new(material: &Material) -> Self {
+        let partial = material.alpha_mode != AlphaMode::Opaque;
+        Self {
+            substance: substance(material, material.base_color, material.metallic, material.roughness),
+            varies: material.base_color_texture.is_some() || material.metallic_roughness_texture.is_some(),
+            bumpy: material.normal_texture.is_some(),
+            partial,
+            see_through: partial || material.transmission > 0.0,
+        }
+    }
+}
+
+/// glTF 2.0, appendix B.2: from metallic-roughness to layers.
+pub fn substance(material: &Material, base: Vec3, metallic: f32, roughness: f32) -> Substance {
+    let base = base.clamp(Vec3::ZERO, Vec3::ONE);
+    let (metallic, roughness) = (metallic.clamp(0.0, 1.0), roughness.clamp(0.0, 1.0));
+    let transmission = material.transmission.clamp(0.0, 1.0);
+    let dielectric_f0 = ((material.ior - 1.0) / (material.ior + 1.0)).powi(2);
+    // An index of 1 is no interface at all, so it does not reflect at grazing angles either.
+    let has_interface = material.ior > 1.0;
+    Substance {
+        diffuse: base * ((1.0 - metallic) * (1.0 - transmission)),
+        f0: Vec3::splat(dielectric_f0).lerp(base, metallic),
+        f90: if has_interface { 1.0 } else { metallic },
+        roughness,
+        transmission: base * ((1.0 - metallic) * transmission),
+        dielectric_f0,
+    }
+}
