@@ -30,12 +30,6 @@ pub struct Substance {
 }
 
 impl Substance {
-    /// Whether the diffuse layer is all there is.
-    #[inline]
-    pub fn is_matt(&self) -> bool {
-        self.f90 == 0.0 && self.transmission == Vec3::ZERO
-    }
-
     /// What passes straight through at an angle.
     pub fn through(&self, cosine: f32) -> Vec3 {
         if self.transmission == Vec3::ZERO {
@@ -109,12 +103,13 @@ pub enum Kind {
 
 impl<'a> Bsdf<'a> {
     /// `wo` points to the viewer; both normals are flipped to its side. Reflection is two-sided whatever the material
-    /// says: rooms are often modelled with their walls facing outwards. `table` may be missing where nothing has a top layer.
+    /// says: rooms are often modelled with their walls facing outwards. `layered` tells whether there may be more than a
+    /// diffuse layer, `table` may be missing where nothing has a top layer.
     #[inline]
     pub fn new(
         substance: &Substance,
-        shading: Vec3,
-        geometric: Vec3,
+        layered: bool,
+        [shading, geometric]: [Vec3; 2],
         wo: Vec3,
         table: Option<&'a AlbedoTable>,
     ) -> Self {
@@ -122,7 +117,7 @@ impl<'a> Bsdf<'a> {
         let geometric = geometric * side;
         let normal = face_viewer(shading * side, wo);
         let diffuse = substance.diffuse;
-        let layers = (!substance.is_matt()).then(|| Layers::new(substance, normal, geometric.dot(wo), wo, table));
+        let layers = layered.then(|| Layers::new(substance, normal, geometric.dot(wo), wo, table));
         Self { diffuse, normal, geometric, layers }
     }
 
@@ -332,137 +327,4 @@ fn from_local(frame: &[Vec3; 3], w: Vec3) -> Vec3 {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::rng::Rng;
-    use std::f32::consts::TAU;
-
-    fn substances() -> Vec<Substance> {
-        let mut all = Vec::new();
-        for roughness in [0.3, 0.6, 1.0] {
-            for metallic in [0.0f32, 0.4, 1.0] {
-                all.push(Substance {
-                    diffuse: Vec3::new(0.9, 0.5, 0.2) * (1.0 - metallic),
-                    f0: Vec3::splat(0.04).lerp(Vec3::new(0.9, 0.5, 0.2), metallic),
-                    f90: 1.0,
-                    roughness,
-                    transmission: Vec3::ZERO,
-                    dielectric_f0: 0.04,
-                });
-            }
-        }
-        all
-    }
-
-    fn direction(cosine: f32, angle: f32) -> Vec3 {
-        let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
-        Vec3::new(sine * angle.cos(), sine * angle.sin(), cosine)
-    }
-
-    /// The quantile of chi-squared that lies `z` standard deviations up (Wilson and Hilferty 1931).
-    fn chi2_limit(degrees: f64, z: f64) -> f64 {
-        degrees * (1.0 - 2.0 / (9.0 * degrees) + z * (2.0 / (9.0 * degrees)).sqrt()).powi(3)
-    }
-
-    #[test]
-    fn directions_come_with_the_density_that_is_stated() {
-        const ROWS: usize = 10;
-        const COLUMNS: usize = 16;
-        let table = AlbedoTable::new();
-        let n = 20_000;
-        for (number, substance) in substances().into_iter().enumerate() {
-            for view in [0.95, 0.6, 0.15] {
-                let bsdf = Bsdf::new(&substance, Vec3::Z, Vec3::Z, direction(view, 0.3), Some(&table));
-                // Expected counts of bins that are even in cosine and angle, the last one for absorbed light.
-                let mut expected = vec![0.0; ROWS * COLUMNS + 1];
-                const SUB: usize = 24;
-                for i in 0..ROWS * SUB {
-                    for j in 0..COLUMNS * SUB {
-                        let cosine = (i as f32 + 0.5) / (ROWS * SUB) as f32;
-                        let angle = TAU * (j as f32 + 0.5) / (COLUMNS * SUB) as f32;
-                        let density = f64::from(bsdf.eval(direction(cosine, angle)).1);
-                        let solid_angle = f64::from(TAU) / (ROWS * COLUMNS * SUB * SUB) as f64;
-                        expected[i / SUB * COLUMNS + j / SUB] += f64::from(n) * density * solid_angle;
-                    }
-                }
-                let inside: f64 = expected.iter().sum();
-                assert!(inside < 1.002 * f64::from(n), "densities integrate to at most 1: {inside}");
-                expected[ROWS * COLUMNS] = (f64::from(n) - inside).max(0.0);
-                // Observed counts.
-                let mut observed = vec![0.0; ROWS * COLUMNS + 1];
-                let mut rng = Rng::new(11, &[number as u64, (view * 100.0) as u64]);
-                for _ in 0..n {
-                    let sample = bsdf.sample(rng.next_f32(), Vec2::new(rng.next_f32(), rng.next_f32()));
-                    let bin = sample.map_or(ROWS * COLUMNS, |s| {
-                        let (lobes, density) = bsdf.eval(s.direction);
-                        assert_eq!(s.kind, Kind::Spread(density));
-                        assert_eq!(s.weight, lobes.sum() / density);
-                        let row = ((s.direction.z * ROWS as f32) as usize).min(ROWS - 1);
-                        let angle = s.direction.y.atan2(s.direction.x).rem_euclid(TAU) / TAU;
-                        row * COLUMNS + ((angle * COLUMNS as f32) as usize).min(COLUMNS - 1)
-                    });
-                    observed[bin] += 1.0;
-                }
-                // Bins of small expectation are taken together.
-                let (mut chi2, mut degrees, mut rest) = (0.0, -1.0, (0.0, 0.0));
-                for (&e, &o) in expected.iter().zip(&observed) {
-                    if e < 10.0 {
-                        rest = (rest.0 + e, rest.1 + o);
-                    } else {
-                        chi2 += (o - e) * (o - e) / e;
-                        degrees += 1.0;
-                    }
-                }
-                if rest.0 >= 10.0 {
-                    chi2 += (rest.1 - rest.0) * (rest.1 - rest.0) / rest.0;
-                    degrees += 1.0;
-                }
-                // One in a million, for each of 27 tests.
-                let limit = chi2_limit(degrees, 4.75);
-                assert!(chi2 < limit, "substance {number}, view {view}: {chi2} over {limit} ({degrees} degrees)");
-            }
-        }
-    }
-
-    #[test]
-    fn light_goes_both_ways_alike() {
-        let table = AlbedoTable::new();
-        let mut rng = Rng::new(12, &[]);
-        for substance in substances() {
-            for _ in 0..200 {
-                let a = direction(rng.next_f32() * 0.98 + 0.01, TAU * rng.next_f32());
-                let b = direction(rng.next_f32() * 0.98 + 0.01, TAU * rng.next_f32());
-                let value = |o, i: Vec3| Bsdf::new(&substance, Vec3::Z, Vec3::Z, o, Some(&table)).eval(i).0.sum() / i.z;
-                let (there, back) = (value(a, b), value(b, a));
-                assert!((there - back).abs().max_element() <= 1e-3 * there.max_element(), "{there} and {back}");
-            }
-        }
-    }
-
-    #[test]
-    fn a_white_dielectric_sends_back_all_but_what_its_facets_lose() {
-        // Kelemen and Szirmay-Kalos: the diffuse layer makes up for the mean the top layer takes.
-        let table = AlbedoTable::new();
-        for roughness in [0.0005, 0.2, 0.6, 1.0] {
-            for view in [1.0, 0.5, 0.1] {
-                let substance = Substance {
-                    diffuse: Vec3::ONE,
-                    f0: Vec3::splat(0.04),
-                    f90: 1.0,
-                    roughness,
-                    transmission: Vec3::ZERO,
-                    dielectric_f0: 0.04,
-                };
-                let bsdf = Bsdf::new(&substance, Vec3::Z, Vec3::Z, direction(view, 0.0), Some(&table));
-                let n = 40_000;
-                let mut rng = Rng::new(13, &[]);
-                let total: f64 = (0..n)
-                    .filter_map(|_| bsdf.sample(rng.next_f32(), Vec2::new(rng.next_f32(), rng.next_f32())))
-                    .map(|s| f64::from(s.weight.x))
-                    .sum();
-                let albedo = total / f64::from(n);
-                assert!((albedo - 1.0).abs() < 0.01, "roughness {roughness}, view {view}: {albedo}");
-            }
-        }
-    }
-}
+mod tests;

@@ -69,6 +69,11 @@ impl Facet {
         (self.material & !SMOOTH) as usize
     }
 
+    /// The same, to be looked at as if its normals bent it.
+    pub fn unanalysed(&self) -> Self {
+        Self { material: self.material | SMOOTH, ..*self }
+    }
+
     /// Whether the normals of the mesh bend it.
     #[inline]
     pub fn is_smooth(&self) -> bool {

@@ -1,16 +1,18 @@
 //! Materials made ready for tracing: what no texture varies is worked out once.
 
 use super::bsdf::Substance;
-use crate::scene::{AlphaMode, Material};
+use crate::scene::Material;
 use glam::Vec3;
 
 /// How a material is to be looked at.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub struct Finish {
-    /// What it is made of, its textures taken as white.
+    /// What it is made of, where no texture varies it.
     pub substance: Substance,
     /// Whether textures vary what it is made of.
     pub varies: bool,
+    /// Whether there may be more to it than a diffuse layer.
+    pub layered: bool,
     /// Whether a texture bends its normals.
     pub bumpy: bool,
     /// Whether parts of it may not be there.
@@ -20,15 +22,9 @@ pub struct Finish {
 }
 
 impl Finish {
-    pub fn new(material: &Material) -> Self {
-        let partial = material.alpha_mode != AlphaMode::Opaque;
-        Self {
-            substance: substance(material, material.base_color, material.metallic, material.roughness),
-            varies: material.base_color_texture.is_some() || material.metallic_roughness_texture.is_some(),
-            bumpy: material.normal_texture.is_some(),
-            partial,
-            see_through: partial || material.transmission > 0.0,
-        }
+    /// The same with every question left open.
+    pub fn unanalysed(&self) -> Self {
+        Self { varies: true, layered: true, bumpy: true, partial: true, see_through: true, ..*self }
     }
 }
 

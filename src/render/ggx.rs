@@ -160,3 +160,48 @@ fn directional_albedo(cosine: f32, alpha: f32) -> Vec2 {
     }
     sum / N as f32
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The way back (Shirley and Chiu 1997), in f64.
+    fn square(p: Vec2) -> Vec2 {
+        let (x, y) = (f64::from(p.x), f64::from(p.y));
+        let radius = x.hypot(y);
+        let quarter = std::f64::consts::FRAC_PI_4;
+        let (a, b) = if x.abs() > y.abs() {
+            (radius * x.signum(), radius * x.signum() * (y / x).atan() / quarter)
+        } else if y != 0.0 {
+            (radius * y.signum() * (x / y).atan() / quarter, radius * y.signum())
+        } else {
+            (0.0, 0.0)
+        };
+        Vec2::new(((a + 1.0) / 2.0) as f32, ((b + 1.0) / 2.0) as f32)
+    }
+
+    #[test]
+    fn the_way_to_the_disc_and_back_is_the_identity() {
+        let n = 257;
+        for i in 0..n * n {
+            let u = Vec2::new((i % n) as f32, (i / n) as f32) / n as f32;
+            let (p, squared) = disc(u);
+            assert!((p.length_squared() - squared).abs() < 1e-6 && squared <= 1.0, "{u}: {p}");
+            assert!((square(p) - u).abs().max_element() < 1e-6, "{u}: {p}, back {}", square(p));
+        }
+        assert_eq!(disc(Vec2::splat(0.5)), (Vec2::ZERO, 0.0));
+    }
+
+    #[test]
+    fn equal_areas_of_the_square_become_equal_areas_of_the_disc() {
+        // By central differences: the determinant is the ratio of the areas, pi.
+        let h = 1.0 / 1024.0;
+        for i in 0..64 * 64 {
+            // Off the diagonals, where the map has edges.
+            let u = (Vec2::new((i % 64) as f32, (i / 64) as f32) + Vec2::new(0.5, 0.25)) / 64.0;
+            let slope = |step: Vec2| (disc(u + step).0 - disc(u - step).0) / (2.0 * h);
+            let determinant = slope(Vec2::X * h).perp_dot(slope(Vec2::Y * h));
+            assert!((determinant - PI).abs() < 5e-3, "{u}: {determinant}");
+        }
+    }
+}

@@ -23,12 +23,14 @@ mod layers;
 mod light;
 pub mod lpe;
 mod path;
+mod requirements;
 mod sampler;
 mod vertex;
 mod world;
 
 pub use aov::Aov;
 pub use layers::{Layer, Outputs};
+pub use requirements::Requirements;
 pub use world::World;
 
 use crate::error::{Error, Result, check_range};

@@ -16,8 +16,6 @@ use glam::{Vec2, Vec3};
 
 /// Vertices of a path from which on it may end by chance.
 const ROULETTE_FROM: u32 = 3;
-/// A guard against paths that never end between perfect mirrors.
-const MOST_VERTICES: u32 = 1024;
 /// The surest a path can be to go on: in a room of white walls it must end some time.
 const SUREST: f32 = 0.98;
 
@@ -87,12 +85,15 @@ pub fn gather<O: Observer>(world: &World, vertex: &Vertex, front: bool, sampler:
 
 /// Follows a path to its end. `scale` is what counts as full throughput.
 fn walk<O: Observer>(world: &World, mut leg: Leg, scale: f32, sampler: &mut Sampler, observer: &mut O) {
-    for bounce in 0..MOST_VERTICES {
+    for bounce in 0.. {
         let Some(hit) = world.closest(&leg.ray, leg.from, || sampler.ray_seed()) else {
             return add_environment(world, &leg, observer);
         };
         let vertex = Vertex::of_hit(world, &hit);
         add_emission(world, &leg, &vertex, observer);
+        if bounce == world.most_scatterings() {
+            return;
+        }
         // End by chance what can no longer add much.
         let mut throughput = leg.throughput;
         if bounce + 1 >= ROULETTE_FROM {
@@ -200,7 +201,7 @@ fn add_emission<O: Observer>(world: &World, leg: &Leg, vertex: &Vertex, observer
 }
 
 fn add_environment<O: Observer>(world: &World, leg: &Leg, observer: &mut O) {
-    let Some(environment) = &world.scene().environment else { return };
+    let Some(environment) = world.environment() else { return };
     let emission = environment::radiance(environment, leg.ray.direction);
     if emission == Vec3::ZERO {
         return;

@@ -72,11 +72,12 @@ impl Vertex {
         // Most surfaces are flat and of one substance.
         let shading = if facet.is_smooth() || finish.bumpy { self.shading_normal(world, facet) } else { self.normal };
         let table = world.albedo_table();
+        let normals = [shading, self.normal];
         if finish.varies {
             let varied = Spot::new(world, facet, self.triangle, self.barycentric).substance(finish);
-            Bsdf::new(&varied, shading, self.normal, wo, table)
+            Bsdf::new(&varied, finish.layered, normals, wo, table)
         } else {
-            Bsdf::new(&finish.substance, shading, self.normal, wo, table)
+            Bsdf::new(&finish.substance, finish.layered, normals, wo, table)
         }
     }
 

@@ -5,6 +5,7 @@ use super::facet::{self, Facet};
 use super::finish::Finish;
 use super::ggx::AlbedoTable;
 use super::light::Lights;
+use super::requirements::{self, Requirements};
 use super::vertex::Spot;
 use crate::error::{Error, Result};
 use crate::image::try_vec;
@@ -27,8 +28,10 @@ pub struct World {
     finishes: Vec<Finish>,
     lights: Lights,
     albedo_table: Option<AlbedoTable>,
+    requirements: Requirements,
     /// Whether light passes through any material: only then do rays ask what they hit.
     any_see_through: bool,
+    most_scatterings: u32,
 }
 
 /// A surface that lets light through in a straight line.
@@ -42,6 +45,9 @@ pub struct Pane {
     /// Share that passes through what is there, per channel.
     pub through: Vec3,
 }
+
+/// How often a path scatters at most: a guard against those that never end between perfect mirrors.
+const MOST_SCATTERINGS: u32 = 1024;
 
 /// No triangle, no emitter.
 pub const NONE: u32 = u32::MAX;
@@ -81,12 +87,47 @@ impl World {
         job.check()?;
         let (low, high) = accel.bounds();
         let lights = Lights::build(&scene, emitters, centre, (high - low).length() / 2.0)?;
-        let finishes: Vec<Finish> = scene.materials.iter().map(Finish::new).collect();
+        // Find out what can be left out.
         let has_top = |m: &Material| m.ior > 1.0 || m.metallic > 0.0;
         let albedo_table = scene.materials.iter().any(has_top).then(AlbedoTable::new);
-        let any_see_through = finishes.iter().any(|f| f.see_through);
+        let (requirements, finishes) = requirements::analyse(&scene, albedo_table.as_ref());
+        let any_see_through = requirements.glass || requirements.alpha;
+        let most_scatterings = MOST_SCATTERINGS;
         job.report(1.0);
-        Ok(Self { scene, accel, centre, first, facets, finishes, lights, albedo_table, any_see_through })
+        Ok(Self {
+            scene,
+            accel,
+            centre,
+            first,
+            facets,
+            finishes,
+            lights,
+            albedo_table,
+            requirements,
+            any_see_through,
+            most_scatterings,
+        })
+    }
+
+    /// What the scene requires, and what tracing leaves out.
+    pub fn requirements(&self) -> &Requirements {
+        &self.requirements
+    }
+
+    /// Ends every path where what is left is at most the share `error` of all light that surfaces scatter; returns after
+    /// how many bounces ([`Requirements::bounces`]). Estimates are then too dark by up to that share.
+    pub fn truncate(&mut self, error: f32) -> Option<u32> {
+        let bounces = self.requirements.bounces(error);
+        self.most_scatterings = bounces.unwrap_or(MOST_SCATTERINGS).min(MOST_SCATTERINGS);
+        bounces
+    }
+
+    /// Forgets what the scene does not require: every hit then asks every question. Estimates stay the same but for
+    /// rounding; this is to measure what the analysis saves.
+    pub fn generalise(&mut self) {
+        self.finishes.iter_mut().for_each(|f| *f = f.unanalysed());
+        self.facets.iter_mut().for_each(|f| *f = f.unanalysed());
+        self.any_see_through = true;
     }
 
     pub fn scene(&self) -> &Arc<Scene> {
@@ -143,6 +184,18 @@ impl World {
     #[inline]
     pub(super) fn lights(&self) -> &Lights {
         &self.lights
+    }
+
+    /// The light around the scene, if there is any.
+    #[inline]
+    pub(super) fn environment(&self) -> Option<&Environment> {
+        self.scene.environment.as_ref().filter(|_| self.requirements.environment)
+    }
+
+    /// How often a path scatters at most.
+    #[inline]
+    pub(super) fn most_scatterings(&self) -> u32 {
+        self.most_scatterings
     }
 
     #[inline]

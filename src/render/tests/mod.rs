@@ -6,7 +6,9 @@ mod film;
 mod illuminance;
 mod irradiance;
 mod layers;
+mod place;
 mod refusal;
+mod requirements;
 
 use super::*;
 use crate::job::Monitor;

@@ -1,0 +1,240 @@
+//! What a scene requires of the renderer, found out before the first ray: which ways of scattering can occur, which
+//! lights there are, and how much light a bounce can leave.
+//!
+//! Ranges are those of the factors and of the texels they multiply; only materials of meshes with triangles count. What
+//! cannot occur is not asked for while tracing: this changes no estimate. How many bounces matter is told, not applied:
+//! paths end by chance alone, unless a limit is asked for (see [`Requirements::bounces`]).
+
+use super::bsdf::{MIRROR_ROUGHNESS, Substance};
+use super::finish::{self, Finish};
+use super::ggx::{self, AlbedoTable};
+use crate::scene::{AlphaMode, Environment, Material, PunctualLight, Scene, TextureRef};
+use glam::{Vec3, Vec4};
+
+/// What can happen to light in a scene.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Requirements {
+    /// Ways of scattering that can occur.
+    pub diffuse: bool,
+    pub glossy: bool,
+    pub mirror: bool,
+    /// Clear panes.
+    pub glass: bool,
+    /// Surfaces that are partly not there.
+    pub alpha: bool,
+    pub normal_maps: bool,
+    /// Lights that can shine.
+    pub surfaces: bool,
+    pub textured_surfaces: bool,
+    pub points: bool,
+    pub spots: bool,
+    pub directional: bool,
+    pub environment: bool,
+    /// Textures that vary what surfaces scatter or emit, of how many in the scene.
+    pub textures: usize,
+    pub textures_given: usize,
+    /// The most any surface sends on of the light it receives, per channel: diffuse, glossy, and straight through.
+    pub albedo: Vec3,
+    /// The material that sends on that much.
+    pub brightest: Option<usize>,
+}
+
+impl Requirements {
+    /// How many times light can scatter and still matter: light scattered more often is at most the share `error` of all
+    /// light that surfaces scatter. None where albedos set no bound, or `error` is not positive.
+    ///
+    /// No surface sends on more than the share `a` (the largest of `albedo`), so each bounce carries at most `a` times
+    /// the flux of the one before it, in closed scenes and all the more in open ones. The sum over more than `n` bounces
+    /// is then largest beside the whole when all ratios are `a`: a^n of it. This holds for the flux in the scene, and for
+    /// images that show an average part of it; a pixel that only sees light of many bounces may miss more.
+    pub fn bounces(&self, error: f32) -> Option<u32> {
+        let a = f64::from(self.albedo.max_element());
+        if !(error > 0.0 && a < 1.0) {
+            return None;
+        }
+        if a == 0.0 || error >= 1.0 {
+            return Some(1);
+        }
+        Some((f64::from(error).ln() / a.ln()).ceil().clamp(1.0, f64::from(u32::MAX)) as u32)
+    }
+
+    /// What tracing leaves out, one sentence each.
+    pub fn left_out(&self) -> Vec<String> {
+        let mut sentences = Vec::new();
+        let mut unless = |present: bool, sentence: &str| {
+            if !present {
+                sentences.push(sentence.to_string());
+            }
+        };
+        unless(self.glossy || self.mirror, "No surface has a reflecting layer: only diffuse scattering is evaluated.");
+        unless(self.glossy || !self.mirror, "Reflecting layers are perfect mirrors: no rough reflection is evaluated.");
+        unless(self.mirror || !self.glossy, "No reflecting layer is a perfect mirror.");
+        unless(self.diffuse, "No surface scatters diffusely.");
+        unless(self.glass, "Nothing is transparent: no light passes through surfaces.");
+        unless(self.alpha, "No surface is partly absent: rays do not ask for the opacity of what they hit.");
+        unless(self.glass || self.alpha, "Shadow rays end at the first surface they meet.");
+        unless(self.normal_maps, "No texture bends normals: tangents are not computed.");
+        unless(self.surfaces, "No surface emits.");
+        unless(self.textured_surfaces || !self.surfaces, "Surfaces emit evenly: no texture is sampled for light.");
+        unless(self.points || self.spots || self.directional, "There are no punctual lights.");
+        unless(self.environment, "The environment is dark: rays that leave the scene end there.");
+        if self.textures < self.textures_given {
+            let idle = self.textures_given - self.textures;
+            sentences.push(format!("{idle} of {} textures vary nothing and are not looked up.", self.textures_given));
+        }
+        sentences
+    }
+}
+
+/// Least and largest values, per channel.
+#[derive(Clone, Copy)]
+struct Range {
+    low: Vec4,
+    high: Vec4,
+}
+
+impl Range {
+    const ONE: Self = Self { low: Vec4::ONE, high: Vec4::ONE };
+
+    fn is_constant(&self) -> bool {
+        self.low == self.high
+    }
+}
+
+/// Looks at all of a scene whose indices have been checked; gives its requirements and how to look at each material.
+pub fn analyse(scene: &Scene, table: Option<&AlbedoTable>) -> (Requirements, Vec<Finish>) {
+    let ranges: Vec<Range> = scene.textures.iter().map(|t| range_of(&t.image)).collect();
+    let range = |t: &Option<TextureRef>| t.as_ref().map_or(Range::ONE, |t| ranges[t.texture]);
+    let mut used = vec![false; scene.materials.len()];
+    scene.meshes.iter().filter(|m| !m.triangles.is_empty()).for_each(|m| used[m.material] = true);
+    let mut needed = Requirements { textures_given: scene.textures.len(), ..Requirements::default() };
+    let mut varied = vec![false; scene.textures.len()];
+    let mut finishes = Vec::with_capacity(scene.materials.len());
+    for (index, material) in scene.materials.iter().enumerate() {
+        let base = range(&material.base_color_texture);
+        let layers = range(&material.metallic_roughness_texture);
+        let emission = range(&material.emission_texture);
+        let finish = finish_of(material, base, layers, range(&material.normal_texture));
+        finishes.push(finish);
+        if !used[index] {
+            continue;
+        }
+        needed.alpha |= finish.partial;
+        needed.normal_maps |= finish.bumpy;
+        for substance in extremes(material, base, layers) {
+            needed.see(&substance);
+            let albedo = albedo_bound(&substance, table);
+            if needed.brightest.is_none() || albedo.max_element() > needed.albedo.max_element() {
+                needed.brightest = Some(index);
+            }
+            needed.albedo = needed.albedo.max(albedo);
+        }
+        if (material.emission * emission.high.truncate()).max_element() > 0.0 {
+            needed.surfaces = true;
+            needed.textured_surfaces |= !emission.is_constant();
+        }
+        for (texture, counts) in [
+            (&material.base_color_texture, finish.varies || finish.partial),
+            (&material.metallic_roughness_texture, finish.varies),
+            (&material.normal_texture, finish.bumpy),
+            (&material.emission_texture, material.emission.max_element() > 0.0),
+        ] {
+            if let Some(t) = texture {
+                varied[t.texture] |= counts && !ranges[t.texture].is_constant();
+            }
+        }
+    }
+    needed.textures = varied.iter().filter(|&&v| v).count();
+    for light in &scene.lights {
+        let (kind, strength) = match light {
+            PunctualLight::Point { intensity, .. } => (&mut needed.points, intensity),
+            PunctualLight::Spot { intensity, .. } => (&mut needed.spots, intensity),
+            PunctualLight::Directional { illuminance, .. } => (&mut needed.directional, illuminance),
+        };
+        *kind |= strength.max_element() > 0.0;
+    }
+    needed.environment = match &scene.environment {
+        None => false,
+        Some(Environment::Constant(radiance)) => radiance.max_element() > 0.0,
+        Some(Environment::Image(image)) => range_of(image).high.truncate().max_element() > 0.0,
+    };
+    (needed, finishes)
+}
+
+impl Requirements {
+    fn see(&mut self, s: &Substance) {
+        self.diffuse |= s.diffuse != Vec3::ZERO;
+        self.glass |= s.transmission != Vec3::ZERO;
+        self.mirror |= s.f90 > 0.0 && s.roughness < MIRROR_ROUGHNESS;
+        self.glossy |= s.f90 > 0.0 && s.roughness >= MIRROR_ROUGHNESS;
+    }
+}
+
+fn range_of(image: &crate::image::Image) -> Range {
+    let (mut low, mut high) = (Vec4::splat(f32::INFINITY), Vec4::splat(f32::NEG_INFINITY));
+    for pixel in image.data.chunks_exact(image.channels.max(1)) {
+        let value = match *pixel {
+            [v] => Vec4::new(v, v, v, 1.0),
+            [r, g, b] => Vec4::new(r, g, b, 1.0),
+            [r, g, b, a, ..] => Vec4::new(r, g, b, a),
+            _ => Vec4::ONE,
+        };
+        (low, high) = (low.min(value), high.max(value));
+    }
+    Range { low, high }
+}
+
+fn finish_of(material: &Material, base: Range, layers: Range, normals: Range) -> Finish {
+    let least = (material.alpha * base.low.w).min(material.alpha * base.high.w);
+    let partial = match material.alpha_mode {
+        AlphaMode::Opaque => false,
+        AlphaMode::Mask(cutoff) => least < cutoff,
+        AlphaMode::Blend => least < 1.0,
+    };
+    // A neutral map has x and y of 1/2, which mean 0, and a positive z.
+    let bends = (normals.low.truncate() * 2.0 - 1.0).abs().max((normals.high.truncate() * 2.0 - 1.0).abs());
+    let is_neutral = (bends * material.normal_scale).truncate().max_element() == 0.0 && normals.low.z > 0.5;
+    let base_varies = base.low.truncate() != base.high.truncate();
+    let layers_vary = (layers.low.y, layers.low.z) != (layers.high.y, layers.high.z);
+    let colour = material.base_color * base.high.truncate();
+    let (metallic, roughness) = (material.metallic * layers.high.z, material.roughness * layers.high.y);
+    Finish {
+        substance: finish::substance(material, colour, metallic, roughness),
+        varies: base_varies || layers_vary,
+        layered: extremes(material, base, layers).any(|s| s.f90 > 0.0 || s.transmission != Vec3::ZERO),
+        bumpy: material.normal_texture.is_some() && !is_neutral,
+        partial,
+        see_through: partial || material.transmission > 0.0,
+    }
+}
+
+/// The substances between which a material lies: all it does is linear or monotone in between.
+fn extremes(material: &Material, base: Range, layers: Range) -> impl Iterator<Item = Substance> {
+    let ends = |factor: f32, low: f32, high: f32| {
+        let (a, b) = (factor * low, factor * high);
+        [a.min(b), a.max(b)]
+    };
+    let colour = (material.base_color * base.low.truncate()).max(material.base_color * base.high.truncate());
+    let metallic = ends(material.metallic, layers.low.z, layers.high.z);
+    let roughness = ends(material.roughness, layers.low.y, layers.high.y);
+    metallic.into_iter().flat_map(move |m| roughness.map(|r| finish::substance(material, colour, m, r)))
+}
+
+/// The largest share of light a substance sends on, over all directions.
+fn albedo_bound(s: &Substance, table: Option<&AlbedoTable>) -> Vec3 {
+    const STEPS: usize = 64;
+    let mut bound = Vec3::ZERO;
+    for i in 0..=STEPS {
+        let cosine = i as f32 / STEPS as f32;
+        let (top, taken) = match table {
+            _ if s.f90 == 0.0 => (Vec3::ZERO, 0.0),
+            Some(table) if s.roughness >= MIRROR_ROUGHNESS => {
+                let share = table.row(s.roughness).directional(cosine);
+                (s.f0 * share.x + s.f90 * share.y, s.dielectric_f0 * share.x + s.f90 * share.y)
+            }
+            _ => (ggx::schlick(s.f0, s.f90, cosine), ggx::schlick(Vec3::splat(s.dielectric_f0), s.f90, cosine).x),
+        };
+        bound = bound.max(s.diffuse * (1.0 - taken) + top + s.through(cosine));
+    }
+    bound.min(Vec3::ONE)
+}

@@ -1,0 +1,114 @@
+//! What a scene requires: found rightly, left out without a trace, and bounded truthfully.
+
+use super::*;
+
+/// Renders with the analysis and without it; the largest difference of a pixel relative to the mean of the image.
+fn difference(scene: Scene, camera: &Camera, samples: u32) -> f32 {
+    let params = Params { width: 48, height: 32, samples, ..Params::default() };
+    let mut world = world(scene);
+    let analysed = render(&world, camera, &params).beauty;
+    world.generalise();
+    let general = render(&world, camera, &params).beauty;
+    let mean = general.data.iter().sum::<f32>() / general.data.len() as f32;
+    assert!(mean > 0.0);
+    analysed.data.iter().zip(&general.data).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max) / mean
+}
+
+#[test]
+fn leaving_out_what_is_not_required_changes_nothing() {
+    let rooms = || {
+        let mut room = inward_sphere(2.0, 0);
+        room.normals = room.positions.iter().map(|p| -p.normalize()).collect();
+        let lamp = quad(Vec3::new(-0.5, 1.2, -0.5), Vec3::X, Vec3::Z, 1);
+        let mut shelf = quad(Vec3::new(-0.8, -0.5, -0.8), Vec3::Z, Vec3::X, 0);
+        shelf.normals = vec![Vec3::Y; 4];
+        Scene { meshes: vec![room, lamp, shelf], materials: vec![matt(0.7, 0.0), matt(0.0, 30.0)], ..Scene::default() }
+    };
+    let matt_room = difference(rooms(), &viewer(), 16);
+    assert!(matt_room < 1e-5, "matt: {matt_room}");
+    let all = difference(everything(), &viewer(), 16);
+    assert!(all < 1e-5, "everything: {all}");
+    let office = crate::demo::exemplar_room().unwrap().scene;
+    let camera = office.cameras[0].clone();
+    let office = difference(office, &camera, 4);
+    assert!(office < 1e-5, "office: {office}");
+}
+
+#[test]
+fn what_can_occur_is_found_and_what_cannot_is_named() {
+    let all = world(everything());
+    let r = all.requirements();
+    assert!(r.diffuse && r.glossy && r.mirror && r.glass && r.alpha && r.normal_maps);
+    assert!(r.surfaces && r.textured_surfaces && r.points && r.environment);
+    assert!(!r.spots && !r.directional && r.textures == 1);
+    assert_eq!(r.left_out(), Vec::<String>::new());
+
+    let plain = Scene { meshes: vec![inward_sphere(2.0, 0)], materials: vec![matt(0.5, 1.0)], ..Scene::default() };
+    let found = |change: &dyn Fn(&mut Scene)| {
+        let mut scene = plain.clone();
+        change(&mut scene);
+        world(scene).requirements().clone()
+    };
+    let matt_only = Requirements {
+        diffuse: true,
+        surfaces: true,
+        albedo: Vec3::splat(0.5),
+        brightest: Some(0),
+        ..Requirements::default()
+    };
+    assert_eq!(found(&|_| ()), matt_only);
+    assert_eq!(matt_only.left_out().len(), 8, "{:?}", matt_only.left_out());
+    // Materials that no triangle has, and lights that do not shine.
+    assert_eq!(
+        found(&|s| s.materials.extend(everything().materials.into_iter().map(|m| Material {
+            base_color_texture: None,
+            normal_texture: None,
+            emission_texture: None,
+            ..m
+        }))),
+        matt_only
+    );
+    assert_eq!(found(&|s| s.environment = Some(Environment::Constant(Vec3::ZERO))), matt_only);
+    let unlit = PunctualLight::Point { position: Vec3::ZERO, intensity: Vec3::ZERO };
+    assert_eq!(found(&|s| s.lights.push(unlit)), matt_only);
+    // What would make it see-through, but for the rest of it.
+    assert!(!found(&|s| s.materials[0].alpha_mode = AlphaMode::Blend).alpha);
+    assert!(!found(&|s| s.materials[0].alpha_mode = AlphaMode::Mask(0.9)).alpha);
+    assert!(!found(&|s| (s.materials[0].transmission, s.materials[0].metallic) = (1.0, 1.0)).glass);
+    assert!(found(&|s| (s.materials[0].alpha_mode, s.materials[0].alpha) = (AlphaMode::Blend, 0.9)).alpha);
+    // A texture of one colour is a factor; one of two is not.
+    let textured = |second: f32| {
+        found(&|s: &mut Scene| {
+            let image = Image::from_fn(2, 1, |x, _| [if x == 0 { 0.5f32 } else { second }; 3]).unwrap();
+            s.textures.push(Texture::new("paint", image));
+            s.materials[0].base_color_texture = Some(TextureRef::new(0));
+        })
+    };
+    assert_eq!((textured(0.5).textures, textured(0.5).albedo), (0, Vec3::splat(0.25)));
+    assert_eq!((textured(0.75).textures, textured(0.75).albedo), (1, Vec3::splat(0.375)));
+}
+
+#[test]
+fn bounces_follow_from_the_albedo() {
+    let of = |albedo: f32| Requirements { albedo: Vec3::new(0.0, albedo, 0.1), ..Requirements::default() };
+    assert_eq!(of(0.5).bounces(0.1), Some(4));
+    assert_eq!(of(0.5).bounces(0.125), Some(3));
+    assert_eq!(of(0.9).bounces(0.01), Some(44));
+    assert_eq!(Requirements::default().bounces(0.01), Some(1));
+    assert_eq!((of(1.0).bounces(0.5), of(0.5).bounces(0.0), of(0.5).bounces(f32::NAN)), (None, None, None));
+}
+
+/// A room of one albedo is the worst case: what is cut off is all that the bound allows.
+#[test]
+fn truncation_takes_no_more_than_it_says() {
+    let scene = Scene { meshes: vec![inward_sphere(2.0, 0)], materials: vec![matt(0.5, 3.0)], ..Scene::default() };
+    let mut world = world(scene);
+    let camera = Camera::look_at(Vec3::new(0.3, 0.1, 0.2), Vec3::X, 1.0);
+    for (asked, bounces, expected) in [(0.1, Some(4), 6.0 * (1.0 - 0.5f64.powi(5))), (0.0, None, 6.0)] {
+        assert_eq!(world.truncate(asked), bounces);
+        let film = render(&world, &camera, &Params { width: 16, height: 16, samples: 64, ..Params::default() });
+        let mean = film.beauty.data.iter().map(|&v| f64::from(v)).sum::<f64>() / film.beauty.data.len() as f64;
+        let error = film.variance.data.iter().step_by(3).map(|&v| f64::from(v)).sum::<f64>().sqrt() / 256.0;
+        assert!((mean - expected).abs() < 4.0 * error + 1e-4 * expected, "{mean} ± {error}, expected {expected}");
+    }
+}
