@@ -32,8 +32,15 @@ const ARROWS: &[(&str, &[&str])] = &[
     ),
 ];
 
-/// Files that may contain `unsafe` beside `ffi`: SIMD kernels, chosen at run time.
-const UNSAFE: &[&str] = &["scene/accel/mod.rs", "scene/accel/node.rs", "patch/kernel.rs"];
+/// Files that may contain `unsafe` beside `ffi`: SIMD kernels, chosen at run time, and the memory they work on.
+const UNSAFE: &[&str] = &[
+    "scene/accel/lanes.rs",
+    "scene/accel/mod.rs",
+    "scene/accel/node.rs",
+    "scene/accel/packet.rs",
+    "scene/accel/pages.rs",
+    "patch/kernel.rs",
+];
 
 /// Longest file that may be committed.
 const MAX_LINES: usize = 600;

@@ -1,7 +1,7 @@
 //! Acceleration structure over triangles: nearest hits and occlusion.
 //!
 //! A binary tree is built by obvhs (parallel locally-ordered clustering, Meister and Bittner 2018, with reinsertion,
-//! 2022) and collapsed into nodes of eight children whose leaves hold up to four triangles, each four tested at once.
+//! 2022) and collapsed into nodes of eight children whose leaves hold up to eight triangles, tested at once.
 //!
 //! The triangle test is watertight (Woop, Benthin and Wald 2013), the box test conservative to match it: a ray never
 //! slips through a shared edge or vertex. The nearest hit is a function of the triangles alone: equal distances are
@@ -10,14 +10,20 @@
 //! Not modelled: motion, instancing, curves.
 
 mod build;
+mod collapse;
+mod lanes;
 mod node;
 mod packet;
+mod pages;
+mod units;
 
 use crate::error::Result;
 use crate::job::Job;
 use glam::Vec3;
+use lanes::{Baseline, Lanes};
 use node::{Child, Node, NodeRay};
 use packet::{Packet, TriangleRay};
+use std::mem::MaybeUninit;
 
 /// A half-line; distances are in units of `direction`, which need not be of unit length.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,28 +65,24 @@ pub struct Accel {
     root: Child,
     low: Vec3,
     high: Vec3,
+    /// The largest absolute coordinate per axis.
+    largest: Vec3,
     /// The most entries a traversal can have waiting.
     stack_need: usize,
     dropped: usize,
     wide_vectors: bool,
 }
 
-/// A child that waits to be visited, and where the ray enters its box.
-#[derive(Clone, Copy)]
-struct Waiting {
-    near: f32,
-    child: Child,
+/// A child that waits to be visited, below the bits of where the ray enters its box: distances from 0 up sort as their
+/// bits do.
+type Waiting = u64;
+
+fn waiting(near: f32, child: Child) -> Waiting {
+    u64::from(near.to_bits()) << 32 | u64::from(child.bits())
 }
 
 /// Waiting children kept on the thread's own stack; deeper trees take theirs from the heap.
 const SHORT_STACK: usize = 128;
-
-/// Whether a traversal goes on after a hit.
-#[derive(Clone, Copy, PartialEq)]
-enum Search {
-    Closest,
-    Any,
-}
 
 impl Accel {
     /// Builds the structure. Triangles of no area (or of corners that are not finite) cannot be hit; they are left out
@@ -91,12 +93,12 @@ impl Accel {
 
     /// The nearest hit that `accept` does not refuse.
     pub fn closest(&self, ray: &Ray, mut accept: impl FnMut(&Hit) -> bool) -> Option<Hit> {
-        self.search(ray, Search::Closest, &mut accept)
+        self.search::<false>(ray, &mut accept)
     }
 
     /// Whether anything that `accept` does not refuse lies between the origin and `t_max`.
     pub fn occluded(&self, ray: &Ray, mut accept: impl FnMut(&Hit) -> bool) -> bool {
-        self.search(ray, Search::Any, &mut accept).is_some()
+        self.search::<true>(ray, &mut accept).is_some()
     }
 
     /// Corners of the bounding box; both zero where there is nothing.
@@ -114,109 +116,130 @@ impl Accel {
         self.nodes.len() * size_of::<Node>() + self.packets.len() * size_of::<Packet>()
     }
 
-    fn search(&self, ray: &Ray, search: Search, accept: &mut impl FnMut(&Hit) -> bool) -> Option<Hit> {
+    /// The nearest hit, or, if `ANY`, the first that is found.
+    #[inline(always)]
+    fn search<const ANY: bool>(&self, ray: &Ray, accept: &mut impl FnMut(&Hit) -> bool) -> Option<Hit> {
         if self.root.is_empty() || !ray.is_usable() {
             return None;
         }
-        let nothing = Waiting { near: 0.0, child: Child::EMPTY };
         if self.stack_need <= SHORT_STACK {
-            self.search_with(ray, search, accept, &mut [nothing; SHORT_STACK])
+            self.search_with::<ANY>(ray, accept, &mut [MaybeUninit::uninit(); SHORT_STACK])
         } else {
-            self.search_with(ray, search, accept, &mut vec![nothing; self.stack_need])
+            self.search_with::<ANY>(ray, accept, &mut vec![MaybeUninit::uninit(); self.stack_need])
         }
     }
 
-    fn search_with(
+    #[inline(always)]
+    fn search_with<const ANY: bool>(
         &self,
         ray: &Ray,
-        search: Search,
         accept: &mut impl FnMut(&Hit) -> bool,
-        stack: &mut [Waiting],
+        stack: &mut [MaybeUninit<Waiting>],
     ) -> Option<Hit> {
         #[cfg(target_arch = "x86_64")]
         if self.wide_vectors {
-            // SAFETY: `wide_vectors` is set only where the processor reports AVX2 and FMA.
-            return unsafe { self.traverse_avx2(ray, search, accept, stack) };
+            // SAFETY: `wide_vectors` is set only where the processor reports these.
+            return unsafe { self.traverse_avx2::<ANY>(ray, accept, stack) };
         }
-        self.traverse(ray, search, accept, stack, Node::intersect)
+        self.traverse::<Baseline, ANY>(ray, accept, stack)
     }
 
     #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2,fma")]
-    fn traverse_avx2(
+    #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+    fn traverse_avx2<const ANY: bool>(
         &self,
         ray: &Ray,
-        search: Search,
         accept: &mut impl FnMut(&Hit) -> bool,
-        stack: &mut [Waiting],
+        stack: &mut [MaybeUninit<Waiting>],
     ) -> Option<Hit> {
-        self.traverse(ray, search, accept, stack, |node, ray, t_max| node.intersect_avx2(ray, t_max))
+        self.traverse::<lanes::Avx2, ANY>(ray, accept, stack)
     }
 
-    /// Visits boxes nearest first. `intersect` gives the mask of the children that are hit, and where.
+    /// Visits boxes nearest first.
     #[inline(always)]
-    fn traverse(
+    fn traverse<L: Lanes, const ANY: bool>(
         &self,
         ray: &Ray,
-        search: Search,
         accept: &mut impl FnMut(&Hit) -> bool,
-        stack: &mut [Waiting],
-        intersect: impl Fn(&Node, &NodeRay, f32) -> (u32, [f32; 8]),
+        stack: &mut [MaybeUninit<Waiting>],
     ) -> Option<Hit> {
-        let node_ray = NodeRay::new(ray, self.low, self.high);
-        let triangle_ray = TriangleRay::new(ray);
+        let node_ray = NodeRay::<L>::new(ray, self.largest);
+        let triangle_ray = TriangleRay::<L>::new(ray);
         let mut best: Option<Hit> = None;
         let mut t_max = ray.t_max;
-        let mut waiting = 0;
+        let stack = stack.as_mut_ptr().cast::<Waiting>();
+        let mut len = 0usize;
         let mut child = self.root;
         loop {
             if let Some(index) = child.packet() {
-                // Test four triangles; only a hit that is accepted shortens the ray.
-                let packet = &self.packets[index];
+                // Test eight triangles; only a hit that is accepted shortens the ray.
+                let packet = unsafe { self.packets.get_unchecked(index) };
                 let (mut mask, hits) = packet.intersect(&triangle_ray, t_max);
-                while mask != 0 {
-                    let lane = mask.trailing_zeros() as usize;
-                    mask &= mask - 1;
-                    let hit = hits.lane(lane, packet);
-                    if is_better(&hit, best.as_ref(), ray.t_max) && accept(&hit) {
-                        if search == Search::Any {
-                            return Some(hit);
+                if mask != 0 {
+                    let hits = hits.store();
+                    while mask != 0 {
+                        let lane = mask.trailing_zeros() as usize;
+                        mask &= mask - 1;
+                        let hit = hits.lane(lane, packet);
+                        if is_better(&hit, best.as_ref(), ray.t_max) && accept(&hit) {
+                            if ANY {
+                                return Some(hit);
+                            }
+                            t_max = hit.t;
+                            best = Some(hit);
                         }
-                        t_max = hit.t;
-                        best = Some(hit);
                     }
                 }
             } else {
                 // Test eight boxes; go on with the nearest, let the others wait, nearest on top.
-                let node = &self.nodes[child.node()];
-                let (mut mask, near) = intersect(node, &node_ray, t_max);
+                let node = unsafe { self.nodes.get_unchecked(child.node()) };
+                let (mut mask, near) = node.intersect(&node_ray, t_max);
                 if mask != 0 {
-                    let first = waiting;
+                    let first = mask.trailing_zeros() as usize & 7;
+                    mask &= mask - 1;
+                    if mask == 0 {
+                        child = node.children[first];
+                        continue;
+                    }
+                    let near = near.store();
+                    let entry = |lane: usize| waiting(near.0[lane & 7], node.children[lane & 7]);
+                    let a = entry(first);
+                    let b = entry(mask.trailing_zeros() as usize);
+                    mask &= mask - 1;
+                    let (mut next, far) = (a.min(b), a.max(b));
+                    unsafe { stack.add(len).write(far) };
+                    let bottom = len;
+                    len += 1;
                     while mask != 0 {
-                        let lane = mask.trailing_zeros() as usize;
+                        let c = entry(mask.trailing_zeros() as usize);
                         mask &= mask - 1;
-                        let entry = Waiting { near: near[lane], child: node.children[lane] };
-                        let mut place = waiting;
-                        while place > first && stack[place - 1].near < entry.near {
-                            stack[place] = stack[place - 1];
+                        let (low, high) = (next.min(c), next.max(c));
+                        next = low;
+                        let mut place = len;
+                        while place > bottom {
+                            let below = unsafe { stack.add(place - 1).read() };
+                            if below >= high {
+                                break;
+                            }
+                            unsafe { stack.add(place).write(below) };
                             place -= 1;
                         }
-                        stack[place] = entry;
-                        waiting += 1;
+                        unsafe { stack.add(place).write(high) };
+                        len += 1;
                     }
-                    waiting -= 1;
-                    child = stack[waiting].child;
+                    child = Child::from_bits(next as u32);
                     continue;
                 }
             }
             // Take the next child that could still hold a nearer hit, or an equal one of lower index.
             loop {
-                if waiting == 0 {
+                if len == 0 {
                     return best;
                 }
-                waiting -= 1;
-                if stack[waiting].near <= t_max {
-                    child = stack[waiting].child;
+                len -= 1;
+                let next = unsafe { stack.add(len).read() };
+                if f32::from_bits((next >> 32) as u32) <= t_max {
+                    child = Child::from_bits(next as u32);
                     break;
                 }
             }

@@ -1,7 +1,8 @@
 //! Nodes of eight children and the conservative test of a ray against their boxes.
 
 use super::Ray;
-use glam::{Vec3, Vec4};
+use super::lanes::{Lanes, Row};
+use glam::Vec3;
 
 /// What a node points to: another node, a packet of triangles, or nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,12 +20,29 @@ impl Child {
         Self(index as u32 | Self::PACKET)
     }
 
+    pub fn bits(self) -> u32 {
+        self.0
+    }
+
+    pub fn from_bits(bits: u32) -> Self {
+        Self(bits)
+    }
+
     pub fn is_empty(self) -> bool {
         self == Self::EMPTY
     }
 
     pub fn packet(self) -> Option<usize> {
         (self.0 & Self::PACKET != 0).then_some((self.0 & !Self::PACKET) as usize)
+    }
+
+    /// The same child where indices of nodes and packets start at the given ones.
+    pub fn shifted(self, nodes: usize, packets: usize) -> Self {
+        match self.packet() {
+            _ if self.is_empty() => self,
+            Some(packet) => Self::of_packet(packet + packets),
+            None => Self::of_node(self.node() + nodes),
+        }
     }
 
     pub fn node(self) -> usize {
@@ -34,113 +52,88 @@ impl Child {
 
 /// Eight boxes side by side: `bounds[2 * axis]` are their low ends, `bounds[2 * axis + 1]` their high ends.
 #[derive(Clone)]
-#[repr(C, align(32))]
+#[repr(C, align(64))]
 pub(super) struct Node {
-    pub bounds: [[f32; 8]; 6],
+    pub bounds: [Row; 6],
     pub children: [Child; 8],
 }
 
 impl Node {
     /// No children: every box is inside out, so no ray hits it.
     pub fn empty() -> Self {
-        let (low, high) = ([f32::INFINITY; 8], [f32::NEG_INFINITY; 8]);
+        let (low, high) = (Row([f32::INFINITY; 8]), Row([f32::NEG_INFINITY; 8]));
         Self { bounds: [low, high, low, high, low, high], children: [Child::EMPTY; 8] }
     }
 
     pub fn set(&mut self, lane: usize, low: Vec3, high: Vec3, child: Child) {
         for axis in 0..3 {
-            self.bounds[2 * axis][lane] = low[axis];
-            self.bounds[2 * axis + 1][lane] = high[axis];
+            self.bounds[2 * axis].0[lane] = low[axis];
+            self.bounds[2 * axis + 1].0[lane] = high[axis];
         }
         self.children[lane] = child;
     }
 
-    /// Mask of the boxes a ray may meet before `t_max`, and where it enters each.
+    /// Mask of the boxes a ray may meet before `t_max`, and where it enters each. The last bits differ between
+    /// processors, which the margin of [`NodeRay`] covers.
     #[inline(always)]
-    pub fn intersect(&self, ray: &NodeRay, t_max: f32) -> (u32, [f32; 8]) {
-        let mut mask = 0;
-        let mut entry = [0.0; 8];
-        for half in [0, 4] {
-            let plane = |side: usize, scale: f32, shift: f32| {
-                Vec4::from_slice(&self.bounds[side][half..half + 4]) * Vec4::splat(scale) + Vec4::splat(shift)
-            };
-            let mut near = Vec4::ZERO;
-            let mut far = Vec4::splat(t_max);
-            for axis in 0..3 {
-                near = near.max(plane(ray.near_side[axis], ray.near_scale[axis], ray.near_shift[axis]));
-                far = far.min(plane(ray.near_side[axis] ^ 1, ray.far_scale[axis], ray.far_shift[axis]));
-            }
-            mask |= near.cmple(far).bitmask() << half;
-            near.write_to_slice(&mut entry[half..half + 4]);
-        }
-        (mask, entry)
-    }
-
-    /// The same with eight lanes at a time. Rounding differs in the last bit, which the margin of [`NodeRay`] covers.
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2,fma")]
-    #[inline]
-    pub fn intersect_avx2(&self, ray: &NodeRay, t_max: f32) -> (u32, [f32; 8]) {
-        use std::arch::x86_64::*;
-        let mut near = _mm256_setzero_ps();
-        let mut far = _mm256_set1_ps(t_max);
-        for axis in 0..3 {
-            let side = ray.near_side[axis] & 7;
-            // SAFETY: both rows hold eight floats and start at a multiple of 32 bytes, as the node does.
-            let (low, high) =
-                unsafe { (_mm256_load_ps(self.bounds[side].as_ptr()), _mm256_load_ps(self.bounds[side ^ 1].as_ptr())) };
-            let enter =
-                _mm256_fmadd_ps(low, _mm256_set1_ps(ray.near_scale[axis]), _mm256_set1_ps(ray.near_shift[axis]));
-            let leave = _mm256_fmadd_ps(high, _mm256_set1_ps(ray.far_scale[axis]), _mm256_set1_ps(ray.far_shift[axis]));
-            near = _mm256_max_ps(near, enter);
-            far = _mm256_min_ps(far, leave);
-        }
-        let mask = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(near, far)) as u32;
-        let mut entry = [0.0; 8];
-        // SAFETY: the array holds eight floats.
-        unsafe { _mm256_storeu_ps(entry.as_mut_ptr(), near) };
-        (mask, entry)
+    pub fn intersect<L: Lanes>(&self, ray: &NodeRay<L>, t_max: f32) -> (u32, L) {
+        let plane = |side: usize, axis: usize, shift: L| {
+            // SAFETY: `near_side` is below 6 and so is its neighbour.
+            L::load(unsafe { self.bounds.get_unchecked(side) }).mul_add(ray.scale[axis], shift)
+        };
+        let enter = |axis: usize| plane(ray.near_side[axis], axis, ray.near_shift[axis]);
+        let leave = |axis: usize| plane(ray.near_side[axis] ^ 1, axis, ray.far_shift[axis]);
+        let near = enter(0).max(enter(1)).max(enter(2).max(L::splat(0.0)));
+        let far = leave(0).min(leave(1)).min(leave(2)).mul(L::splat(WIDEN)).min(L::splat(t_max));
+        (L::bits(near.le(far)), near)
     }
 }
+
+/// Eight rounding errors, of 2^-24 each.
+const MARGIN: f32 = 1.0 / (1 << 21) as f32;
+/// Where a ray leaves a box is put off by this factor.
+const WIDEN: f32 = 1.0 + MARGIN;
 
 /// A ray prepared for boxes: the distance to a plane is `plane * scale + shift`.
 ///
 /// The triangle test works on rounded coordinates and may report a hit a few units in the last place outside the box of
 /// its triangle; so the near planes are moved towards the ray and the far planes away, as section 3.3 of Woop et al.
 /// asks for. The margin is counted in units of the largest coordinate met, so it follows the scale of the scene.
-pub(super) struct NodeRay {
+pub(super) struct NodeRay<L> {
     /// Row of [`Node::bounds`] through which the ray enters, per axis.
     near_side: [usize; 3],
-    near_scale: [f32; 3],
-    near_shift: [f32; 3],
-    far_scale: [f32; 3],
-    far_shift: [f32; 3],
+    scale: [L; 3],
+    near_shift: [L; 3],
+    far_shift: [L; 3],
 }
 
-impl NodeRay {
+impl<L: Lanes> NodeRay<L> {
     #[inline(always)]
-    pub fn new(ray: &Ray, low: Vec3, high: Vec3) -> Self {
-        // Eight rounding errors, of 2^-24 each.
-        const MARGIN: f32 = 1.0 / (1 << 21) as f32;
-        let reach = ray.origin.abs() + low.abs().max(high.abs());
-        let along = ray.direction.abs().max_element();
-        let dominant = (0..3).find(|&k| ray.direction[k].abs() == along).unwrap_or(2);
-        let margin = (reach + Vec3::splat(reach[dominant])) * MARGIN;
-        let (mut near_side, mut near_scale, mut near_shift) = ([0; 3], [0.0; 3], [0.0; 3]);
-        let (mut far_scale, mut far_shift) = ([0.0; 3], [0.0; 3]);
-        for axis in 0..3 {
-            // A component too small to divide by is replaced by one that moves the ray less than the margin.
-            let least = along * 1e-18;
-            let d = ray.direction[axis];
-            let d = if d.abs() < least { least.copysign(d) } else { d };
-            let scale = 1.0 / d;
-            let (o, m) = (ray.origin[axis], margin[axis].copysign(d));
-            near_side[axis] = 2 * axis + usize::from(d.is_sign_negative());
-            near_scale[axis] = scale;
-            near_shift[axis] = -(o + m) * scale;
-            far_scale[axis] = scale * (1.0 + MARGIN);
-            far_shift[axis] = -(o - m) * far_scale[axis];
+    pub fn new(ray: &Ray, largest: Vec3) -> Self {
+        let reach = ray.origin.abs() + largest;
+        let size = ray.direction.abs();
+        let along = size.max_element();
+        let dominant = if size.x == along {
+            reach.x
+        } else if size.y == along {
+            reach.y
+        } else {
+            reach.z
+        };
+        let margin = (reach + Vec3::splat(dominant)) * MARGIN;
+        // A component too small to divide by is replaced by one that moves the ray less than the margin.
+        let d = size.max(Vec3::splat(along * 1e-18));
+        let sign = ray.direction.signum();
+        let d = d * sign;
+        let scale = Vec3::ONE / d;
+        let margin = margin * sign;
+        let (near, far) = (-(ray.origin + margin) * scale, -(ray.origin - margin) * scale);
+        let side = |axis: usize, d: f32| 2 * axis + (d.to_bits() >> 31) as usize;
+        Self {
+            near_side: [side(0, d.x), side(1, d.y), side(2, d.z)],
+            scale: [L::splat(scale.x), L::splat(scale.y), L::splat(scale.z)],
+            near_shift: [L::splat(near.x), L::splat(near.y), L::splat(near.z)],
+            far_shift: [L::splat(far.x), L::splat(far.y), L::splat(far.z)],
         }
-        Self { near_side, near_scale, near_shift, far_scale, far_shift }
     }
 }

@@ -1,105 +1,146 @@
-//! Four triangles side by side, and the watertight test of a ray against them (Woop, Benthin and Wald 2013).
+//! Eight triangles side by side, and the watertight test of a ray against them (Woop, Benthin and Wald 2013).
 
+use super::lanes::{Lanes, Row};
 use super::{Hit, Ray};
-use glam::{Vec3, Vec4};
+use glam::Vec3;
 
 /// Hits nearer than this share of a triangle's depth along the ray are lost in rounding: sixteen errors of 2^-24.
 const NEAREST: f32 = 1.0 / (1 << 20) as f32;
 
+/// Triangles a packet holds at most.
+pub(super) const WIDTH: usize = 8;
+
 #[derive(Clone)]
+#[repr(C, align(64))]
 pub(super) struct Packet {
-    /// `corners[corner][axis]` holds that coordinate of four triangles.
-    corners: [[Vec4; 3]; 3],
-    ids: [u32; 4],
-    /// Mask of the lanes in use.
-    lanes: u32,
+    /// `corners[corner][axis]` holds that coordinate of eight triangles.
+    corners: [[Row; 3]; 3],
+    ids: [u32; WIDTH],
 }
 
 impl Packet {
-    /// One to four triangles; free lanes repeat the first and are masked out.
+    /// One to eight triangles. Free lanes are filled with NaN, which nothing hits.
     pub fn new(triangles: &[[Vec3; 3]], ids: &[u32]) -> Self {
-        let lanes = (1 << ids.len()) - 1;
-        let of_lane = |lane: usize| ids[if lane < ids.len() { lane } else { 0 }];
-        let ids = std::array::from_fn(of_lane);
-        let corners = std::array::from_fn(|corner| {
-            std::array::from_fn(|axis| Vec4::from_array(ids.map(|id: u32| triangles[id as usize][corner][axis])))
-        });
-        Self { corners, ids, lanes }
+        let mut packet = Self { corners: [[Row([f32::NAN; 8]); 3]; 3], ids: [u32::MAX; WIDTH] };
+        for (lane, &id) in ids.iter().enumerate() {
+            packet.ids[lane] = id;
+            for (rows, corner) in packet.corners.iter_mut().zip(triangles[id as usize]) {
+                for axis in 0..3 {
+                    rows[axis].0[lane] = corner[axis];
+                }
+            }
+        }
+        packet
     }
 
     /// Mask of the triangles hit at distances in `(0, t_max]`, distances within rounding of 0 left out.
     #[inline(always)]
-    pub fn intersect(&self, ray: &TriangleRay, t_max: f32) -> (u32, PacketHits) {
+    pub fn intersect<L: Lanes>(&self, ray: &TriangleRay<L>, t_max: f32) -> (u32, PacketHits<L>) {
         // Move the origin of space to the ray's, and shear it so that the ray runs along the third axis.
-        let relative = |corner: usize, axis: usize| self.corners[corner][axis] - Vec4::splat(ray.origin[axis]);
-        let mut x = [Vec4::ZERO; 3];
-        let mut y = [Vec4::ZERO; 3];
-        let mut z = [Vec4::ZERO; 3];
-        for corner in 0..3 {
-            z[corner] = relative(corner, ray.axes[2]);
-            x[corner] = relative(corner, ray.axes[0]) - z[corner] * ray.shear.x;
-            y[corner] = relative(corner, ray.axes[1]) - z[corner] * ray.shear.y;
-        }
+        let relative = |corner: usize, k: usize| {
+            // SAFETY: `axes` is a permutation of 0, 1, 2.
+            let row = unsafe { self.corners[corner].get_unchecked(ray.axes[k]) };
+            L::load(row).sub(ray.origin[k])
+        };
+        let z = [relative(0, 2), relative(1, 2), relative(2, 2)];
+        let sheared = |corner: usize, k: usize| relative(corner, k).sub(z[corner].mul(ray.shear[k]));
+        let x = [sheared(0, 0), sheared(1, 0), sheared(2, 0)];
+        let y = [sheared(0, 1), sheared(1, 1), sheared(2, 1)];
         // Scaled barycentric coordinates: on which side of each edge the ray passes.
-        let mut edge = [x[2] * y[1] - y[2] * x[1], x[0] * y[2] - y[0] * x[2], x[1] * y[0] - y[1] * x[0]];
+        let side = |a: usize, b: usize| x[a].mul(y[b]).sub(y[a].mul(x[b]));
+        let mut edge = [side(2, 1), side(0, 2), side(1, 0)];
+        let zero = L::splat(0.0);
+        let inside = |edge: &[L; 3]| {
+            let least = edge[0].min(edge[1]).min(edge[2]);
+            let most = edge[0].max(edge[1]).max(edge[2]);
+            L::or(zero.le(least), most.le(zero))
+        };
+        let mut hit = inside(&edge);
+        if L::bits(hit) == 0 {
+            return (0, PacketHits { t: zero, u: zero, v: zero });
+        }
         // Only those that came out as zero are settled in f64: the neighbour across the edge has the same value with the
-        // other sign, whichever way it was found.
-        let zero = edge.map(|e| e.cmpeq(Vec4::ZERO));
-        if (zero[0] | zero[1] | zero[2]).any() {
-            let exact = exact_edges(&x, &y);
-            edge = std::array::from_fn(|i| Vec4::select(zero[i], exact[i], edge[i]));
+        // other sign, whichever way it was found. (A zero between edges of unlike signs is outside either way.)
+        if L::bits(L::or(L::or(edge[0].eq(zero), edge[1].eq(zero)), edge[2].eq(zero))) != 0 {
+            edge = settle_zeros(&x, &y, &edge);
+            hit = inside(&edge);
         }
-        let all_front = edge[0].cmpge(Vec4::ZERO) & edge[1].cmpge(Vec4::ZERO) & edge[2].cmpge(Vec4::ZERO);
-        let all_back = edge[0].cmple(Vec4::ZERO) & edge[1].cmple(Vec4::ZERO) & edge[2].cmple(Vec4::ZERO);
-        let determinant = edge[0] + edge[1] + edge[2];
-        let inside = (all_front | all_back) & determinant.cmpne(Vec4::ZERO);
-        if !inside.any() {
-            return (0, PacketHits { t: Vec4::ZERO, u: Vec4::ZERO, v: Vec4::ZERO });
-        }
-        // Distances, from the depths of the corners.
-        let reciprocal = Vec4::ONE / determinant;
-        let (b0, u, v) = (edge[0] * reciprocal, edge[1] * reciprocal, edge[2] * reciprocal);
-        let t = (b0 * z[0] + u * z[1] + v * z[2]) * ray.shear.z;
+        let determinant = edge[0].add(edge[1]).add(edge[2]);
+        // Distances, from the depths of the corners. A determinant of zero gives a NaN or an infinity, which fail below.
+        let reciprocal = L::splat(1.0).div(determinant);
+        let (b0, u, v) = (edge[0].mul(reciprocal), edge[1].mul(reciprocal), edge[2].mul(reciprocal));
+        let t = b0.mul(z[0]).add(u.mul(z[1])).add(v.mul(z[2])).mul(ray.shear[2]);
         // A hit nearer than its own rounding error is the surface the ray starts on.
         let depth = z[0].abs().max(z[1].abs()).max(z[2].abs());
-        let mask = inside & t.cmpgt(depth * (ray.shear.z.abs() * NEAREST)) & t.cmple(Vec4::splat(t_max));
-        (mask.bitmask() & self.lanes, PacketHits { t, u, v })
+        let far_enough = depth.mul(ray.nearest).lt(t);
+        let hit = L::and(L::and(hit, far_enough), t.le(L::splat(t_max)));
+        (L::bits(hit), PacketHits { t, u, v })
+    }
+
+    #[inline(always)]
+    pub fn id(&self, lane: usize) -> u32 {
+        self.ids[lane & (WIDTH - 1)]
     }
 }
 
-/// The edge functions without cancellation: products of two `f32` are exact in `f64`, so the sign is.
+/// The edge functions with their zeros computed without cancellation: products of two `f32` are exact in `f64`, so the
+/// sign is.
 #[cold]
-fn exact_edges(x: &[Vec4; 3], y: &[Vec4; 3]) -> [Vec4; 3] {
-    let edge = |a: usize, b: usize| {
-        Vec4::from_array(std::array::from_fn(|lane| {
-            let product = |p: Vec4, q: Vec4| f64::from(p[lane]) * f64::from(q[lane]);
-            (product(x[a], y[b]) - product(y[a], x[b])) as f32
-        }))
+#[inline(never)]
+fn settle_zeros<L: Lanes>(x: &[L; 3], y: &[L; 3], edge: &[L; 3]) -> [L; 3] {
+    let (x, y) = (x.map(L::store), y.map(L::store));
+    let exact = |found: L, a: usize, b: usize| {
+        let mut row = found.store();
+        for lane in 0..WIDTH {
+            if row.0[lane] == 0.0 {
+                let product = |p: &Row, q: &Row| f64::from(p.0[lane]) * f64::from(q.0[lane]);
+                row.0[lane] = (product(&x[a], &y[b]) - product(&y[a], &x[b])) as f32;
+            }
+        }
+        L::load(&row)
     };
-    [edge(2, 1), edge(0, 2), edge(1, 0)]
+    [exact(edge[0], 2, 1), exact(edge[1], 0, 2), exact(edge[2], 1, 0)]
 }
 
-pub(super) struct PacketHits {
-    t: Vec4,
-    u: Vec4,
-    v: Vec4,
+pub(super) struct PacketHits<L> {
+    t: L,
+    u: L,
+    v: L,
 }
 
-impl PacketHits {
+/// The same as rows that can be indexed.
+pub(super) struct HitRows {
+    t: Row,
+    u: Row,
+    v: Row,
+}
+
+impl<L: Lanes> PacketHits<L> {
+    #[inline(always)]
+    pub fn store(self) -> HitRows {
+        HitRows { t: self.t.store(), u: self.u.store(), v: self.v.store() }
+    }
+}
+
+impl HitRows {
     #[inline(always)]
     pub fn lane(&self, lane: usize, packet: &Packet) -> Hit {
-        Hit { t: self.t[lane], triangle: packet.ids[lane], u: self.u[lane], v: self.v[lane] }
+        let lane = lane & (WIDTH - 1);
+        Hit { t: self.t.0[lane], triangle: packet.id(lane), u: self.u.0[lane], v: self.v.0[lane] }
     }
 }
 
 /// A ray prepared for triangles: axes permuted so that the longest component of its direction is the third.
-pub(super) struct TriangleRay {
-    origin: Vec3,
+pub(super) struct TriangleRay<L> {
+    /// Permuted, as is `shear`.
+    origin: [L; 3],
     axes: [usize; 3],
-    shear: Vec3,
+    shear: [L; 3],
+    /// What a triangle's depth is multiplied by to give the least distance.
+    nearest: L,
 }
 
-impl TriangleRay {
+impl<L: Lanes> TriangleRay<L> {
     #[inline(always)]
     pub fn new(ray: &Ray) -> Self {
         let d = ray.direction;
@@ -111,7 +152,14 @@ impl TriangleRay {
         } else {
             2
         };
-        let (x, y) = ((z + 1) % 3, (z + 2) % 3);
-        Self { origin: ray.origin, axes: [x, y, z], shear: Vec3::new(d[x] / d[z], d[y] / d[z], 1.0 / d[z]) }
+        let axes = [[1, 2, 0], [2, 0, 1], [0, 1, 2]][z];
+        let [x, y, z] = axes;
+        let inverse = 1.0 / d[z];
+        Self {
+            origin: [L::splat(ray.origin[x]), L::splat(ray.origin[y]), L::splat(ray.origin[z])],
+            axes,
+            shear: [L::splat(d[x] / d[z]), L::splat(d[y] / d[z]), L::splat(inverse)],
+            nearest: L::splat(inverse.abs() * NEAREST),
+        }
     }
 }

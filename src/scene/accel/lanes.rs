@@ -1,0 +1,252 @@
+//! Eight floats side by side: one register of AVX2, or two of the baseline's four lanes.
+//!
+//! Every operation but [`Lanes::mul_add`] rounds as IEEE 754 says, so that whatever is computed without it comes out the
+//! same on every processor.
+
+use glam::{BVec4A, Vec4};
+
+/// Eight values held in rows: 32 bytes that start at a multiple of 32.
+#[derive(Clone, Copy)]
+#[repr(C, align(32))]
+pub(super) struct Row(pub [f32; 8]);
+
+pub(super) trait Lanes: Copy {
+    /// What comparisons give.
+    type Mask: Copy;
+
+    fn splat(value: f32) -> Self;
+    fn load(row: &Row) -> Self;
+    fn store(self) -> Row;
+    fn add(self, other: Self) -> Self;
+    fn sub(self, other: Self) -> Self;
+    fn mul(self, other: Self) -> Self;
+    fn div(self, other: Self) -> Self;
+    /// Of two values of which one is NaN: `other`.
+    fn min(self, other: Self) -> Self;
+    fn max(self, other: Self) -> Self;
+    fn abs(self) -> Self;
+    /// `self * factor + term`, rounded once or twice: for bounds that have a margin only.
+    fn mul_add(self, factor: Self, term: Self) -> Self;
+    fn le(self, other: Self) -> Self::Mask;
+    fn lt(self, other: Self) -> Self::Mask;
+    fn eq(self, other: Self) -> Self::Mask;
+    fn and(a: Self::Mask, b: Self::Mask) -> Self::Mask;
+    fn or(a: Self::Mask, b: Self::Mask) -> Self::Mask;
+    /// Bit `i` is set where lane `i` is.
+    fn bits(mask: Self::Mask) -> u32;
+}
+
+/// Two registers of four: SSE2 on x86-64, NEON on aarch64, scalars elsewhere.
+#[derive(Clone, Copy)]
+pub(super) struct Baseline([Vec4; 2]);
+
+impl Baseline {
+    #[inline(always)]
+    fn zip(self, other: Self, f: impl Fn(Vec4, Vec4) -> Vec4) -> Self {
+        Self([f(self.0[0], other.0[0]), f(self.0[1], other.0[1])])
+    }
+
+    #[inline(always)]
+    fn compare(self, other: Self, f: impl Fn(Vec4, Vec4) -> BVec4A) -> [BVec4A; 2] {
+        [f(self.0[0], other.0[0]), f(self.0[1], other.0[1])]
+    }
+}
+
+impl Lanes for Baseline {
+    type Mask = [BVec4A; 2];
+
+    #[inline(always)]
+    fn splat(value: f32) -> Self {
+        Self([Vec4::splat(value); 2])
+    }
+
+    #[inline(always)]
+    fn load(row: &Row) -> Self {
+        Self([Vec4::from_slice(&row.0[..4]), Vec4::from_slice(&row.0[4..])])
+    }
+
+    #[inline(always)]
+    fn store(self) -> Row {
+        let mut row = Row([0.0; 8]);
+        self.0[0].write_to_slice(&mut row.0[..4]);
+        self.0[1].write_to_slice(&mut row.0[4..]);
+        row
+    }
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        self.zip(other, |a, b| a + b)
+    }
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        self.zip(other, |a, b| a - b)
+    }
+
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        self.zip(other, |a, b| a * b)
+    }
+
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        self.zip(other, |a, b| a / b)
+    }
+
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        self.zip(other, |a, b| Vec4::select(a.cmplt(b), a, b))
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        self.zip(other, |a, b| Vec4::select(a.cmpgt(b), a, b))
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self(self.0.map(Vec4::abs))
+    }
+
+    #[inline(always)]
+    fn mul_add(self, factor: Self, term: Self) -> Self {
+        self.mul(factor).add(term)
+    }
+
+    #[inline(always)]
+    fn le(self, other: Self) -> Self::Mask {
+        self.compare(other, Vec4::cmple)
+    }
+
+    #[inline(always)]
+    fn lt(self, other: Self) -> Self::Mask {
+        self.compare(other, Vec4::cmplt)
+    }
+
+    #[inline(always)]
+    fn eq(self, other: Self) -> Self::Mask {
+        self.compare(other, Vec4::cmpeq)
+    }
+
+    #[inline(always)]
+    fn and(a: Self::Mask, b: Self::Mask) -> Self::Mask {
+        [a[0] & b[0], a[1] & b[1]]
+    }
+
+    #[inline(always)]
+    fn or(a: Self::Mask, b: Self::Mask) -> Self::Mask {
+        [a[0] | b[0], a[1] | b[1]]
+    }
+
+    #[inline(always)]
+    fn bits(mask: Self::Mask) -> u32 {
+        mask[0].bitmask() | mask[1].bitmask() << 4
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+pub(super) use avx2::Avx2;
+
+#[cfg(target_arch = "x86_64")]
+mod avx2 {
+    use super::{Lanes, Row};
+    use std::arch::x86_64::*;
+
+    /// One register of eight. Only code that runs where the processor has AVX2 and FMA may use it: `Accel` checks that
+    /// once, when it is built, and everything below is inlined into functions compiled for these.
+    #[derive(Clone, Copy)]
+    pub struct Avx2(__m256);
+
+    impl Lanes for Avx2 {
+        type Mask = __m256;
+
+        // SAFETY, throughout: the processor has the instructions, as said above; rows are aligned to 32 bytes.
+
+        #[inline(always)]
+        fn splat(value: f32) -> Self {
+            Self(unsafe { _mm256_set1_ps(value) })
+        }
+
+        #[inline(always)]
+        fn load(row: &Row) -> Self {
+            Self(unsafe { _mm256_load_ps(row.0.as_ptr()) })
+        }
+
+        #[inline(always)]
+        fn store(self) -> Row {
+            let mut row = Row([0.0; 8]);
+            unsafe { _mm256_store_ps(row.0.as_mut_ptr(), self.0) };
+            row
+        }
+
+        #[inline(always)]
+        fn add(self, other: Self) -> Self {
+            Self(unsafe { _mm256_add_ps(self.0, other.0) })
+        }
+
+        #[inline(always)]
+        fn sub(self, other: Self) -> Self {
+            Self(unsafe { _mm256_sub_ps(self.0, other.0) })
+        }
+
+        #[inline(always)]
+        fn mul(self, other: Self) -> Self {
+            Self(unsafe { _mm256_mul_ps(self.0, other.0) })
+        }
+
+        #[inline(always)]
+        fn div(self, other: Self) -> Self {
+            Self(unsafe { _mm256_div_ps(self.0, other.0) })
+        }
+
+        #[inline(always)]
+        fn min(self, other: Self) -> Self {
+            Self(unsafe { _mm256_min_ps(self.0, other.0) })
+        }
+
+        #[inline(always)]
+        fn max(self, other: Self) -> Self {
+            Self(unsafe { _mm256_max_ps(self.0, other.0) })
+        }
+
+        #[inline(always)]
+        fn abs(self) -> Self {
+            Self(unsafe { _mm256_andnot_ps(_mm256_set1_ps(-0.0), self.0) })
+        }
+
+        #[inline(always)]
+        fn mul_add(self, factor: Self, term: Self) -> Self {
+            Self(unsafe { _mm256_fmadd_ps(self.0, factor.0, term.0) })
+        }
+
+        #[inline(always)]
+        fn le(self, other: Self) -> __m256 {
+            unsafe { _mm256_cmp_ps::<_CMP_LE_OQ>(self.0, other.0) }
+        }
+
+        #[inline(always)]
+        fn lt(self, other: Self) -> __m256 {
+            unsafe { _mm256_cmp_ps::<_CMP_LT_OQ>(self.0, other.0) }
+        }
+
+        #[inline(always)]
+        fn eq(self, other: Self) -> __m256 {
+            unsafe { _mm256_cmp_ps::<_CMP_EQ_OQ>(self.0, other.0) }
+        }
+
+        #[inline(always)]
+        fn and(a: __m256, b: __m256) -> __m256 {
+            unsafe { _mm256_and_ps(a, b) }
+        }
+
+        #[inline(always)]
+        fn or(a: __m256, b: __m256) -> __m256 {
+            unsafe { _mm256_or_ps(a, b) }
+        }
+
+        #[inline(always)]
+        fn bits(mask: __m256) -> u32 {
+            unsafe { _mm256_movemask_ps(mask) as u32 }
+        }
+    }
+}
