@@ -42,7 +42,7 @@ const SIXTEEN: [(&str, &str); 16] = [
     ("p", "CD{3,}L"),
 ];
 const ROUNDS: usize = 7;
-const SAMPLES: u32 = 8;
+const SAMPLES: u32 = 16;
 
 fn main() {
     // On its only thread the thread's own clock sees all the work, and nothing else.
@@ -73,7 +73,7 @@ fn main() {
 fn params(setting: &Setting, expressions: &[(&str, &str)], aovs: &[Aov]) -> Params {
     let mut outputs = Outputs { aovs: aovs.to_vec(), ..Outputs::default() };
     expressions.iter().for_each(|(name, text)| outputs.add(name, text).expect("an expression"));
-    let [width, height] = setting.size.map(|side| side / 4);
+    let [width, height] = setting.size.map(|side| side / 5);
     Params { width, height, samples: SAMPLES, outputs, ..Params::default() }
 }
 
@@ -108,7 +108,7 @@ fn measure(setting: &Setting, table: &mut Table) -> (f64, f64) {
         if same { "same" } else { "DIFFERENT" }.to_string(),
     ]);
     let mut fine = params(setting, &FIVE, &Aov::ALL);
-    (fine.width, fine.height, fine.samples) = (2 * fine.width, 2 * fine.height, 64);
+    (fine.width, fine.height, fine.samples) = (2 * fine.width, 2 * fine.height, 32);
     save(setting, &render(&fine));
     (cost(1), sum)
 }

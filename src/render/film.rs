@@ -12,7 +12,7 @@ use super::{Film, LightSource, Params, PathSink};
 use crate::error::Result;
 use crate::exec;
 use crate::image::{Image, try_vec};
-use crate::job::Job;
+use crate::job::{Job, Monitor};
 use crate::rng;
 use crate::scene::Camera;
 use glam::{DVec3, Vec3};
@@ -111,7 +111,8 @@ impl<'a> Passes<'a> {
         }
         let error = if deviation == 0.0 { 0.0 } else { deviation / total };
         let place = |x: usize, y: usize| (y / TILE * self.tiles_across + x / TILE, y % TILE * TILE + x % TILE, n);
-        let layers = self.layers.as_ref().map_or(Ok(Vec::new()), |l| l.images(&beauty, place))?;
+        let always = Monitor::default();
+        let layers = self.layers.as_ref().map_or(Ok(Vec::new()), |l| l.images(&beauty, place, always.job()))?;
         Ok(Film { beauty, variance, samples: self.samples, error, layers })
     }
 }

@@ -5,14 +5,15 @@
 
 use super::LightSource;
 use super::aov::{Aov, Surfaces};
-use super::bsdf::{Bsdf, Lobes, Scattered};
-use super::light::LightSample;
+use super::bsdf::{Bsdf, Kind, Lobes};
 use super::lpe::{EmitterAs, Expression, Table, Trail};
-use super::path::Observer;
+use super::path::{Found, Observer};
 use super::vertex::Vertex;
 use super::world::{Pane, World};
 use crate::error::{Error, Result};
+use crate::exec;
 use crate::image::{Image, colour, try_vec};
+use crate::job::Job;
 use crate::scene::Camera;
 use glam::{DVec3, Vec3};
 use std::sync::{Mutex, PoisonError};
@@ -130,40 +131,44 @@ impl<'a> Layers<'a> {
         }
     }
 
-    /// The images so far. `pixels` yields, row by row, the tile of each pixel, its place there, and its samples.
-    pub fn images(&self, beauty: &Image, place: impl Fn(usize, usize) -> (usize, usize, f64)) -> Result<Vec<Layer>> {
+    /// The images so far. `place` tells the tile of a pixel, its place there, and its samples.
+    pub fn images(
+        &self,
+        beauty: &Image,
+        place: impl Fn(usize, usize) -> (usize, usize, f64) + Sync,
+        job: Job,
+    ) -> Result<Vec<Layer>> {
+        let guards: Vec<_> = self.tiles.iter().map(|t| t.lock().unwrap_or_else(PoisonError::into_inner)).collect();
+        let tiles: Vec<&[f32]> = guards.iter().map(|guard| guard.as_slice()).collect();
+        let make = |channels: usize, value: &(dyn Fn(&[f32], f64, [usize; 2], &mut [f32]) + Sync)| {
+            let mut image = Image::new(beauty.width, beauty.height, channels)?;
+            exec::for_rows(&mut image.data, beauty.width * channels, job, |y, row| {
+                for (x, out) in row.chunks_exact_mut(channels).enumerate() {
+                    let (tile, pixel, samples) = place(x, y);
+                    value(&tiles[tile][pixel * self.width..][..self.width], samples.max(1.0), [x, y], out);
+                }
+            })?;
+            Ok::<_, Error>(image)
+        };
         let mut layers = Vec::new();
-        let rgb: &[&str] = &["R", "G", "B"];
-        for (name, expression) in &self.outputs.expressions {
-            let image = Image::new(beauty.width, beauty.height, 3)?;
-            layers.push(Layer { name: name.clone(), channels: rgb, expression: Some(expression.text().into()), image });
+        for (number, (name, expression)) in self.outputs.expressions.iter().enumerate() {
+            let image = make(3, &|sums, samples, _, out| {
+                let sum = &sums[3 * number..][..3];
+                out.iter_mut().zip(sum).for_each(|(o, s)| *o = (f64::from(*s) / samples) as f32);
+            })?;
+            let expression = Some(expression.text().to_string());
+            layers.push(Layer { name: name.clone(), channels: &["R", "G", "B"], expression, image });
         }
-        for aov in &self.outputs.aovs {
-            let image = Image::new(beauty.width, beauty.height, aov.channels().len())?;
+        // Behind the sums of light stands the count of samples that met a surface, then what is kept for each.
+        let hits = 3 * self.outputs.expressions.len();
+        let mut first = hits + 1;
+        for &aov in &self.outputs.aovs {
+            let image = make(aov.channels().len(), &|sums, samples, [x, y], out| match aov {
+                Aov::Luminance => out[0] = colour::luminance(beauty.rgb(x, y)),
+                _ => aov.value(&sums[first..][..aov.kept()], f64::from(sums[hits]), samples, out),
+            })?;
             layers.push(Layer { name: aov.name().into(), channels: aov.channels(), expression: None, image });
-        }
-        let expressions = self.outputs.expressions.len();
-        for y in 0..beauty.height {
-            for x in 0..beauty.width {
-                let (tile, pixel, samples) = place(x, y);
-                let tile = self.tiles[tile].lock().unwrap_or_else(PoisonError::into_inner);
-                let (colours, surfaces) = tile[pixel * self.width..][..self.width].split_at(3 * expressions);
-                let samples = samples.max(1.0);
-                for (layer, sum) in layers.iter_mut().zip(colours.chunks_exact(3)) {
-                    let out = layer.image.pixel_mut(x, y);
-                    out.iter_mut().zip(sum).for_each(|(o, s)| *o = (f64::from(*s) / samples) as f32);
-                }
-                let Some((&hits, mut rest)) = surfaces.split_first() else { continue };
-                for (layer, aov) in layers[expressions..].iter_mut().zip(&self.outputs.aovs) {
-                    let kept;
-                    (kept, rest) = rest.split_at(aov.kept());
-                    let out = layer.image.pixel_mut(x, y);
-                    aov.value(kept, f64::from(hits), samples, out);
-                    if *aov == Aov::Luminance {
-                        out[0] = colour::luminance(beauty.rgb(x, y));
-                    }
-                }
-            }
+            first += aov.kept();
         }
         Ok(layers)
     }
@@ -201,8 +206,11 @@ impl Recorder<'_> {
 }
 
 impl Observer for Recorder<'_> {
-    fn add(&mut self, _: LightSource, importance: Vec3, emission: Vec3) {
-        self.beauty += importance * emission;
+    #[inline]
+    fn add(&mut self, source: LightSource, importance: Vec3, emission: Vec3, found: Found) {
+        let contribution = importance * emission;
+        self.beauty += contribution;
+        self.trail.add(self.world, contribution, source, found, &mut self.path);
     }
 
     fn meet(&mut self, vertex: &Vertex, bsdf: &Bsdf, distance: f32) {
@@ -214,23 +222,13 @@ impl Observer for Recorder<'_> {
         self.surfaces.meet(self.world, vertex, bsdf, distance, depth);
     }
 
-    fn survive(&mut self, chance: f32) {
-        self.trail.survive(chance);
+    #[inline]
+    fn scatter(&mut self, mesh: u32, kind: Kind, lobes: Lobes) {
+        self.trail.scatter(mesh, kind, lobes);
     }
 
-    fn scatter(&mut self, mesh: u32, scattered: &Scattered) {
-        self.trail.scatter(mesh, scattered);
-    }
-
+    #[inline]
     fn panes(&mut self) -> Option<&mut Vec<Pane>> {
-        Some(&mut self.trail.panes)
-    }
-
-    fn connect(&mut self, mesh: u32, lobes: Lobes, factor: f32, light: &LightSample) {
-        self.trail.connect(self.world, mesh, lobes, light.emission * factor, light.source, &mut self.path);
-    }
-
-    fn arrive(&mut self, source: LightSource, weight: f32, emission: Vec3) {
-        self.trail.arrive(source, emission * weight, &mut self.path);
+        self.trail.wants_panes()
     }
 }

@@ -4,7 +4,7 @@
 //! power heuristic (Veach 1997, 9.2.4). Clear panes are no vertices of a path in that sense: shadow rays pass through them
 //! with their share, and paths keep the density of the vertex before. Nothing is clamped: the estimate is unbiased.
 
-use super::bsdf::{Bsdf, Kind, Lobes, Scattered};
+use super::bsdf::{Bsdf, Kind, Lobes};
 use super::environment;
 use super::light::{LightEnd, LightSample};
 use super::sampler::Sampler;
@@ -22,35 +22,36 @@ const SUREST: f32 = 0.98;
 /// Takes what a path brings. All but [`Observer::add`] is for those that tell light apart by the way it came; the others
 /// leave these steps empty, and pay nothing for them.
 pub trait Observer {
-    /// A contribution, as [`PathSink::add`] has it.
-    fn add(&mut self, source: LightSource, importance: Vec3, emission: Vec3);
+    /// A contribution, as [`PathSink::add`] has it, and how its light was found.
+    fn add(&mut self, source: LightSource, importance: Vec3, emission: Vec3, found: Found);
 
     /// The first surface a path from the eye meets, `distance` away.
     fn meet(&mut self, _vertex: &Vertex, _bsdf: &Bsdf, _distance: f32) {}
 
-    /// The path could have ended here; it had this chance to go on.
-    fn survive(&mut self, _chance: f32) {}
-
     /// The path goes on from a vertex of a mesh.
-    fn scatter(&mut self, _mesh: u32, _scattered: &Scattered) {}
+    fn scatter(&mut self, _mesh: u32, _kind: Kind, _lobes: Lobes) {}
 
     /// Where to list the panes between a vertex and a light chosen for it, if anyone wants to know.
     fn panes(&mut self) -> Option<&mut Vec<Pane>> {
         None
     }
+}
 
-    /// A light chosen for a vertex of a mesh contributes; `factor` is all but lobes, panes and emission.
-    fn connect(&mut self, _mesh: u32, _lobes: Lobes, _factor: f32, _light: &LightSample) {}
-
-    /// A light met by scattering contributes with this weight.
-    fn arrive(&mut self, _source: LightSource, _weight: f32, _emission: Vec3) {}
+/// How a light was found.
+#[derive(Clone, Copy)]
+pub enum Found {
+    /// By scattering into it.
+    Met,
+    /// It was chosen for a vertex of a mesh, whose lobes send this much of it on.
+    Chosen { mesh: u32, lobes: Lobes },
 }
 
 /// An observer that only adds up.
 pub struct Contributions<'a, S>(pub &'a mut S);
 
 impl<S: PathSink> Observer for Contributions<'_, S> {
-    fn add(&mut self, source: LightSource, importance: Vec3, emission: Vec3) {
+    #[inline]
+    fn add(&mut self, source: LightSource, importance: Vec3, emission: Vec3, _: Found) {
         self.0.add(source, importance, emission);
     }
 }
@@ -102,7 +103,6 @@ fn walk<O: Observer>(world: &World, mut leg: Leg, scale: f32, sampler: &mut Samp
                 return;
             }
             throughput /= survival;
-            observer.survive(survival);
         }
         let bsdf = vertex.bsdf(world, -leg.ray.direction);
         if bounce == 0 && leg.from == NONE {
@@ -135,7 +135,7 @@ fn scatter<O: Observer>(
     if throughput == Vec3::ZERO || !throughput.is_finite() {
         return None;
     }
-    observer.scatter(vertex.mesh, &scattered);
+    observer.scatter(vertex.mesh, scattered.kind, scattered.lobes);
     let rival = match scattered.kind {
         Kind::Spread(density) => Some((vertex.position, density)),
         Kind::Mirrored => None,
@@ -172,8 +172,8 @@ fn add_light<O: Observer>(
     };
     let transmittance = world.transmittance(&ray, [vertex.id, end], observer.panes());
     if transmittance != Vec3::ZERO {
-        observer.add(light.source, throughput * value * transmittance * (weight / light.density), light.emission);
-        observer.connect(vertex.mesh, lobes, weight / light.density, light);
+        let importance = throughput * value * transmittance * (weight / light.density);
+        observer.add(light.source, importance, light.emission, Found::Chosen { mesh: vertex.mesh, lobes });
     }
 }
 
@@ -196,8 +196,7 @@ fn add_emission<O: Observer>(world: &World, leg: &Leg, vertex: &Vertex, observer
         power_heuristic(density, rival)
     });
     let source = LightSource::Surface { mesh: vertex.mesh, triangle: vertex.triangle, uv };
-    observer.add(source, leg.throughput * weight, emission);
-    observer.arrive(source, weight, emission);
+    observer.add(source, leg.throughput * weight, emission, Found::Met);
 }
 
 fn add_environment<O: Observer>(world: &World, leg: &Leg, observer: &mut O) {
@@ -209,8 +208,7 @@ fn add_environment<O: Observer>(world: &World, leg: &Leg, observer: &mut O) {
     let weight = leg
         .rival
         .map_or(1.0, |(_, density)| power_heuristic(density, world.lights().environment_density(leg.ray.direction)));
-    observer.add(LightSource::Environment, leg.throughput * weight, emission);
-    observer.arrive(LightSource::Environment, weight, emission);
+    observer.add(LightSource::Environment, leg.throughput * weight, emission, Found::Met);
 }
 
 /// The weight of a strategy of density `own` against another of density `other`.

@@ -31,6 +31,8 @@ pub struct Table {
     ends: Vec<u16>,
     /// Expressions that accept; the first list is empty.
     lists: Vec<Vec<u16>>,
+    /// States that no scattering leaves.
+    settled: Vec<bool>,
 }
 
 impl Table {
@@ -56,7 +58,7 @@ impl Table {
                 )));
             }
         }
-        Ok(Self { start: first, next, ends, lists, alphabet }.minimised())
+        Ok(Self { start: first, next, ends, lists, alphabet, settled: Vec::new() }.minimised())
     }
 
     /// The state of a path that has left the camera.
@@ -64,14 +66,34 @@ impl Table {
         self.start
     }
 
-    pub fn scatter(&self, state: u16, mesh: u32, scatter: Scatter) -> u16 {
-        self.next[usize::from(state) * self.alphabet.scatters.len() + self.alphabet.scatter(mesh, scatter)]
+    /// Number of a way of scattering off a mesh.
+    #[inline]
+    pub fn event(&self, mesh: u32, scatter: Scatter) -> usize {
+        self.alphabet.scatter(mesh, scatter)
     }
 
-    /// The expressions that accept a path that ends at a light.
-    pub fn light(&self, state: u16, source: LightSource) -> &[u16] {
-        let light = self.alphabet.light(source);
+    /// The state after such an event.
+    #[inline]
+    pub fn next(&self, state: u16, event: usize) -> u16 {
+        self.next[usize::from(state) * self.alphabet.scatters.len() + event]
+    }
+
+    /// Number of a light.
+    #[inline]
+    pub fn light(&self, source: LightSource) -> usize {
+        self.alphabet.light(source)
+    }
+
+    /// The expressions that accept a path that ends at such a light.
+    #[inline]
+    pub fn accepting(&self, state: u16, light: usize) -> &[u16] {
         &self.lists[usize::from(self.ends[usize::from(state) * self.alphabet.lights.len() + light])]
+    }
+
+    /// Whether no scattering can lead on from a state.
+    #[inline]
+    pub fn is_settled(&self, state: u16) -> bool {
+        self.settled[usize::from(state)]
     }
 
     #[cfg(test)]
@@ -113,7 +135,9 @@ impl Table {
             }
             ends[to * lights..][..lights].copy_from_slice(&self.ends[state * lights..][..lights]);
         }
-        Self { start: group[usize::from(self.start)] as u16, next, ends, ..self }
+        let stays = |state: usize| next[state * events..][..events].iter().all(|&n| usize::from(n) == state);
+        let settled = (0..groups).map(stays).collect();
+        Self { start: group[usize::from(self.start)] as u16, next, ends, settled, ..self }
     }
 }
 

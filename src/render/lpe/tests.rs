@@ -35,15 +35,17 @@ fn accepted(table: &Table, path: &str) -> Vec<u16> {
         let (letter, object) = event.split_once('@').unwrap_or((event, ""));
         let mesh = |default: u32| MESHES.iter().position(|m| m.0 == object).map_or(default, |i| i as u32);
         let lamp = |mesh| LightSource::Surface { mesh, triangle: 0, uv: Vec2::ZERO };
+        let go = |mesh, scatter| table.next(state, table.event(mesh, scatter));
+        let end = |source| table.accepting(state, table.light(source)).to_vec();
         state = match letter {
-            "D" => table.scatter(state, mesh(0), Scatter::Diffuse),
-            "G" => table.scatter(state, mesh(0), Scatter::Glossy),
-            "S" => table.scatter(state, mesh(1), Scatter::Mirror),
-            "T" => table.scatter(state, mesh(2), Scatter::Pane),
-            "L" => return table.light(state, lamp(mesh(3))).to_vec(),
-            "P" => return table.light(state, LightSource::Punctual(0)).to_vec(),
-            "Q" => return table.light(state, LightSource::Punctual(1)).to_vec(),
-            "B" => return table.light(state, LightSource::Environment).to_vec(),
+            "D" => go(mesh(0), Scatter::Diffuse),
+            "G" => go(mesh(0), Scatter::Glossy),
+            "S" => go(mesh(1), Scatter::Mirror),
+            "T" => go(mesh(2), Scatter::Pane),
+            "L" => return end(lamp(mesh(3))),
+            "P" => return end(LightSource::Punctual(0)),
+            "Q" => return end(LightSource::Punctual(1)),
+            "B" => return end(LightSource::Environment),
             other => panic!("{other}"),
         };
     }
@@ -195,9 +197,10 @@ fn built_in_kinds_of_light_add_up_to_the_whole() {
 #[test]
 fn what_leads_nowhere_is_dropped_at_once() {
     let table = table(&["LDE", "LSE"], EmitterAs::Both);
-    let diffuse = table.scatter(table.start(), 0, Scatter::Diffuse);
+    let event = table.event(0, Scatter::Diffuse);
+    let diffuse = table.next(table.start(), event);
     assert_ne!(diffuse, DEAD);
-    assert_eq!(table.scatter(diffuse, 0, Scatter::Diffuse), DEAD);
+    assert_eq!(table.next(diffuse, event), DEAD);
 }
 
 #[test]
