@@ -22,6 +22,7 @@ const GROUPS: &[&str] = &[
     "scene_parts",
     "scene_lights",
     "query",
+    "requirements",
     "scene_read",
     "geometry",
     "rectify",
@@ -334,6 +335,7 @@ layouts! {
     luxfer_emission_params: struct_size width height block scale working_side metadata_weight seed;
     luxfer_emission_report: struct_size luminaires error regularity;
     luxfer_luminaire: struct_size corners centre size orientation area flux_share colour reserved;
+    luxfer_requirements: struct_size scattering lights textures bounces brightest_material albedo;
     luxfer_render_params: struct_size width height samples target_error time_budget_ms seed;
     luxfer_render_report: struct_size samples error;
     luxfer_illuminance_params: struct_size columns rows samples seed;

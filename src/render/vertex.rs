@@ -146,9 +146,14 @@ impl<'w> Spot<'w> {
     }
 
     fn look_up(&self, texture: &TextureRef) -> Vec4 {
-        let [p, q, r] = self.corner_uvs(texture).unwrap_or_default();
-        let v = self.barycentric;
-        self.world.scene().textures[texture.texture].sample(p * (1.0 - v.x - v.y) + q * v.x + r * v.y)
+        let uvs = &self.mesh.uvs[texture.uv_set];
+        let mut uv = Vec2::ZERO;
+        if !uvs.is_empty() {
+            let [p, q, r] = self.mesh.triangles[self.triangle as usize].map(|i| uvs[i as usize]);
+            let v = self.barycentric;
+            uv = texture.transform.transform_point2(p * (1.0 - v.x - v.y) + q * v.x + r * v.y);
+        }
+        self.world.scene().textures[texture.texture].sample(uv)
     }
 
     fn corner_uvs(&self, texture: &TextureRef) -> Option<[Vec2; 3]> {

@@ -26,12 +26,8 @@ impl Texture {
 
     /// Bilinear sample; a missing alpha is 1, a grey image gives r = g = b.
     pub fn sample(&self, uv: Vec2) -> Vec4 {
-        let size = [self.image.width, self.image.height];
-        let position = [uv.x * size[0] as f32 - 0.5, uv.y * size[1] as f32 - 0.5];
-        let base = position.map(f32::floor);
-        let index = |axis: usize, step: f32| wrap_index(base[axis] + step, size[axis], self.wrap[axis]);
-        let (tx, ty) = (position[0] - base[0], position[1] - base[1]);
-        let (x0, x1, y0, y1) = (index(0, 0.0), index(0, 1.0), index(1, 0.0), index(1, 1.0));
+        let ([x0, x1], tx) = neighbours(uv.x, self.image.width, self.wrap[0]);
+        let ([y0, y1], ty) = neighbours(uv.y, self.image.height, self.wrap[1]);
         let top = self.texel(x0, y0).lerp(self.texel(x1, y0), tx);
         let bottom = self.texel(x0, y1).lerp(self.texel(x1, y1), tx);
         top.lerp(bottom, ty)
@@ -53,6 +49,20 @@ impl Texture {
             _ => Vec4::ONE,
         }
     }
+}
+
+/// The two texels whose centres a coordinate lies between, and where between them.
+fn neighbours(u: f32, size: usize, wrap: Wrap) -> ([usize; 2], f32) {
+    let position = (u * size as f32 - 0.5).max(-16_777_216.0).min(16_777_216.0);
+    // A conversion cuts towards 0: one less for what is negative. (`floor` is a function call on older processors.)
+    let cut = position as i32;
+    let base = cut - i32::from(cut as f32 > position);
+    let t = position - base as f32;
+    // Inside the image, which is most of the time, nothing wraps.
+    if base >= 0 && base as usize + 1 < size {
+        return ([base as usize, base as usize + 1], t);
+    }
+    ([wrap_index(base as f32, size, wrap), wrap_index(base as f32 + 1.0, size, wrap)], t)
 }
 
 fn wrap_index(i: f32, size: usize, wrap: Wrap) -> usize {
@@ -84,5 +94,14 @@ mod tests {
         assert_eq!([-0.1, 0.1, 1.1, 2.9].map(|u| at(Wrap::Clamp, u)), [0.0, 0.0, 3.0, 3.0]);
         assert_eq!([-0.1, 0.1, 1.1, 2.9].map(|u| at(Wrap::Mirror, u)), [0.0, 0.0, 3.0, 3.0]);
         assert!(at(Wrap::Repeat, f32::NAN).is_finite() && at(Wrap::Clamp, f32::INFINITY).is_finite());
+        // Between the centres of texels, across the seam and far outside.
+        let between = |wrap, u| {
+            Texture { name: String::new(), image: image.clone(), wrap: [wrap; 2] }.sample(Vec2::new(u, 0.5)).x
+        };
+        assert_eq!([0.125, 0.25, 0.875, 0.9375, 1.0].map(|u| between(Wrap::Repeat, u)), [0.0, 0.5, 3.0, 2.25, 1.5]);
+        assert_eq!([-0.25, -1.0, 2.25].map(|u| between(Wrap::Repeat, u)), [2.5, 1.5, 0.5]);
+        assert_eq!([-0.25, 1.0, 2.25].map(|u| between(Wrap::Clamp, u)), [0.0, 3.0, 3.0]);
+        assert_eq!([-0.25, 1.25].map(|u| between(Wrap::Mirror, u)), [0.5, 2.5]);
+        assert!(between(Wrap::Mirror, f32::NEG_INFINITY).is_finite());
     }
 }
