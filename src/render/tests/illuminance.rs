@@ -42,7 +42,8 @@ fn grids_in_the_air_on_a_floor_and_maps_of_it_agree_with_form_factors() {
                 let truth = expected(at.0, at.1, 1.5 - f64::from(height));
                 let (value, error) = (output.lux.pixel(x, y)[0], output.error.pixel(x, y)[0]);
                 let off = (f64::from(value) - truth).abs();
-                assert!(off < 4.5 * f64::from(error) + 1e-5 * truth, "{value} ± {error}, expected {truth}");
+                // Student's t of 15 degrees of freedom, from the batches, exceeds 6 with a chance of 1 in 40,000.
+                assert!(off < 6.0 * f64::from(error) + 1e-5 * truth, "{value} ± {error}, expected {truth}");
                 assert!(error > 0.0 && f64::from(error) < 0.05 * truth);
                 sum += truth / 15.0;
             }
@@ -56,7 +57,7 @@ fn grids_in_the_air_on_a_floor_and_maps_of_it_agree_with_form_factors() {
         for x in 0..3 {
             let truth = expected(-0.8 + 0.4 * y as f64, (x as f64 - 1.0) * 2.0 / 3.0, 1.5);
             let (value, error) = (f64::from(map.lux.pixel(x, y)[0]), f64::from(map.error.pixel(x, y)[0]));
-            assert!((value - truth).abs() < 4.5 * error + 1e-5 * truth, "{value} ± {error}, expected {truth}");
+            assert!((value - truth).abs() < 6.0 * error + 1e-5 * truth, "{value} ± {error}, expected {truth}");
         }
     }
     // Nothing arrives from below, nor on the other side.
