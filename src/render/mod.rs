@@ -2,15 +2,18 @@
 //! Veach 1997), for images and for the irradiance of surfaces ("Lighting Style Transfer", section 7; StyLit, section 3.2).
 //!
 //! [`World`] makes a scene ready; [`run`] renders a camera's view; [`irradiance`] samples the light that arrives at a point.
-//! All estimates are unbiased and nothing is clamped; the same seed gives the same bits on any number of threads.
+//! Nothing is clamped; estimates are unbiased unless [`run`] is given a target; the same seed gives the same bits on any
+//! number of threads.
 //!
 //! `sampler` numbers → `path` a walk → (`light` one light of all, by way of `emissive` and `environment`; `vertex` what was
-//! hit; `bsdf` how it scatters, by way of `ggx`) → a [`PathSink`] → `film` passes, means and variances.
+//! hit; `bsdf` how it scatters, by way of `ggx`) → a [`PathSink`] → `film` means, errors,
+//! and which pixels get more paths.
 //!
 //! Not modelled: volumes, refraction in solids, frosted glass, polarisation, wavelengths, depth of field, motion blur.
 
 mod aov;
 mod bsdf;
+pub mod denoise;
 mod distribution;
 mod emissive;
 mod environment;
@@ -35,12 +38,11 @@ pub use world::World;
 
 use crate::error::{Error, Result, check_range};
 use crate::image::{Image, MAX_SIDE};
-use crate::job::Job;
+use crate::job::{Job, Monitor};
 use crate::scene::Camera;
-use film::Passes;
+use film::{Canvas, Clock, Plan};
 use glam::{Vec2, Vec3};
 use sampler::Sampler;
-use std::time::{Duration, Instant};
 use vertex::Vertex;
 
 /// Where light of a path comes from.
@@ -93,10 +95,15 @@ pub struct Params {
     /// Size of the image in pixels, each in `[1, 65536]`.
     pub width: usize,
     pub height: usize,
-    /// Paths per pixel, in `[1, 1 << 20]`.
+    /// Paths per pixel, in `[1, 1 << 20]`: of each pixel if there is no target, on the average over the image if there is.
     pub samples: u32,
-    /// Stop when the mean relative standard error falls below this; 0 = never.
+    /// Stop when the image's [`Film::error`] falls to this, and give paths to where they lower it most; 0 = never.
     pub target_error: f32,
+    /// Stop when every part of the image (tiles of 8 × 8 pixels, root mean square) is known to this: half the width of the
+    /// interval that holds the luminance of a pixel with a probability of 95 %, relative to that luminance. 0.1 means
+    /// "within 10 % of its value, 19 times out of 20". Pixels darker than a tenth of the image's mean luminance need not
+    /// be known better than that tenth. 0 = never. With both targets both are reached.
+    pub pixel_error: f32,
     /// Stop after this many milliseconds; 0 = never.
     pub time_budget_ms: u32,
     pub seed: u64,
@@ -111,6 +118,7 @@ impl Default for Params {
             height: 720,
             samples: 64,
             target_error: 0.0,
+            pixel_error: 0.0,
             time_budget_ms: 0,
             seed: 1,
             outputs: Outputs::default(),
@@ -118,58 +126,66 @@ impl Default for Params {
     }
 }
 
-/// What has been rendered so far; a cancelled render leaves it usable.
+/// What has been rendered so far; a render that is cancelled or out of time leaves it usable.
 #[derive(Clone, Debug)]
 pub struct Film {
-    /// Mean radiance per pixel, linear RGB in cd/m².
+    /// Mean radiance per pixel, linear RGB in cd/m². A pixel without paths shows one nearby.
     pub beauty: Image,
-    /// Variance of that mean, per channel.
+    /// Variance of that mean, per channel, each pixel from its own paths; infinite below two paths. See
+    /// [`Film::interval`] for what it says about the truth.
     pub variance: Image,
-    /// Paths per pixel so far.
+    /// Number of paths of each pixel; one channel.
+    pub paths: Image,
+    /// Paths per pixel so far, on the average.
     pub samples: u32,
-    /// Mean over the pixels of the standard error relative to the image's mean.
+    /// Root mean square over pixels and channels of the standard error, relative to the mean of the image.
     pub error: f64,
+    /// Paths that were left out because their radiance was no finite number.
+    pub discarded: u64,
     /// The images beside it: those of expressions in their order, then those of surfaces in theirs.
     pub layers: Vec<Layer>,
 }
 
-/// Renders a camera's view; `publish` is called with the film after every pass. Each pass doubles the samples, so that
-/// the first image comes soon. To be called on the library's own pool.
+/// Renders a camera's view; `publish` is called with the film after the first pass, and again whenever enough has been
+/// added to be worth its time. To be called on the library's own pool.
+///
+/// Without a target the estimate of each pixel is unbiased. With one, where the next paths go depends on those before, and
+/// pixels whose bright paths are rare come out too dark by a small part of their standard error (see `film::plan`).
 ///
 /// # Errors
 /// Parameters out of range, a camera that cannot see, no memory; cancelled, when the film last published stays good.
 pub fn run(world: &World, camera: &Camera, params: &Params, job: Job, publish: &mut dyn FnMut(&Film)) -> Result<Film> {
     check(camera, params)?;
-    let start = Instant::now();
-    let budget = Duration::from_millis(u64::from(params.time_budget_ms));
-    let mut passes = Passes::new(world, camera, params)?;
-    loop {
-        // As many samples as there are, so that every pass is half of the image.
-        let done = passes.samples();
-        let mut count = done.max(FIRST_PASS).min(params.samples - done);
-        if params.time_budget_ms > 0 && done > 0 {
-            count = count.min(affordable(start.elapsed(), budget, done));
+    // The images are made also after a cancel.
+    let always = Monitor::default();
+    let mut clock = Clock::start(params.time_budget_ms);
+    let mut canvas = Canvas::new(world, camera, params)?;
+    let mut plan = Plan::new(params);
+    let mut show = |canvas: &Canvas, clock: &mut Clock| {
+        clock.show(|| {
+            let film = canvas.film(always.job())?;
+            publish(&film);
+            Ok(film)
+        })
+    };
+    let (mut shown, mut done) = (None, 0.0);
+    while let Some(pass) = plan.next(&canvas, &clock, job.part(done, done))? {
+        let next = canvas.progress(&pass, params.samples).clamp(done, 1.0);
+        let cut = clock.sample(|deadline| canvas.extend(&pass, deadline, job.part(done, next)));
+        done = next.max(clock.spent());
+        job.report(done);
+        shown = None;
+        if clock.is_worth_showing() || cut.is_err() {
+            shown = Some(show(&canvas, &mut clock)?);
         }
-        let part = |samples: u32| f64::from(samples) / f64::from(params.samples);
-        passes.add(count, job.part(part(done), part(done + count)))?;
-        let film = passes.film()?;
-        publish(&film);
-        let out_of_time = params.time_budget_ms > 0 && affordable(start.elapsed(), budget, film.samples) == 0;
-        let good_enough = params.target_error > 0.0 && film.error <= f64::from(params.target_error);
-        if film.samples >= params.samples || out_of_time || good_enough {
-            job.report(1.0);
-            return Ok(film);
-        }
+        cut?;
     }
-}
-
-/// Samples per pixel of the first pass.
-const FIRST_PASS: u32 = 4;
-
-/// How many more samples the remaining time allows, at the speed so far.
-fn affordable(elapsed: Duration, budget: Duration, samples: u32) -> u32 {
-    let left = budget.saturating_sub(elapsed).as_secs_f64();
-    (left / elapsed.as_secs_f64().max(1e-9) * f64::from(samples)) as u32
+    let film = match shown {
+        Some(film) => film,
+        None => show(&canvas, &mut clock)?,
+    };
+    job.report(1.0);
+    Ok(film)
 }
 
 fn check(camera: &Camera, params: &Params) -> Result<()> {
@@ -177,6 +193,7 @@ fn check(camera: &Camera, params: &Params) -> Result<()> {
     check_range("height", params.height, 1, MAX_SIDE)?;
     check_range("samples", params.samples, 1, 1 << 20)?;
     check_range("target_error", params.target_error, 0.0, f32::MAX)?;
+    check_range("pixel_error", params.pixel_error, 0.0, f32::MAX)?;
     let vectors = [camera.position, camera.forward, camera.up];
     let sees = camera.forward.cross(camera.up).length_squared() > 0.0;
     if vectors.iter().any(|v| !v.is_finite()) || !sees || !(camera.fov_y > 0.0 && camera.fov_y < std::f32::consts::PI) {

@@ -1,5 +1,6 @@
 //! Closed forms, invariants and statistics of the whole renderer: what the tests share.
 
+mod denoise;
 mod energy;
 mod extremes;
 mod film;

@@ -1,0 +1,292 @@
+//! Preview: an image of few paths, smoothed where its features say that nothing changes.
+//!
+//! The à-trous filter of Dammertz et al. (2010, "Edge-avoiding à-trous wavelet transform for fast global illumination
+//! filtering") with the variance-guided range weights of Schied et al. (2017, "Spatiotemporal variance-guided filtering"):
+//! colour is divided by the surface's albedo, so that textures stay out of it; neighbours at growing distances are mixed in
+//! as far as they lie in the same plane, face the same way, and differ by no more than both their errors explain; and the
+//! variance of the mixture is carried along from level to level. As the variance goes to 0 the image comes out as it is.
+//!
+//! The filter is biased: what its features do not show, such as the soft edge of a shadow, it blurs by about an error's
+//! height. [`Output::bias`] measures that; final images are rendered without it. Not modelled: motion, reflections (they
+//! are smoothed like light on the mirror), textures seen in mirrors.
+
+use super::film::pooled;
+use crate::error::{Error, Result, check_range};
+use crate::exec;
+use crate::image::{Image, colour, try_vec};
+use crate::job::Job;
+use glam::Vec3;
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct Params {
+    /// How much neighbours may differ, in what their errors explain; in `[0, 10]`. 0 leaves the image as it is.
+    pub strength: f32,
+}
+
+impl Default for Params {
+    fn default() -> Self {
+        Self { strength: 1.0 }
+    }
+}
+
+/// Images of the same size.
+pub struct Input<'a> {
+    /// Linear RGB, finite.
+    pub beauty: &'a Image,
+    /// Variance of the beauty per channel, at least 0; infinite where unknown.
+    pub variance: &'a Image,
+    /// Colour of the surface seen, RGB; black where nothing is.
+    pub albedo: &'a Image,
+    /// Unit normal of the surface seen; 0 where nothing is.
+    pub normal: &'a Image,
+    /// Position of the surface seen.
+    pub position: &'a Image,
+}
+
+#[derive(Clone, Debug)]
+pub struct Output {
+    pub image: Image,
+    /// How far the filter has moved the image beyond what noise explains: root mean square over squares of 8 × 8 pixels,
+    /// relative to the mean of the image. Blur finer than a square does not show in it.
+    pub bias: f64,
+}
+
+/// Distance of the farthest neighbours mixed in at each level, in pixels.
+const STEPS: [usize; 6] = [1, 2, 4, 8, 16, 32];
+/// Weights of the neighbours at one step along an axis, relative to the pixel itself.
+const TAP: f32 = 0.5;
+/// Squared difference in luminance, over the sum of both variances, that lowers a weight by e; at strength 1.
+const RANGE: f32 = 12.0;
+/// Squared sine of the angle between neighbours and the plane through the pixel that does the same.
+const PLANE: f32 = 0.01;
+/// One minus the cosine between normals that does the same.
+const FACING: f32 = 0.02;
+/// Squared difference in albedo that does the same.
+const COLOUR: f32 = 0.02;
+/// Albedos count as at least this much, so that lamps and black things keep their light.
+const LEAST_ALBEDO: f32 = 0.02;
+/// Side of the squares in which the bias is measured.
+const SQUARE: usize = 8;
+
+/// Planes of a row of the light being filtered: red, green, blue, variance of the luminance.
+const LIGHT: usize = 4;
+/// Planes of a row of features: albedo, normal, position.
+const GUIDE: usize = 9;
+
+/// Smooths an image.
+///
+/// # Errors
+/// Images that differ in size or have too few channels, values that are no numbers, a strength out of range; no memory;
+/// cancelled.
+pub fn run(input: &Input, params: &Params, job: Job) -> Result<Output> {
+    check(input, params)?;
+    let (width, height) = (input.beauty.width, input.beauty.height);
+    let guide = guides(input, job.part(0.0, 0.05))?;
+    let mut light = light(input, job.part(0.05, 0.15))?;
+    if params.strength > 0.0 {
+        let mut next = try_vec(light.len(), 0.0f32)?;
+        for (level, &step) in STEPS.iter().enumerate() {
+            let part = job.part(0.15 + 0.12 * level as f64, 0.15 + 0.12 * (level + 1) as f64);
+            let level = Level { light: &light, guide: &guide, width, height, step, range: RANGE * params.strength };
+            exec::for_rows(&mut next, LIGHT * width, part, |y, row| level.row(y, row))?;
+            std::mem::swap(&mut light, &mut next);
+        }
+    }
+    // Put the albedo back.
+    let mut image = Image::new(width, height, 3)?;
+    exec::for_rows(&mut image.data, 3 * width, job.part(0.87, 0.95), |y, row| {
+        let (light, guide) = (&light[y * LIGHT * width..], &guide[y * GUIDE * width..]);
+        for (x, out) in row.chunks_exact_mut(3).enumerate() {
+            (0..3).for_each(|c| out[c] = light[c * width + x] * guide[c * width + x].max(LEAST_ALBEDO));
+        }
+    })?;
+    let bias = bias(input, &image, job.part(0.95, 1.0))?;
+    Ok(Output { image, bias })
+}
+
+/// Features plane by plane within each row.
+fn guides(input: &Input, job: Job) -> Result<Vec<f32>> {
+    let (width, height) = (input.beauty.width, input.beauty.height);
+    let mut out = try_vec(GUIDE * width * height, 0.0f32)?;
+    exec::for_rows(&mut out, GUIDE * width, job, |y, row| {
+        for (first, image) in [(0, input.albedo), (3, input.normal), (6, input.position)] {
+            for x in 0..width {
+                for (c, &v) in image.pixel(x, y)[..3].iter().enumerate() {
+                    row[(first + c) * width + x] = if v.is_finite() { v } else { 0.0 };
+                }
+            }
+        }
+    })?;
+    Ok(out)
+}
+
+/// The beauty without albedo, and the variance of its luminance.
+fn light(input: &Input, job: Job) -> Result<Vec<f32>> {
+    let (width, height) = (input.beauty.width, input.beauty.height);
+    let variance = pooled(input.variance, job)?;
+    let mut out = try_vec(LIGHT * width * height, 0.0f32)?;
+    exec::for_rows(&mut out, LIGHT * width, job, |y, row| {
+        for x in 0..width {
+            let albedo = Vec3::from_slice(input.albedo.pixel(x, y));
+            let albedo = if albedo.is_finite() { albedo.max(Vec3::splat(LEAST_ALBEDO)) } else { Vec3::ONE };
+            let colour = input.beauty.rgb(x, y) / albedo;
+            // The channels of a path rise and fall together, so their errors add up.
+            let error = variance.rgb(x, y).map(f32::sqrt) / albedo;
+            let luminance = colour::luminance(colour);
+            let error = if error.is_finite() { colour::luminance(error) } else { luminance };
+            let values = [colour.x, colour.y, colour.z, error * error];
+            values.into_iter().enumerate().for_each(|(c, v)| row[c * width + x] = v);
+        }
+    })?;
+    Ok(out)
+}
+
+/// One level of the filter.
+struct Level<'a> {
+    light: &'a [f32],
+    guide: &'a [f32],
+    width: usize,
+    height: usize,
+    step: usize,
+    range: f32,
+}
+
+impl Level<'_> {
+    /// Filters a row. Loops run along the row over one neighbour at a time, so that they can be vectorised.
+    fn row(&self, y: usize, out: &mut [f32]) {
+        let Self { light, guide, width, height, step, .. } = *self;
+        out.copy_from_slice(&light[y * LIGHT * width..(y + 1) * LIGHT * width]);
+        let mut weights = vec![1.0; width];
+        for (dy, dx) in NEIGHBOURS {
+            let Some(other) = y.checked_add_signed(dy * step as isize).filter(|&o| o < height) else { continue };
+            // The columns whose neighbour lies in the image.
+            let shift = dx * step as isize;
+            let (from, to) = (shift.min(0).unsigned_abs(), width.saturating_sub(shift.max(0) as usize));
+            if from >= to {
+                continue;
+            }
+            let there = (from as isize + shift) as usize;
+            let tap = if dx != 0 && dy != 0 { TAP * TAP } else { TAP };
+            let span = to - from;
+            let own = |data: &'_ [f32], planes: usize, plane: usize| {
+                let start = (y * planes + plane) * width + from;
+                start..(start + span).min(data.len())
+            };
+            let far = |planes: usize, plane: usize| {
+                let start = (other * planes + plane) * width + there;
+                start..start + span
+            };
+            let here: [&[f32]; LIGHT] = std::array::from_fn(|p| &light[own(light, LIGHT, p)]);
+            let that: [&[f32]; LIGHT] = std::array::from_fn(|p| &light[far(LIGHT, p)]);
+            let guide_here: [&[f32]; GUIDE] = std::array::from_fn(|p| &guide[own(guide, GUIDE, p)]);
+            let guide_that: [&[f32]; GUIDE] = std::array::from_fn(|p| &guide[far(GUIDE, p)]);
+            let (red, rest) = out.split_at_mut(width);
+            let (green, rest) = rest.split_at_mut(width);
+            let (blue, variance) = rest.split_at_mut(width);
+            let sums = [&mut red[from..to], &mut green[from..to], &mut blue[from..to], &mut variance[from..to]];
+            self.mix(tap, here, that, guide_here, guide_that, sums, &mut weights[from..to]);
+        }
+        for (x, weight) in weights.iter().enumerate() {
+            let scale = 1.0 / weight;
+            (0..3).for_each(|c| out[c * width + x] *= scale);
+            out[3 * width + x] *= scale * scale;
+        }
+    }
+
+    /// Adds a span of neighbours to a span of pixels.
+    #[allow(clippy::too_many_arguments)]
+    fn mix(
+        &self,
+        tap: f32,
+        here: [&[f32]; LIGHT],
+        that: [&[f32]; LIGHT],
+        guide_here: [&[f32]; GUIDE],
+        guide_that: [&[f32]; GUIDE],
+        sums: [&mut [f32]; LIGHT],
+        weights: &mut [f32],
+    ) {
+        let n = weights.len();
+        // Slices of one length: no bounds to check in the loop.
+        let [h0, h1, h2, h3] = here.map(|s| &s[..n]);
+        let [t0, t1, t2, t3] = that.map(|s| &s[..n]);
+        let a = guide_here.map(|s| &s[..n]);
+        let b = guide_that.map(|s| &s[..n]);
+        let [s0, s1, s2, s3] = sums.map(|s| &mut s[..n]);
+        let square = |v: f32| v * v;
+        for i in 0..n {
+            let (lh, lt) = (luminance(h0[i], h1[i], h2[i]), luminance(t0[i], t1[i], t2[i]));
+            let explained = self.range * (h3[i] + t3[i]) + square(EQUAL * (lh + lt)) + f32::MIN_POSITIVE;
+            let range = square(lh - lt) / explained;
+            let colour = square(a[0][i] - b[0][i]) + square(a[1][i] - b[1][i]) + square(a[2][i] - b[2][i]);
+            let cosine = a[3][i] * b[3][i] + a[4][i] * b[4][i] + a[5][i] * b[5][i];
+            let d = [a[6][i] - b[6][i], a[7][i] - b[7][i], a[8][i] - b[8][i]];
+            let height = a[3][i] * d[0] + a[4][i] * d[1] + a[5][i] * d[2];
+            let plane = square(height) / (square(d[0]) + square(d[1]) + square(d[2]) + f32::MIN_POSITIVE);
+            let sum = range + colour * (1.0 / COLOUR) + (1.0 - cosine) * (1.0 / FACING) + plane * (1.0 / PLANE);
+            // (1 - t/8)^8 is close to exp(-t), and ends.
+            let w = (1.0 - sum * 0.125).max(0.0);
+            let w = tap * square(square(square(w)));
+            s0[i] += w * t0[i];
+            s1[i] += w * t1[i];
+            s2[i] += w * t2[i];
+            s3[i] += w * w * t3[i];
+            weights[i] += w;
+        }
+    }
+}
+
+/// Relative difference in luminance that counts as none.
+const EQUAL: f32 = 1e-6;
+
+const NEIGHBOURS: [(isize, isize); 8] = [(-1, -1), (-1, 0), (-1, 1), (0, -1), (0, 1), (1, -1), (1, 0), (1, 1)];
+
+fn luminance(r: f32, g: f32, b: f32) -> f32 {
+    0.2126 * r + 0.7152 * g + 0.0722 * b
+}
+
+/// Squares of pixels: the noise of the input averages out in them, what the filter has moved does not.
+fn bias(input: &Input, image: &Image, job: Job) -> Result<f64> {
+    let (width, height) = (image.width, image.height);
+    let across = width.div_ceil(SQUARE);
+    let squares = exec::map(across * height.div_ceil(SQUARE), job, |square| {
+        let (left, top) = (square % across * SQUARE, square / across * SQUARE);
+        let (mut moved, mut noise, mut light, mut count) = (0.0, 0.0, 0.0, 0.0);
+        for y in top..(top + SQUARE).min(height) {
+            for x in left..(left + SQUARE).min(width) {
+                let before = colour::luminance(input.beauty.rgb(x, y));
+                let variance = colour::luminance(input.variance.rgb(x, y).map(f32::sqrt)).powi(2);
+                moved += f64::from(colour::luminance(image.rgb(x, y)) - before);
+                noise += f64::from(if variance.is_finite() { variance } else { before * before });
+                light += f64::from(before);
+                count += 1.0;
+            }
+        }
+        // The square of the mean, less what the noise of that mean is expected to add.
+        ((moved * moved - noise) / count, light, count)
+    })?;
+    let (squared, light, count) = squares.iter().fold((0.0, 0.0, 0.0), |a, s| (a.0 + s.0, a.1 + s.1, a.2 + s.2));
+    Ok(if light > 0.0 { f64::max(squared / count, 0.0).sqrt() * count / light } else { 0.0 })
+}
+
+fn check(input: &Input, params: &Params) -> Result<()> {
+    check_range("strength", params.strength, 0.0, 10.0)?;
+    let Input { beauty, variance, albedo, normal, position } = *input;
+    for (image, name) in [(variance, "variance"), (albedo, "albedo"), (normal, "normal"), (position, "position")] {
+        beauty.check_same_size("beauty", image, name)?;
+    }
+    for (image, name) in
+        [(beauty, "beauty"), (variance, "variance"), (albedo, "albedo"), (normal, "normal"), (position, "position")]
+    {
+        if image.channels < 3 {
+            return Err(Error::argument(format!("{name} has {} channels; it must have 3", image.channels)));
+        }
+    }
+    let bad = beauty.count_non_finite();
+    if bad > 0 {
+        return Err(Error::argument(format!("{bad} samples of the beauty are NaN or infinite; replace them")));
+    }
+    if let Some(v) = variance.data.iter().find(|v| !(**v >= 0.0)) {
+        return Err(Error::argument(format!("a variance is {v}; it must be at least 0")));
+    }
+    Ok(())
+}

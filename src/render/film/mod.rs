@@ -1,0 +1,228 @@
+//! The image under way: which paths each pixel has had, their means, and how sure they are.
+//!
+//! `pixel` adds up the paths of one pixel → `plan` decides between passes where the next ones go → `interval` says how
+//! far off the image may be. A pass only ever extends the paths of each pixel up to a count. So one that is cut short
+//! leaves a valid image with fewer paths here and there; and as the counts follow from the pixels of the pass before,
+//! they are the same for any number of threads.
+
+mod clock;
+mod grid;
+mod interval;
+mod pixel;
+mod plan;
+
+pub use clock::Clock;
+pub use interval::pooled;
+pub use plan::{Pass, Plan};
+
+use super::layers::{Layers, Recorder};
+use super::path::{self, Contributions};
+use super::sampler::Sampler;
+use super::world::World;
+use super::{Film, LightSource, Params, PathSink};
+use crate::error::Result;
+use crate::exec;
+use crate::image::{Image, try_vec};
+use crate::job::Job;
+use crate::rng;
+use crate::scene::Camera;
+use glam::{DVec3, Vec3};
+use grid::{AREA, Grid};
+use pixel::Pixel;
+use std::ops::Range;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Instant;
+
+/// Paths of a pixel between two looks at the clock.
+const SLICE: u32 = 64;
+
+/// Sums of the paths so far.
+pub struct Canvas<'a> {
+    world: &'a World,
+    eye: Eye,
+    seed: u64,
+    grid: Grid,
+    /// Tile by tile.
+    pixels: Vec<Pixel>,
+    layers: Option<Layers<'a>>,
+    /// Paths that were left out because their radiance was no finite number.
+    discarded: AtomicU64,
+}
+
+impl<'a> Canvas<'a> {
+    pub fn new(world: &'a World, camera: &'a Camera, params: &'a Params) -> Result<Self> {
+        let grid = Grid { width: params.width, height: params.height };
+        let pixels = try_vec(grid.tiles() * AREA, Pixel::default())?;
+        let layers = Layers::new(world, camera, &params.outputs, grid.tiles(), AREA)?;
+        let eye = Eye::new(camera, &grid);
+        Ok(Self { world, eye, seed: params.seed, grid, pixels, layers, discarded: AtomicU64::new(0) })
+    }
+
+    /// Extends the paths of every pixel to what the pass asks for; at the deadline it leaves the rest as it is.
+    pub fn extend(&mut self, pass: &Pass, deadline: Option<Instant>, job: Job) -> Result<()> {
+        let Self { world, eye, seed, grid, pixels, layers, discarded } = self;
+        let layers = layers.as_ref();
+        let is_over = || job.is_cancelled() || deadline.is_some_and(|d| Instant::now() >= d);
+        exec::for_rows(pixels, AREA, job, |tile, pixels| {
+            let mut recorder = layers.map(|l| l.recorder(world));
+            for (i, pixel) in pixels.iter_mut().enumerate() {
+                let Some((x, y)) = grid.place(tile, i) else { continue };
+                let wanted = pass.count(tile, x, y);
+                while pixel.count() < wanted {
+                    if is_over() {
+                        return;
+                    }
+                    let seed = rng::hash(*seed, &[x as u64, y as u64]);
+                    pixel.extend(wanted.min(pixel.count() + SLICE), |replication, indices| {
+                        let seed = rng::mix(seed ^ u64::from(replication));
+                        paths(world, eye, [x, y], seed, indices, recorder.as_mut(), discarded)
+                    });
+                    if let (Some(layers), Some(recorder)) = (layers, &mut recorder) {
+                        layers.keep(recorder, tile, i);
+                    }
+                }
+            }
+        })?;
+        job.check()
+    }
+
+    /// Share of `samples` paths per pixel that are there when the pass is done.
+    pub fn progress(&self, pass: &Pass, samples: u32) -> f64 {
+        let paths = |tile| self.grid.area(tile) as f64 * pass.per_pixel(tile);
+        let pixels = (self.grid.width * self.grid.height) as f64;
+        (0..self.grid.tiles()).map(paths).sum::<f64>() / (pixels * f64::from(samples))
+    }
+
+    /// The pixels of a tile that the image has.
+    fn tile(&self, tile: usize) -> impl Iterator<Item = &Pixel> {
+        let pixels = self.pixels[tile * AREA..(tile + 1) * AREA].iter().enumerate();
+        pixels.filter(move |(i, _)| self.grid.place(tile, *i).is_some()).map(|(_, pixel)| pixel)
+    }
+
+    fn pixel(&self, x: usize, y: usize) -> &Pixel {
+        let (tile, i) = self.grid.locate(x, y);
+        &self.pixels[tile * AREA + i]
+    }
+
+    /// Place of the pixel itself, or, if it has no paths yet, of one of the coarser passes that has.
+    fn nearest(&self, x: usize, y: usize) -> (usize, usize) {
+        let (mut x, mut y, mut mask) = (x, y, !0);
+        while self.pixel(x, y).count() == 0 && (x, y) != (0, 0) {
+            mask <<= 1;
+            (x, y) = (x & mask, y & mask);
+        }
+        (x, y)
+    }
+
+    /// An image made pixel by pixel.
+    fn image(&self, channels: usize, job: Job, value: impl Fn(usize, usize, &mut [f32]) + Sync) -> Result<Image> {
+        let mut image = Image::new(self.grid.width, self.grid.height, channels)?;
+        exec::for_rows(&mut image.data, self.grid.width * channels, job, |y, row| {
+            row.chunks_exact_mut(channels).enumerate().for_each(|(x, out)| value(x, y, out));
+        })?;
+        Ok(image)
+    }
+
+    fn variance(&self, job: Job) -> Result<Image> {
+        self.image(3, job, |x, y, out| self.pixel(x, y).variance().as_vec3().write_to_slice(out))
+    }
+
+    /// The image of all paths so far.
+    pub fn film(&self, job: Job) -> Result<Film> {
+        let beauty = self.image(3, job, |x, y, out| {
+            let (x, y) = self.nearest(x, y);
+            self.pixel(x, y).mean().as_vec3().write_to_slice(out);
+        })?;
+        let paths = self.image(1, job, |x, y, out| out[0] = self.pixel(x, y).count() as f32)?;
+        let place = |x: usize, y: usize| {
+            let (x, y) = self.nearest(x, y);
+            let (tile, i) = self.grid.locate(x, y);
+            (tile, i, f64::from(self.pixel(x, y).count()))
+        };
+        let layers = self.layers.as_ref().map_or(Ok(Vec::new()), |l| l.images(&beauty, place, job))?;
+        let total = self.total(job)?;
+        Ok(Film {
+            beauty,
+            layers,
+            variance: self.variance(job)?,
+            paths,
+            samples: (total.paths / (self.grid.width * self.grid.height) as u64) as u32,
+            error: total.error(),
+            discarded: self.discarded.load(Ordering::Relaxed),
+        })
+    }
+}
+
+/// Sum of some paths of a pixel.
+fn paths(
+    world: &World,
+    eye: &Eye,
+    at: [usize; 2],
+    seed: u64,
+    indices: Range<u32>,
+    mut recorder: Option<&mut Recorder>,
+    discarded: &AtomicU64,
+) -> DVec3 {
+    let mut sum = DVec3::ZERO;
+    for index in indices {
+        let radiance = radiance(world, eye, at, Sampler::new(seed, index), recorder.as_deref_mut());
+        if radiance.is_finite() {
+            sum += radiance.as_dvec3();
+        } else {
+            discarded.fetch_add(1, Ordering::Relaxed);
+        }
+    }
+    sum
+}
+
+/// One sample of a pixel's radiance; the first block of numbers places it in the pixel (box filter).
+fn radiance(world: &World, eye: &Eye, at: [usize; 2], mut sampler: Sampler, recorder: Option<&mut Recorder>) -> Vec3 {
+    let place = sampler.next();
+    let direction = eye.direction(at[0] as f64 + place.fine(0), at[1] as f64 + place.fine(1));
+    let ray = world.ray(eye.position, direction);
+    match recorder {
+        None => {
+            let mut sum = Sum(Vec3::ZERO);
+            path::trace(world, ray, &mut sampler, &mut Contributions(&mut sum));
+            sum.0
+        }
+        Some(recorder) => {
+            recorder.start();
+            path::trace(world, ray, &mut sampler, recorder);
+            recorder.finish()
+        }
+    }
+}
+
+/// A camera made ready: the direction of a pixel is linear in its coordinates.
+struct Eye {
+    position: Vec3,
+    corner: Vec3,
+    right: Vec3,
+    down: Vec3,
+}
+
+impl Eye {
+    fn new(camera: &Camera, grid: &Grid) -> Self {
+        let aspect = grid.width as f32 / grid.height as f32;
+        let at = |x: f32, y: f32| camera.direction(x, y, aspect);
+        let corner = at(0.0, 0.0);
+        let right = (at(1.0, 0.0) - corner) / grid.width as f32;
+        let down = (at(0.0, 1.0) - corner) / grid.height as f32;
+        Self { position: camera.position, corner, right, down }
+    }
+
+    /// The direction through a point of the image, in pixels.
+    fn direction(&self, x: f64, y: f64) -> Vec3 {
+        (self.corner + self.right * x as f32 + self.down * y as f32).normalize_or_zero()
+    }
+}
+
+/// Adds contributions up.
+struct Sum(Vec3);
+
+impl PathSink for Sum {
+    fn add(&mut self, _: LightSource, importance: Vec3, emission: Vec3) {
+        self.0 += importance * emission;
+    }
+}

@@ -1,0 +1,251 @@
+//! Where the next paths go.
+//!
+//! First a coarse image, then a few paths for every pixel, then twice as many, and so on: at powers of two the points are
+//! stratified best. With a target, tiles go on alone from [`EVEN`] paths on. For the error of the whole image the least
+//! paths are those in proportion to the standard deviation of a tile's paths (Neyman 1934); for the error of each pixel
+//! they follow from the tile's own. The tiles that lack most of what they need are doubled first.
+//!
+//! Stopping where the scatter is small by chance makes an image too dark: where it is small, a bright path has not been
+//! found yet. So a decision is about a whole tile, and heeds what is around it (after Dammertz et al. 2010, "A hierarchical
+//! automatic stopping condition for Monte Carlo global illumination"). What bias remains is measured in the tests and by
+//! `benches/error_control.rs`.
+
+use super::grid::AREA;
+use super::interval::{NORMAL_95, pooled};
+use super::{Canvas, Clock};
+use crate::error::Result;
+use crate::exec;
+use crate::image::{colour::luminance, try_vec};
+use crate::job::Job;
+use crate::render::Params;
+
+/// Pixels of the coarsest image.
+const COARSE: usize = 1024;
+/// Paths of the first pass over all pixels.
+const FIRST: u32 = 4;
+/// Paths of every pixel before anything is decided from them.
+const EVEN: u32 = 16;
+/// Pixels darker than this share of the mean luminance count as if they were as bright.
+const DARK: f64 = 0.1;
+
+/// How many paths pixels are to have.
+pub struct Pass {
+    /// Per tile.
+    counts: Vec<u32>,
+    /// Only pixels whose column and row are multiples of this power of two.
+    stride: usize,
+}
+
+impl Pass {
+    pub fn count(&self, tile: usize, x: usize, y: usize) -> u32 {
+        if (x | y) & (self.stride - 1) == 0 { self.counts[tile] } else { 0 }
+    }
+
+    /// Paths per pixel of a tile, on the average.
+    pub fn per_pixel(&self, tile: usize) -> f64 {
+        f64::from(self.counts[tile]) / (self.stride * self.stride) as f64
+    }
+}
+
+/// Sums over a tile, or over the image.
+#[derive(Clone, Copy, Default)]
+pub struct Tally {
+    pub paths: u64,
+    pixels: u32,
+    /// Most paths of a pixel.
+    most: u32,
+    /// Of the means of the pixels, averaged over the channels.
+    mean: f64,
+    /// Of the variances of those means.
+    variance: f64,
+    /// Of the variances of single paths.
+    spread: f64,
+}
+
+impl Tally {
+    fn add(&mut self, other: &Self) {
+        self.paths += other.paths;
+        self.pixels += other.pixels;
+        self.most = self.most.max(other.most);
+        self.mean += other.mean;
+        self.variance += other.variance;
+        self.spread += other.spread;
+    }
+
+    /// Root mean square of the standard errors, relative to the mean.
+    pub fn error(&self) -> f64 {
+        let pixels = f64::from(self.pixels.max(1));
+        let (variance, mean) = (self.variance / pixels, self.mean / pixels);
+        if variance == 0.0 { 0.0 } else { variance.sqrt() / mean }
+    }
+}
+
+impl Canvas<'_> {
+    /// Of the whole image.
+    pub fn total(&self, job: Job) -> Result<Tally> {
+        Ok(whole(&self.tallies(job)?))
+    }
+
+    fn tallies(&self, job: Job) -> Result<Vec<Tally>> {
+        exec::map(self.grid.tiles(), job, |tile| {
+            let mut tally = Tally::default();
+            for pixel in self.tile(tile) {
+                let variance = pixel.variance().element_sum() / 3.0;
+                tally.paths += u64::from(pixel.count());
+                tally.pixels += 1;
+                tally.most = tally.most.max(pixel.count());
+                tally.mean += pixel.mean().element_sum() / 3.0;
+                tally.variance += variance;
+                tally.spread += variance * f64::from(pixel.count());
+            }
+            tally
+        })
+    }
+
+    /// Per tile, the mean square of the pixels' intervals relative to their luminance.
+    fn doubts(&self, floor: f64, job: Job) -> Result<Vec<f64>> {
+        let variance = pooled(&self.variance(job)?, job)?;
+        exec::map(self.grid.tiles(), job, |tile| {
+            let pixels = (0..AREA).filter_map(|i| self.grid.place(tile, i));
+            let square = |(x, y): (usize, usize)| {
+                // The channels of a path rise and fall together, so the error of a luminance is that of its parts.
+                let error = f64::from(luminance(variance.rgb(x, y).map(f32::sqrt)));
+                let value = f64::from(luminance(self.pixel(x, y).mean().as_vec3())).max(floor);
+                if error == 0.0 { 0.0 } else { (NORMAL_95 * error / value).powi(2) }
+            };
+            pixels.map(square).sum::<f64>() / self.grid.area(tile) as f64
+        })
+    }
+
+    /// For each tile the mean of it and the tiles around it, or its own value if that is larger.
+    fn heeding_neighbours(&self, values: &[f64]) -> Vec<f64> {
+        let (across, down) = (self.grid.across(), self.grid.down());
+        let around = |i: usize, n: usize| i.saturating_sub(1)..(i + 2).min(n);
+        let at = |tile: usize| {
+            let (columns, rows) = (around(tile % across, across), around(tile / across, down));
+            let count = columns.len() * rows.len();
+            let sum: f64 = rows.flat_map(|y| columns.clone().map(move |x| values[y * across + x])).sum();
+            values[tile].max(sum / count as f64)
+        };
+        (0..values.len()).map(at).collect()
+    }
+}
+
+/// Decides pass by pass.
+pub struct Plan<'p> {
+    params: &'p Params,
+    /// Stride and paths per pixel of the last pass that treated all alike.
+    stride: usize,
+    even: u32,
+}
+
+impl<'p> Plan<'p> {
+    pub fn new(params: &'p Params) -> Self {
+        let mut stride = 1;
+        while params.width.div_ceil(stride) * params.height.div_ceil(stride) > COARSE {
+            stride *= 2;
+        }
+        Self { params, stride: 2 * stride, even: 0 }
+    }
+
+    /// The next pass; none if the image is as good as was asked for, or there is no time left.
+    pub fn next(&mut self, canvas: &Canvas, clock: &Clock, job: Job) -> Result<Option<Pass>> {
+        let Params { samples, target_error, pixel_error, .. } = *self.params;
+        if self.even > 0 && clock.is_over() {
+            return Ok(None);
+        }
+        // A coarse image, a finer one, and so on down to one path per pixel.
+        if self.stride > 1 {
+            self.stride /= 2;
+            self.even = 1;
+            return self.alike(canvas, 1);
+        }
+        let has_target = target_error > 0.0 || pixel_error > 0.0;
+        if has_target && self.even >= EVEN.min(samples) {
+            return self.where_needed(canvas, clock, job);
+        }
+        if self.even >= samples {
+            return Ok(None);
+        }
+        // The same for all: doubled, or as much as there is time for.
+        let doubled = if self.even < FIRST { FIRST } else { self.even.saturating_mul(2) };
+        let afforded = clock.affordable().map_or(u32::MAX, |times| {
+            let more = (f64::from(self.even) * times) as u32 / FIRST * FIRST;
+            self.even.saturating_add(more.max(FIRST))
+        });
+        self.even = doubled.min(afforded.max(FIRST)).min(samples);
+        self.alike(canvas, self.even)
+    }
+
+    fn alike(&self, canvas: &Canvas, count: u32) -> Result<Option<Pass>> {
+        Ok(Some(Pass { counts: try_vec(canvas.grid.tiles(), count)?, stride: self.stride }))
+    }
+
+    /// Doubles the tiles that need it most.
+    fn where_needed(&self, canvas: &Canvas, clock: &Clock, job: Job) -> Result<Option<Pass>> {
+        let tallies = canvas.tallies(job)?;
+        let wanted = self.wanted(canvas, &tallies, job)?;
+        let whole = whole(&tallies);
+
+        // What they need, as far as there are paths and time for it.
+        let lack =
+            |tile: usize| (wanted[tile] - f64::from(tallies[tile].most)).max(0.0) * f64::from(tallies[tile].pixels);
+        let mut budget: f64 = (0..tallies.len()).map(lack).sum();
+        if let Some(times) = clock.affordable() {
+            budget = budget.min(whole.paths as f64 * times);
+        }
+        let allowed = f64::from(self.params.samples) * f64::from(whole.pixels) - whole.paths as f64;
+        let mut needy: Vec<(f64, usize)> = (0..tallies.len())
+            .map(|tile| (wanted[tile] / f64::from(tallies[tile].most.max(1)), tile))
+            .filter(|&(need, _)| need > 1.0)
+            .collect();
+        // Equal needs in order of the tiles.
+        needy.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+
+        let mut counts: Vec<u32> = tallies.iter().map(|t| t.most).collect();
+        let mut spent = 0.0;
+        for (_, tile) in needy {
+            let cost = f64::from(tallies[tile].most) * f64::from(tallies[tile].pixels);
+            if spent > 0.0 && spent >= budget || spent + cost > allowed {
+                break;
+            }
+            counts[tile] = counts[tile].saturating_mul(2);
+            spent += cost;
+        }
+        Ok((spent > 0.0).then_some(Pass { counts, stride: 1 }))
+    }
+
+    /// Paths per pixel that each tile should have in the end.
+    fn wanted(&self, canvas: &Canvas, tallies: &[Tally], job: Job) -> Result<Vec<f64>> {
+        let Params { samples, target_error, pixel_error, .. } = *self.params;
+        let whole = whole(tallies);
+        let mean = whole.mean / f64::from(whole.pixels);
+        let mut wanted = try_vec(tallies.len(), 0.0)?;
+        if target_error > 0.0 && whole.error() > f64::from(target_error) {
+            let spreads: Vec<f64> = tallies.iter().map(|t| t.spread / f64::from(t.pixels)).collect();
+            let deviations: Vec<f64> = canvas.heeding_neighbours(&spreads).into_iter().map(f64::sqrt).collect();
+            // In proportion n = k d they leave the mean square error mean(s / k d), with s the variance of single paths.
+            let mean_of = |value: &dyn Fn(usize) -> f64| {
+                (0..tallies.len()).map(|t| value(t) * f64::from(tallies[t].pixels)).sum::<f64>()
+                    / f64::from(whole.pixels)
+            };
+            let left = mean_of(&|t| if spreads[t] > 0.0 { spreads[t] / deviations[t] } else { 0.0 });
+            let needed = left / (f64::from(target_error) * mean).powi(2);
+            let allowed = f64::from(samples) / mean_of(&|t| deviations[t]);
+            wanted.iter_mut().zip(&deviations).for_each(|(w, d)| *w = needed.min(allowed) * d);
+        }
+        if pixel_error > 0.0 {
+            let doubts = canvas.doubts(DARK * mean, job)?;
+            for ((wanted, doubt), tally) in wanted.iter_mut().zip(doubts).zip(tallies) {
+                *wanted = wanted.max(f64::from(tally.most) * doubt / f64::from(pixel_error).powi(2));
+            }
+        }
+        Ok(wanted)
+    }
+}
+
+fn whole(tallies: &[Tally]) -> Tally {
+    let mut whole = Tally::default();
+    tallies.iter().for_each(|t| whole.add(t));
+    whole
+}

@@ -1,0 +1,143 @@
+//! The preview filter.
+
+use super::*;
+use crate::render::denoise::{self, Input};
+use crate::render::vertex;
+
+/// Albedo, normal and position of what is seen through the middle of each pixel.
+fn features(world: &World, camera: &Camera, width: usize, height: usize) -> [Image; 3] {
+    let hit = |x: usize, y: usize| {
+        let (u, v) = ((x as f32 + 0.5) / width as f32, (y as f32 + 0.5) / height as f32);
+        let direction = camera.direction(u, v, width as f32 / height as f32).normalize();
+        let hit = world.accel().closest(&crate::scene::accel::Ray::new(camera.position, direction), |_| true)?;
+        let at = Vertex::of_hit(world, &hit);
+        let scene = world.scene();
+        let mesh = &scene.meshes[at.mesh as usize];
+        let substance = vertex::substance(world, mesh, &scene.materials[mesh.material], at.triangle, at.barycentric);
+        let facing = if at.normal.dot(direction) < 0.0 { at.normal } else { -at.normal };
+        Some((substance.diffuse + substance.f0, facing, at.position))
+    };
+    let image = |f: &dyn Fn((Vec3, Vec3, Vec3)) -> Vec3| {
+        Image::from_fn(width, height, |x, y| hit(x, y).map_or(Vec3::ZERO, f).to_array()).unwrap()
+    };
+    [image(&|f| f.0), image(&|f| f.1), image(&|f| f.2)]
+}
+
+/// Mean of the squared errors relative to the truth.
+fn rel_mse(image: &Image, truth: &Image) -> f64 {
+    let mean = truth.data.iter().map(|&v| f64::from(v)).sum::<f64>() / truth.data.len() as f64;
+    let square = |(&v, &t): (&f32, &f32)| f64::from(v - t).powi(2) / (f64::from(t).powi(2) + (0.01 * mean).powi(2));
+    image.data.iter().zip(&truth.data).map(square).sum::<f64>() / truth.data.len() as f64
+}
+
+/// A matt room with a lamp and a table, and a view of it.
+fn room() -> (World, Camera) {
+    let corners = [Vec3::ZERO, Vec3::X * 4.0, Vec3::Y * 3.0, Vec3::Z * 4.0];
+    let [o, x, y, z] = corners;
+    let mut meshes = vec![quad(o, z, x, 0), quad(y, x, z, 0), quad(o, x, y, 0), quad(o, y, z, 2), quad(x, z, y, 3)];
+    meshes.push(quad(Vec3::new(1.5, 2.9, 1.5), Vec3::X, Vec3::Z, 1));
+    meshes.push(quad(Vec3::new(1.0, 1.0, 0.5), Vec3::Z, Vec3::X * 2.0, 0));
+    let mut red = matt(0.5, 0.0);
+    red.base_color = Vec3::new(0.6, 0.1, 0.1);
+    let scene =
+        Scene { meshes, materials: vec![matt(0.7, 0.0), matt(0.0, 50.0), red, matt(0.3, 0.0)], ..Scene::default() };
+    (world(scene), Camera::look_at(Vec3::new(2.0, 1.6, 5.5), Vec3::new(2.0, 1.4, 0.0), 0.8))
+}
+
+fn smoothed(film: &Film, guide: &[Image; 3], strength: f32) -> denoise::Output {
+    let [albedo, normal, position] = guide;
+    let input = Input { beauty: &film.beauty, variance: &film.variance, albedo, normal, position };
+    denoise::run(&input, &denoise::Params { strength }, Monitor::default().job()).unwrap()
+}
+
+#[test]
+fn a_preview_has_a_fraction_of_the_error_and_says_what_it_blurred() {
+    let (world, camera) = room();
+    let size = Params { width: 72, height: 48, ..Params::default() };
+    let truth = render(&world, &camera, &Params { samples: 1024, seed: 9, ..size.clone() }).beauty;
+    let guide = features(&world, &camera, 72, 48);
+    let film = render(&world, &camera, &Params { samples: 8, ..size });
+    let output = smoothed(&film, &guide, 1.0);
+    let (before, after) = (rel_mse(&film.beauty, &truth), rel_mse(&output.image, &truth));
+    assert!(after < before / 5.0, "from {before} to {after}");
+    // The bias it states is no more than the error it has in all, and not nothing.
+    let mean = truth.data.iter().map(|&v| f64::from(v)).sum::<f64>() / truth.data.len() as f64;
+    let squares = output.image.data.iter().zip(&truth.data).map(|(&v, &t)| f64::from(v - t).powi(2)).sum::<f64>();
+    let error = (squares / truth.data.len() as f64).sqrt() / mean;
+    assert!(output.bias < 1.2 * error, "bias {}, error {error}", output.bias);
+    // Nothing at strength 0 but rounding.
+    let same = smoothed(&film, &guide, 0.0);
+    assert!(same.image.data.iter().zip(&film.beauty.data).all(|(a, b)| (a - b).abs() <= 1e-5 * b.abs()));
+}
+
+#[test]
+fn without_variance_the_image_comes_out_as_it_is() {
+    let (world, camera) = room();
+    let film = render(&world, &camera, &Params { width: 40, height: 30, samples: 4, ..Params::default() });
+    let guide = features(&world, &camera, 40, 30);
+    let mut last = f64::INFINITY;
+    for shrink in [1.0, 1e-2, 1e-4, 0.0] {
+        let mut sure = film.clone();
+        sure.variance.data.iter_mut().for_each(|v| *v *= shrink);
+        let moved = rel_mse(&smoothed(&sure, &guide, 1.0).image, &film.beauty);
+        assert!(moved < last || moved == 0.0, "{shrink}: {moved} after {last}");
+        last = moved;
+    }
+    assert!(last < 1e-9, "{last}");
+}
+
+#[test]
+fn an_even_wall_stays_even_and_noise_on_it_goes() {
+    let (w, h) = (64, 64);
+    let mut rng = crate::rng::Rng::new(3, &[]);
+    let noise: Vec<f32> = (0..w * h).map(|_| 2.0 + 0.5 * rng.normal() as f32).collect();
+    let film = |value: &dyn Fn(usize, usize) -> f32, variance: f32| Film {
+        beauty: Image::from_fn(w, h, |x, y| [value(x, y); 3]).unwrap(),
+        variance: Image::from_fn(w, h, |_, _| [variance; 3]).unwrap(),
+        paths: Image::new(w, h, 1).unwrap(),
+        samples: 1,
+        error: 0.0,
+        discarded: 0,
+        layers: Vec::new(),
+    };
+    let plane = |x: usize, y: usize| [x as f32, y as f32, 0.0];
+    let even = [
+        Image::from_fn(w, h, |_, _| [0.5; 3]).unwrap(),
+        Image::from_fn(w, h, |_, _| [0.0, 0.0, 1.0]).unwrap(),
+        Image::from_fn(w, h, plane).unwrap(),
+    ];
+    let output = smoothed(&film(&|_, _| 2.0, 0.25), &even, 1.0);
+    assert!(output.image.data.iter().all(|v| (v - 2.0).abs() < 1e-4) && output.bias < 1e-4);
+    let output = smoothed(&film(&|x, y| noise[y * w + x], 0.25), &even, 1.0);
+    let square = output.image.data.iter().map(|&v| f64::from(v - 2.0).powi(2)).sum::<f64>() / (3 * w * h) as f64;
+    assert!(square < 0.25 / 50.0, "{square}");
+    assert!(output.bias < 0.02, "{}", output.bias);
+}
+
+#[test]
+fn degenerate_images_give_numbers_or_an_error() {
+    let monitor = Monitor::default();
+    let image = |v: f32| Image::from_fn(5, 3, |_, _| [v; 3]).unwrap();
+    let run = |values: [f32; 5]| {
+        let [beauty, variance, albedo, normal, position] = values.map(image);
+        let input =
+            Input { beauty: &beauty, variance: &variance, albedo: &albedo, normal: &normal, position: &position };
+        denoise::run(&input, &denoise::Params::default(), monitor.job())
+    };
+    for values in [
+        [0.0; 5],
+        [1.0, f32::INFINITY, 0.0, 0.0, f32::INFINITY],
+        [1.0, f32::MAX, 1.0, 1.0, f32::MAX],
+        [1e9, 1e18, 1e-30, f32::NAN, f32::NAN],
+        [1e-9, 1e-18, f32::NAN, 0.5, 1e-30],
+    ] {
+        let output = run(values).unwrap();
+        assert!(output.image.count_non_finite() == 0 && output.bias.is_finite(), "{values:?}: {:?}", output.image);
+    }
+    assert!(run([f32::NAN, 0.0, 0.0, 0.0, 0.0]).unwrap_err().message.contains("beauty"));
+    assert!(run([0.0, -1.0, 0.0, 0.0, 0.0]).unwrap_err().message.contains("variance is -1"));
+    assert!(run([0.0, f32::NAN, 0.0, 0.0, 0.0]).is_err());
+    let (small, other) = (image(0.0), Image::new(4, 3, 3).unwrap());
+    let input = Input { beauty: &small, variance: &small, albedo: &other, normal: &small, position: &small };
+    assert!(denoise::run(&input, &denoise::Params::default(), monitor.job()).unwrap_err().message.contains("albedo"));
+}
