@@ -336,8 +336,8 @@ layouts! {
     luxfer_emission_report: struct_size luminaires error regularity;
     luxfer_luminaire: struct_size corners centre size orientation area flux_share colour reserved;
     luxfer_requirements: struct_size scattering lights textures bounces brightest_material albedo;
-    luxfer_render_params: struct_size width height samples target_error time_budget_ms seed;
-    luxfer_render_report: struct_size samples error;
+    luxfer_render_params: struct_size width height samples target_error time_budget_ms seed pixel_error reserved;
+    luxfer_render_report: struct_size samples error discarded;
     luxfer_illuminance_params: struct_size columns rows samples seed;
     luxfer_illuminance_grid: struct_size origin across down normal reserved;
     luxfer_illuminance_report: struct_size points least mean largest mean_error;

@@ -16,6 +16,7 @@ use super::stage::{Stage, need};
 use super::status::luxfer_status;
 use crate::error::Error;
 use crate::image::Image;
+use crate::job::Monitor;
 use crate::render::{self, Film, Outputs};
 use crate::scene::Camera;
 use std::sync::Arc;
@@ -31,6 +32,11 @@ pub type luxfer_render_image = i32;
 pub const LUXFER_RENDER_BEAUTY: luxfer_render_image = 0;
 /// Variance of that mean; 3 channels.
 pub const LUXFER_RENDER_VARIANCE: luxfer_render_image = 1;
+/// Number of paths of each pixel; 1 channel.
+pub const LUXFER_RENDER_PATHS: luxfer_render_image = 2;
+/// Half the width of the interval around each pixel of the beauty that holds the true radiance with a probability of 95 %,
+/// in cd/m²; 3 channels; infinite where a pixel has less than two paths.
+pub const LUXFER_RENDER_INTERVAL: luxfer_render_image = 3;
 
 /// Settings of a rendering. Fill them with luxfer_render_params_init.
 #[repr(C)]
@@ -42,30 +48,38 @@ pub struct luxfer_render_params {
     pub width: u32,
     /// Height of the image in pixels, in [1, 65536]; default 720.
     pub height: u32,
-    /// Paths per pixel, in [1, 1048576]; default 64.
+    /// Paths per pixel, in [1, 1048576]; default 64. With a target this is the most on the average over the image.
     pub samples: u32,
-    /// Stop when the mean relative standard error falls below this, >= 0; default 0: never.
+    /// Stop when the error of the report falls to this, >= 0, and give paths to where they lower it most; default 0: never.
     pub target_error: f32,
     /// Stop after this many milliseconds; default 0: never.
     pub time_budget_ms: u32,
     /// Seed of the paths; default 1.
     pub seed: u64,
+    /// Stop when every part of the image (8 x 8 pixels, root mean square) is known to this, >= 0: half the width of the 95 %
+    /// interval of a pixel's luminance, relative to that luminance or to a tenth of the image's mean, whichever is more.
+    /// 0.1 means within 10 % of its value, 19 times out of 20. Default 0: never.
+    pub pixel_error: f32,
+    /// 0.
+    pub reserved: u32,
 }
 
 // SAFETY: plain numbers.
 unsafe impl Versioned for luxfer_render_params {
     const NAME: &'static str = "luxfer_render_params";
-    const SIZES: &'static [usize] = &[32];
+    const SIZES: &'static [usize] = &[40];
     fn defaults() -> Self {
         let d = render::Params::default();
         Self {
-            struct_size: 32,
+            struct_size: 40,
             width: d.width as u32,
             height: d.height as u32,
             samples: d.samples,
             target_error: d.target_error,
             time_budget_ms: d.time_budget_ms,
             seed: d.seed,
+            pixel_error: d.pixel_error,
+            reserved: 0,
         }
     }
 }
@@ -77,6 +91,7 @@ impl luxfer_render_params {
             height: self.height as usize,
             samples: self.samples,
             target_error: self.target_error,
+            pixel_error: self.pixel_error,
             time_budget_ms: self.time_budget_ms,
             seed: self.seed,
             ..render::Params::default()
@@ -90,18 +105,21 @@ impl luxfer_render_params {
 pub struct luxfer_render_report {
     /// sizeof(luxfer_render_report), set by the caller.
     pub struct_size: u32,
-    /// Paths per pixel so far.
+    /// Paths per pixel so far, on the average.
     pub samples: u32,
-    /// Mean over the pixels of the standard error, relative to the image's mean.
+    /// Root mean square over the pixels of the standard error, relative to the image's mean; infinite while a pixel has less
+    /// than two paths.
     pub error: f64,
+    /// Paths that were left out because their radiance was no finite number.
+    pub discarded: u64,
 }
 
 // SAFETY: plain numbers.
 unsafe impl Versioned for luxfer_render_report {
     const NAME: &'static str = "luxfer_render_report";
-    const SIZES: &'static [usize] = &[16];
+    const SIZES: &'static [usize] = &[24];
     fn defaults() -> Self {
-        Self { struct_size: 16, samples: 0, error: 0.0 }
+        Self { struct_size: 24, samples: 0, error: 0.0, discarded: 0 }
     }
 }
 
@@ -231,6 +249,14 @@ pub unsafe extern "C" fn luxfer_render_get_image(
         let pick: fn(&Film) -> &Image = match which {
             LUXFER_RENDER_BEAUTY => |f| &f.beauty,
             LUXFER_RENDER_VARIANCE => |f| &f.variance,
+            LUXFER_RENDER_PATHS => |f| &f.paths,
+            LUXFER_RENDER_INTERVAL => {
+                let (context, film) = (stage.context(), stage.output()?);
+                let (width, height) = (film.beauty.width, film.beauty.height);
+                let make = || context.pool.run(|| film.interval(Monitor::default().job()));
+                out.set(handle::give(Pixels::counted(context, width, height, 3, make)?));
+                return Ok(());
+            }
             _ => return Err(Error::argument(format!("which is {which}; it must be a LUXFER_RENDER_ value"))),
         };
         out.set(handle::give(Pixels::part(stage.context(), stage.output()?, pick)));
@@ -251,6 +277,7 @@ pub unsafe extern "C" fn luxfer_render_get_report(
         out.set(luxfer_render_report {
             samples: output.samples,
             error: output.error,
+            discarded: output.discarded,
             ..luxfer_render_report::defaults()
         });
         Ok(())

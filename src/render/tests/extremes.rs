@@ -74,8 +74,9 @@ fn scenes_of_any_size_make_the_same_image() {
     }
 }
 
-/// A room with corners at multiples of 1/4 m, which f32 holds exactly a million metres from the origin.
-fn coarse_room(at: Vec3) -> (Scene, Camera) {
+/// A room with a lamp under its ceiling and a table.
+fn room() -> (Scene, Camera) {
+    let at = Vec3::ZERO;
     let (x, y, z) = (Vec3::X * 4.0, Vec3::Y * 3.0, Vec3::Z * 4.0);
     let meshes = vec![
         quad(at, z, x, 0),
@@ -89,18 +90,6 @@ fn coarse_room(at: Vec3) -> (Scene, Camera) {
     ];
     let scene = Scene { meshes, materials: vec![matt(0.6, 0.0), matt(0.0, 100.0)], ..Scene::default() };
     (scene, Camera::look_at(at + Vec3::new(2.0, 1.5, 3.5), at + Vec3::new(2.0, 1.5, 0.0), 1.2))
-}
-
-#[test]
-fn a_million_metres_from_the_origin_looks_as_at_home() {
-    let (scene, camera) = coarse_room(Vec3::ZERO);
-    let home = render(&world(scene), &camera, &SMALL());
-    for at in [Vec3::splat(2f32.powi(10)), Vec3::new(2f32.powi(20), -2f32.powi(20), 2f32.powi(19))] {
-        let (scene, camera) = coarse_room(at);
-        let film = render(&world(scene), &camera, &SMALL());
-        let share = differing(&home.beauty, &film.beauty, 1.0);
-        assert!(share < 0.03, "at {at}: {share}");
-    }
 }
 
 #[test]
@@ -173,7 +162,7 @@ fn a_camera_inside_a_wall_or_on_it_sees_something_finite() {
 #[test]
 fn closed_white_rooms_end_with_the_right_energy() {
     // Walls that give back all light and a black lamp: everything comes to look like the lamp.
-    let (mut scene, camera) = coarse_room(Vec3::ZERO);
+    let (mut scene, camera) = room();
     scene.materials[0] = matt(1.0, 0.0);
     // It covers the ceiling, and its back is behind that.
     scene.meshes[6] = quad(Vec3::new(0.25, 2.75, 0.25), Vec3::X * 3.5, Vec3::Z * 3.5, 1);

@@ -167,7 +167,7 @@ fn a_render_stops_when_it_is_good_enough_or_out_of_time() {
             let film = render(&world, &viewer(), &params);
             assert!(film.samples < 1 << 20 && film.paths.data.iter().any(|&n| n > 0.0));
             assert!(film.beauty.data.iter().all(|v| v.is_finite()));
-            assert!(start.elapsed() < Duration::from_secs(3), "{:?}", start.elapsed());
+            assert!(start.elapsed() < Duration::from_secs(20), "{params:?}: {:?}", start.elapsed());
         }
     }
 }
