@@ -2,25 +2,13 @@
 
 use super::*;
 use crate::render::denoise::{self, Input};
-use crate::render::vertex;
 
-/// Albedo, normal and position of what is seen through the middle of each pixel.
+/// Albedo, normal and position of what is seen.
 fn features(world: &World, camera: &Camera, width: usize, height: usize) -> [Image; 3] {
-    let hit = |x: usize, y: usize| {
-        let (u, v) = ((x as f32 + 0.5) / width as f32, (y as f32 + 0.5) / height as f32);
-        let direction = camera.direction(u, v, width as f32 / height as f32).normalize();
-        let hit = world.accel().closest(&crate::scene::accel::Ray::new(camera.position, direction), |_| true)?;
-        let at = Vertex::of_hit(world, &hit);
-        let scene = world.scene();
-        let mesh = &scene.meshes[at.mesh as usize];
-        let substance = vertex::substance(world, mesh, &scene.materials[mesh.material], at.triangle, at.barycentric);
-        let facing = if at.normal.dot(direction) < 0.0 { at.normal } else { -at.normal };
-        Some((substance.diffuse + substance.f0, facing, at.position))
-    };
-    let image = |f: &dyn Fn((Vec3, Vec3, Vec3)) -> Vec3| {
-        Image::from_fn(width, height, |x, y| hit(x, y).map_or(Vec3::ZERO, f).to_array()).unwrap()
-    };
-    [image(&|f| f.0), image(&|f| f.1), image(&|f| f.2)]
+    let outputs = Outputs { aovs: vec![Aov::Albedo, Aov::Normal, Aov::Position], ..Outputs::default() };
+    let film = render(world, camera, &Params { width, height, samples: 16, outputs, ..Params::default() });
+    let images: Vec<Image> = film.layers.into_iter().map(|layer| layer.image).collect();
+    images.try_into().unwrap()
 }
 
 /// Mean of the squared errors relative to the truth.
