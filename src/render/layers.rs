@@ -72,7 +72,9 @@ pub struct Layer {
 /// The sums of all layers so far, tile by tile as those of the main image.
 pub struct Layers<'a> {
     outputs: &'a Outputs,
-    camera: &'a Camera,
+    /// The camera's place in the world's coordinates, and its unit viewing direction.
+    eye: Vec3,
+    forward: Vec3,
     table: Table,
     /// Numbers kept of a pixel.
     width: usize,
@@ -84,7 +86,7 @@ impl<'a> Layers<'a> {
     /// None where there is nothing to render but the main image.
     pub fn new(
         world: &World,
-        camera: &'a Camera,
+        camera: &Camera,
         outputs: &'a Outputs,
         tiles: usize,
         tile_pixels: usize,
@@ -97,7 +99,8 @@ impl<'a> Layers<'a> {
         let surfaces = 1 + outputs.aovs.iter().map(|a| a.kept()).sum::<usize>();
         let width = 3 * expressions.len() + if outputs.aovs.is_empty() { 0 } else { surfaces };
         let tiles = (0..tiles).map(|_| Ok(Mutex::new(try_vec(width * tile_pixels, 0.0)?))).collect::<Result<_>>()?;
-        Ok(Some(Self { outputs, camera, table, width, tiles }))
+        let (eye, forward) = (world.from_scene(camera.position), camera.forward.normalize_or_zero());
+        Ok(Some(Self { outputs, eye, forward, table, width, tiles }))
     }
 
     pub fn recorder<'b>(&'b self, world: &'b World) -> Recorder<'b> {
@@ -217,8 +220,7 @@ impl Observer for Recorder<'_> {
         if self.layers.outputs.aovs.is_empty() {
             return;
         }
-        let camera = self.layers.camera;
-        let depth = (vertex.position - camera.position).dot(camera.forward.normalize_or_zero());
+        let depth = (vertex.position - self.layers.eye).dot(self.layers.forward);
         self.surfaces.meet(self.world, vertex, bsdf, distance, depth);
     }
 
