@@ -43,13 +43,26 @@ impl Sampler {
     /// The next four dimensions.
     #[inline]
     pub fn next(&mut self) -> Block {
-        // One stream of hashes per seed (Steele et al. 2014), three for each block.
+        // One stream of hashes per seed (Steele et al. 2014): half of each for the order, half for the dimensions.
         self.block = self.block.wrapping_add(1);
-        let base = self.seed.wrapping_add(self.block.wrapping_mul(STEP));
-        let (a, b, c) = (rng::mix(base), rng::mix(base ^ FIRST_PAIR), rng::mix(base ^ SECOND_PAIR));
-        let point = sobol(scramble(self.index, a as u32));
-        let seeds = [b as u32, (b >> 32) as u32, c as u32, (c >> 32) as u32];
-        Block(std::array::from_fn(|d| scramble(point[d], seeds[d]).reverse_bits()))
+        let hash = rng::mix(self.seed.wrapping_add(self.block.wrapping_mul(0x9e37_79b9_7f4a_7c15)));
+        let point = self.point(scramble(self.index, hash as u32));
+        let seed = |d: u32| mix(((hash >> 32) as u32).wrapping_add(d.wrapping_mul(0x9e37_79b9)));
+        Block(std::array::from_fn(|d| scramble(point[d], seed(d as u32)).reverse_bits()))
+    }
+
+    /// The first four dimensions of the Sobol' sequence, the bits of the index taken eight at a time; all bits in reverse.
+    #[inline]
+    fn point(&self, index: u32) -> [u32; 4] {
+        let row = |byte: usize| &SOBOL[byte][(index >> (8 * byte)) as usize & 255];
+        let low = row(3);
+        // Up to 256 paths to a seed, scrambling changes their higher bits alike, and so the points: as the next scrambling
+        // does anyway.
+        if self.index & 0x00ff_ffff == 0 {
+            return *low;
+        }
+        let (a, b, c) = (row(0), row(1), row(2));
+        std::array::from_fn(|i| low[i] ^ a[i] ^ b[i] ^ c[i])
     }
 
     /// A number that belongs to this path and this point of it, for decisions that need no stratification.
@@ -58,10 +71,13 @@ impl Sampler {
     }
 }
 
-/// Far apart from each other, odd the first.
-const STEP: u64 = 0x9e37_79b9_7f4a_7c15;
-const FIRST_PAIR: u64 = 0x6a09_e667_f3bc_c908;
-const SECOND_PAIR: u64 = 0xbb67_ae85_84ca_a73b;
+/// Mixes 32 bits so that every input bit reaches every output bit (Wellons 2018, "lowbias32").
+#[inline]
+fn mix(mut x: u32) -> u32 {
+    x = (x ^ (x >> 16)).wrapping_mul(0x7feb_352d);
+    x = (x ^ (x >> 15)).wrapping_mul(0x846c_a68b);
+    x ^ (x >> 16)
+}
 
 /// Nested uniform scrambling: each bit is flipped by a hash of the bits above it (Laine and Karras 2011, with the
 /// constants of Vegdahl 2021). Bits are in reverse, before and after: carries run from the high bits to the low.
@@ -74,14 +90,7 @@ fn scramble(mut x: u32, seed: u32) -> u32 {
     x ^ x.wrapping_mul(0x53a2_2864)
 }
 
-/// The first four dimensions of the Sobol' sequence, the bits of the index taken eight at a time; all bits in reverse.
-#[inline]
-fn sobol(index: u32) -> [u32; 4] {
-    let row = |byte: usize| &SOBOL[byte][(index >> (8 * byte)) as usize & 255];
-    let (a, b, c, d) = (row(0), row(1), row(2), row(3));
-    std::array::from_fn(|i| a[i] ^ b[i] ^ c[i] ^ d[i])
-}
-
+/// What each byte of an index adds to a point, for indices and points whose bits are in reverse.
 static SOBOL: [[[u32; 4]; 256]; 4] = sobol_tables();
 
 const fn sobol_tables() -> [[[u32; 4]; 256]; 4] {
