@@ -6,8 +6,9 @@
 //! number of threads.
 //!
 //! `sampler` numbers → `path` a walk → (`light` one light of all, by way of `emissive` and `environment`; `vertex` what was
-//! hit; `bsdf` how it scatters, by way of `ggx`) → a [`PathSink`] → `film` means, errors,
-//! and which pixels get more paths.
+//! hit; `bsdf` how it scatters, by way of `ggx`) → a [`PathSink`] → `film` means, errors, and which pixels get more paths.
+//! Beside the image, `layers` makes images of light by the way it came (`lpe`) and of surfaces (`aov`) from the same paths;
+//! [`illuminance`] calculates grids and maps of meshes in lux.
 //!
 //! Not modelled: volumes, refraction in solids, frosted glass, polarisation, wavelengths, depth of field, motion blur.
 

@@ -184,6 +184,31 @@ void references_of_two_threads() {
     CHECK_OK(luxfer_context_release(context));
 }
 
+// Layers are asked for by expression and found by name; a slip is told with its column.
+void layers_are_found_by_name() {
+    luxfer_context *context = new_context(2);
+    luxfer_render *render = new_render(context);
+    CHECK_STATUS(luxfer_render_add_expression(render, "slip", "LDXE"), LUXFER_INVALID_ARGUMENT);
+    char message[256];
+    CHECK_OK(luxfer_context_last_error(context, message, sizeof message, nullptr));
+    CHECK(std::strstr(message, "column 3") != nullptr);
+    CHECK_OK(luxfer_render_add_expression(render, "direct", "C<RD>L"));
+    CHECK_OK(luxfer_render_set_aovs(render, LUXFER_AOV_DEPTH));
+    luxfer_job *job = start(render, 8, 4);
+    CHECK_OK(luxfer_job_wait(job, -1, nullptr, nullptr));
+    CHECK_OK(luxfer_job_release(job));
+    std::uint32_t index = 9, channels = 0;
+    luxfer_image *image = nullptr;
+    CHECK_OK(luxfer_render_find_layer(render, "Depth", &index));
+    CHECK(index == 1);
+    CHECK_OK(luxfer_render_get_layer(render, index, &image));
+    CHECK_OK(luxfer_image_size(image, nullptr, nullptr, &channels));
+    CHECK(channels == 1);
+    CHECK_OK(luxfer_image_release(image));
+    CHECK_OK(luxfer_render_release(render));
+    CHECK_OK(luxfer_context_release(context));
+}
+
 // The same bits on one thread and on three.
 void threads_do_not_change_results() {
     std::vector<float> first;
@@ -222,6 +247,7 @@ int main() {
     messages_belong_to_threads();
     callbacks_may_call_back();
     references_of_two_threads();
+    layers_are_found_by_name();
     threads_do_not_change_results();
     return check::summary("abi_contract");
 }
