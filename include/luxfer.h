@@ -742,6 +742,89 @@ luxfer_status luxfer_scene_intersect(luxfer_scene *scene,
                                      luxfer_hit *hits);
 
 /* ====================================================================================================================
+ * Scene requirements
+ *
+ * What the renderer finds out about a scene before the first ray: which ways of scattering and which lights can occur, and
+ * how much light a bounce can leave. What cannot occur is left out of tracing, which changes no image. Nothing here has to
+ * be called: it tells what is done anyway.
+ * ==================================================================================================================== */
+
+/** Some surface scatters diffusely. */
+#define LUXFER_SCATTERING_DIFFUSE 1
+
+/** Some surface has a rough reflecting layer. */
+#define LUXFER_SCATTERING_GLOSSY 2
+
+/** Some surface reflects as a mirror. */
+#define LUXFER_SCATTERING_MIRROR 4
+
+/** Some surface is a clear pane. */
+#define LUXFER_SCATTERING_GLASS 8
+
+/** Some surface is partly not there. */
+#define LUXFER_SCATTERING_ALPHA 16
+
+/** Some surface emits. */
+#define LUXFER_LIGHTS_SURFACE 1
+
+/** Some surface emits by a texture. */
+#define LUXFER_LIGHTS_TEXTURE 2
+
+/** There is a point light that shines. */
+#define LUXFER_LIGHTS_POINT 4
+
+/** There is a spot light that shines. */
+#define LUXFER_LIGHTS_SPOT 8
+
+/** There is a directional light that shines. */
+#define LUXFER_LIGHTS_DIRECTIONAL 16
+
+/** The environment shines. */
+#define LUXFER_LIGHTS_ENVIRONMENT 32
+
+/** What a scene requires of the renderer. Set struct_size before the call. */
+typedef struct luxfer_requirements {
+    /** sizeof(luxfer_requirements), set by the caller. */
+    uint32_t struct_size;
+    /** Ways of scattering that can occur: LUXFER_SCATTERING_ flags. */
+    uint32_t scattering;
+    /** Lights that can shine: LUXFER_LIGHTS_ flags. */
+    uint32_t lights;
+    /** Textures that vary what surfaces scatter, emit, or how they are bent. */
+    uint32_t textures;
+    /**
+     * How many times light can scatter and still matter: light that was scattered more often is at most the share error,
+     * given in the call, of all light that surfaces scatter. 0 if albedos set no bound. Only told: rendering stays without
+     * bias.
+     */
+    uint32_t bounces;
+    /** Index of the material that sends on most of the light it receives; LUXFER_NONE if there are no surfaces. */
+    uint32_t brightest_material;
+    /** The most that any surface sends on, per channel, in [0, 1]. */
+    float albedo[3];
+} luxfer_requirements;
+
+/**
+ * Tells what a scene requires of the renderer; error, in [0, 1), is the share of light for *requirements' bounces. The
+ * first call after a change of the scene makes it ready for tracing. Any thread.
+ * LUXFER_INVALID_ARGUMENT if the scene is not valid or error is out of range.
+ */
+luxfer_status luxfer_scene_requirements(luxfer_scene *scene,
+                                        float error,
+                                        luxfer_requirements *requirements);
+
+/**
+ * Tells in words what rendering a scene leaves out: one sentence per line, as UTF-8 that ends with a zero, cut if it does
+ * not fit into capacity bytes. *needed, unless NULL, becomes the capacity for all of it. buffer may be NULL if capacity is
+ * 0. Any thread.
+ * LUXFER_INVALID_ARGUMENT if the scene is not valid.
+ */
+luxfer_status luxfer_scene_requirements_text(luxfer_scene *scene,
+                                             char *buffer,
+                                             size_t capacity,
+                                             size_t *needed);
+
+/* ====================================================================================================================
  * Scene read-back
  *
  * What a scene holds, element by element: meshes, materials and the textures they use. Together with the counts of
@@ -1615,6 +1698,267 @@ luxfer_status luxfer_render_retain(luxfer_render *render);
 
 /** Gives a reference back; a job that runs goes on. Any thread. */
 luxfer_status luxfer_render_release(luxfer_render *render);
+
+/* ====================================================================================================================
+ * Outputs of a rendering
+ *
+ * Images beside the main one, made of the same paths: light that came by certain ways, chosen by light path expressions,
+ * and what the camera sees of surfaces. They are asked for before luxfer_render_start, and read as layers, while the job
+ * runs as well as after it: first those of the expressions in the order they were added, then those of surfaces in the
+ * order of their flags. The main image is the same bits with and without them.
+ *
+ * An expression is a regular expression over the events of a path, light first with L and E at its ends, as in
+ * "LDE", "LSE", "L.*DDE", "LD{1,2}E", "LS*DE" (S is all that is not diffuse), or camera first with C, as in Open Shading
+ * Language: "C<RD>L", "C[GS]+.*<L.'Lamp'>". Types are R T V, modes D G S s (a clear pane is both S and s), lights L O B;
+ * . [..] [^..] * + ? {n,m} | ( ) are what they are in regular expressions. Labels in quotes are names of meshes or of
+ * their materials; light0, light1, ... are the scene's lights in their order, environment is what surrounds it. Arnold's
+ * built-in names are known: direct, indirect, emission, background, and diffuse, specular, transmission, each alone or
+ * with _direct or _indirect.
+ * ==================================================================================================================== */
+
+/** Distance along the viewing direction, in metres; infinite where nothing is. Layer Depth, channel Z. */
+#define LUXFER_AOV_DEPTH 1
+
+/** Distance along the ray, in metres; infinite where nothing is. Layer Distance, channel Z. */
+#define LUXFER_AOV_DISTANCE 2
+
+/** Place in the world, in metres. Layer Position, channels X Y Z. */
+#define LUXFER_AOV_POSITION 4
+
+/** Shading normal in the world, towards the viewer; 0 where nothing is. Layer Normal, channels X Y Z. */
+#define LUXFER_AOV_NORMAL 8
+
+/** Normal of the triangle itself, likewise. Layer GeometricNormal, channels X Y Z. */
+#define LUXFER_AOV_GEOMETRIC_NORMAL 16
+
+/** Colour at normal incidence. Layer Albedo, channels R G B. */
+#define LUXFER_AOV_ALBEDO 32
+
+/** Index of the mesh plus 1, 0 where nothing is; of what most samples met. Layer IndexOB, channel X. */
+#define LUXFER_AOV_OBJECT 64
+
+/** Index of the material plus 1, likewise. Layer IndexMA, channel X. */
+#define LUXFER_AOV_MATERIAL 128
+
+/** Share of the pixel that is covered by surfaces. Layer Alpha, channel A. */
+#define LUXFER_AOV_ALPHA 256
+
+/** Luminance of the main image, in cd/m². Layer Luminance, channel Y. */
+#define LUXFER_AOV_LUMINANCE 512
+
+/**
+ * How emissive surfaces and the environment answer to the lights of camera-first expressions: a LUXFER_EMITTER_ value.
+ */
+typedef int32_t luxfer_emitter_as;
+
+/** Surfaces are both L and O, the environment is both L and B: C<RD>L is all direct light. The default. */
+#define LUXFER_EMITTER_AS_BOTH 0
+
+/** Every light is L only. */
+#define LUXFER_EMITTER_AS_LIGHT 1
+
+/** As in Open Shading Language: surfaces are O, the environment is B. */
+#define LUXFER_EMITTER_AS_OBJECT 2
+
+/**
+ * Adds a layer of the light that an expression describes. name is what the layer is called: 1 to 64 bytes in UTF-8
+ * without dots, quotes or control characters, and not the name of another layer. Any thread.
+ * LUXFER_INVALID_ARGUMENT if the name is not such a name, or the expression is none: the message tells the column. A label
+ * that nothing in the scene bears ends the job with LUXFER_NOT_FOUND, an expression that no path can match ends it with
+ * LUXFER_INVALID_ARGUMENT. LUXFER_INVALID_OPERATION while a job runs.
+ */
+luxfer_status luxfer_render_add_expression(luxfer_render *render,
+                                           const char *name,
+                                           const char *expression);
+
+/**
+ * Forgets all expressions. Any thread.
+ * LUXFER_INVALID_OPERATION while a job runs.
+ */
+luxfer_status luxfer_render_clear_expressions(luxfer_render *render);
+
+/**
+ * Says which letters emissive surfaces and the environment answer to; a LUXFER_EMITTER_AS_ value. Any thread.
+ * LUXFER_INVALID_OPERATION while a job runs.
+ */
+luxfer_status luxfer_render_set_emitter_as(luxfer_render *render, luxfer_emitter_as emitter_as);
+
+/**
+ * Says which layers of surfaces are made: LUXFER_AOV_ flags together, or 0, the default. Any thread.
+ * LUXFER_INVALID_OPERATION while a job runs.
+ */
+luxfer_status luxfer_render_set_aovs(luxfer_render *render, uint32_t flags);
+
+/**
+ * Tells how many layers the rendering has. Any thread.
+ * LUXFER_NOT_READY before the first pass of a job.
+ */
+luxfer_status luxfer_render_get_layer_count(luxfer_render *render, uint32_t *count);
+
+/**
+ * Copies a layer's name into capacity bytes with a zero at its end, cut if need be; *needed receives the capacity for all
+ * of it, unless NULL. Any thread.
+ * LUXFER_NOT_FOUND if there is no such layer.
+ */
+luxfer_status luxfer_render_get_layer_name(luxfer_render *render,
+                                           uint32_t index,
+                                           char *buffer,
+                                           size_t capacity,
+                                           size_t *needed);
+
+/**
+ * Finds a layer by its name. Any thread.
+ * LUXFER_NOT_FOUND if there is none of that name.
+ */
+luxfer_status luxfer_render_find_layer(luxfer_render *render, const char *name, uint32_t *index);
+
+/**
+ * Gets a layer as far as it is: 3 channels of light in cd/m², or those of a surface's output. The caller releases *image.
+ * Any thread.
+ * LUXFER_NOT_READY before the first pass of a job; LUXFER_NOT_FOUND if there is no such layer.
+ */
+luxfer_status luxfer_render_get_layer(luxfer_render *render,
+                                      uint32_t index,
+                                      luxfer_image **image);
+
+/**
+ * Writes the image and all layers into one OpenEXR file of 32-bit floating-point channels: R, G, B of the image, A if its
+ * coverage was asked for, and layer.channel of each layer, as Blender and Nuke read them; Depth.Z also as plain Z. The
+ * header tells the expression of each layer of light as luxfer.lpe.NAME. path is UTF-8; an existing file is replaced only
+ * by a complete one. Any thread.
+ * LUXFER_NOT_READY before the first pass of a job; LUXFER_IO if the file cannot be written.
+ */
+luxfer_status luxfer_render_write_exr(luxfer_render *render,
+                                      const char *path);
+
+/* ====================================================================================================================
+ * Illuminance
+ *
+ * Illuminance in lux on a calculation grid, or over a mesh by its texture coordinates, with the standard error of every
+ * point, and mean, extremes and their error for reports.
+ * ==================================================================================================================== */
+
+/** A calculation of illuminance. See luxfer_illuminance_create. */
+typedef struct luxfer_illuminance luxfer_illuminance;
+
+/** Settings of the calculation. Fill them with luxfer_illuminance_params_init. */
+typedef struct luxfer_illuminance_params {
+    /** sizeof(luxfer_illuminance_params), set by luxfer_illuminance_params_init. */
+    uint32_t struct_size;
+    /** Points along the first edge or texture coordinate, in [1, 65536]; default 32. */
+    uint32_t columns;
+    /** Points along the second, in [1, 65536]; default 32. */
+    uint32_t rows;
+    /** Paths per point, in [16, 16777216], rounded up to a multiple of 16; default 1024. */
+    uint32_t samples;
+    /** Seed of the paths; default 1. */
+    uint64_t seed;
+} luxfer_illuminance_params;
+
+/**
+ * A calculation grid. Fill it with luxfer_illuminance_grid_init, then set what differs: the defaults are a square metre
+ * at the origin that faces up.
+ */
+typedef struct luxfer_illuminance_grid {
+    /** sizeof(luxfer_illuminance_grid), set by luxfer_illuminance_grid_init. */
+    uint32_t struct_size;
+    /** A corner, in metres; default (0, 0, 0). */
+    float origin[3];
+    /** The edge along which columns count, in metres; default (1, 0, 0). Points are the centres of the cells. */
+    float across[3];
+    /** The edge along which rows count, in metres; default (0, 0, 1). */
+    float down[3];
+    /** The side from which light counts, of any length but 0; default (0, 1, 0). */
+    float normal[3];
+    /** Must be 0. */
+    uint32_t reserved;
+} luxfer_illuminance_grid;
+
+/** An image of the calculation: a LUXFER_ILLUMINANCE_ value. */
+typedef int32_t luxfer_illuminance_image;
+
+/** The illuminance on the whole, in lux. Set struct_size before the call. */
+typedef struct luxfer_illuminance_report {
+    /** sizeof(luxfer_illuminance_report), set by the caller. */
+    uint32_t struct_size;
+    /** Points that there are: of a mesh, the texels with a surface. */
+    uint32_t points;
+    /** Smallest illuminance; least / mean is the uniformity U0. */
+    double least;
+    /** Mean illuminance. */
+    double mean;
+    /** Largest illuminance. */
+    double largest;
+    /** Standard error of the mean. */
+    double mean_error;
+} luxfer_illuminance_report;
+
+/** Illuminance in lux; 1 channel, NaN where a mesh has no point. */
+#define LUXFER_ILLUMINANCE_LUX 0
+
+/** Standard error of each value, in lux; 1 channel. */
+#define LUXFER_ILLUMINANCE_ERROR 1
+
+/**
+ * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+ */
+luxfer_status luxfer_illuminance_params_init(luxfer_illuminance_params *params,
+                                             size_t size);
+
+/** Fills *grid with the defaults; size is sizeof *grid. LUXFER_INVALID_ARGUMENT if grid is NULL or size is wrong. */
+luxfer_status luxfer_illuminance_grid_init(luxfer_illuminance_grid *grid,
+                                           size_t size);
+
+/** Creates the stage. The caller releases *illuminance. Any thread. */
+luxfer_status luxfer_illuminance_create(luxfer_context *context, luxfer_illuminance **illuminance);
+
+/** Sets the scene; each start calculates with it as it is then. Any thread. */
+luxfer_status luxfer_illuminance_set_scene(luxfer_illuminance *illuminance, luxfer_scene *scene);
+
+/**
+ * Starts a job that calculates a grid. grid and params may be NULL for their defaults. The caller releases *job. Any
+ * thread.
+ * LUXFER_INVALID_OPERATION if the scene is missing or a job runs already. The job may end with LUXFER_INVALID_ARGUMENT
+ * if the scene is not valid, the grid has no normal, or a setting is out of range.
+ */
+luxfer_status luxfer_illuminance_start_grid(luxfer_illuminance *illuminance,
+                                            const luxfer_illuminance_grid *grid,
+                                            const luxfer_illuminance_params *params,
+                                            luxfer_job **job);
+
+/**
+ * Starts a job that maps a mesh by its first set of texture coordinates: columns along u, rows along v. back is 0 for the
+ * side that its triangles' winding faces, 1 for the other. params may be NULL for the defaults. The caller releases *job.
+ * Any thread.
+ * LUXFER_INVALID_OPERATION if the scene is missing or a job runs already. The job may end with LUXFER_INVALID_ARGUMENT
+ * if the scene is not valid, has no such mesh, the mesh has no texture coordinates, or a setting is out of range.
+ */
+luxfer_status luxfer_illuminance_start_mesh(luxfer_illuminance *illuminance,
+                                            uint32_t mesh,
+                                            uint32_t back,
+                                            const luxfer_illuminance_params *params,
+                                            luxfer_job **job);
+
+/**
+ * Gets an image of the calculation; which is a LUXFER_ILLUMINANCE_ value. The caller releases *image. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded.
+ */
+luxfer_status luxfer_illuminance_get_image(luxfer_illuminance *illuminance,
+                                           luxfer_illuminance_image which,
+                                           luxfer_image **image);
+
+/**
+ * Tells the illuminance on the whole. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded.
+ */
+luxfer_status luxfer_illuminance_get_report(luxfer_illuminance *illuminance,
+                                            luxfer_illuminance_report *report);
+
+/** Adds a reference. Any thread. */
+luxfer_status luxfer_illuminance_retain(luxfer_illuminance *illuminance);
+
+/** Gives a reference back; a job that runs goes on. Any thread. */
+luxfer_status luxfer_illuminance_release(luxfer_illuminance *illuminance);
 
 /* ====================================================================================================================
  * Relighting
