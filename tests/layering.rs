@@ -39,6 +39,7 @@ const UNSAFE: &[&str] = &[
     "scene/accel/node.rs",
     "scene/accel/packet.rs",
     "scene/accel/pages.rs",
+    "scene/accel/stack.rs",
     "patch/kernel.rs",
 ];
 

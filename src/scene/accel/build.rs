@@ -53,13 +53,8 @@ fn has_wide_vectors() -> bool {
 
 fn binary_tree(boxes: &[Aabb], job: Job) -> Result<Bvh2> {
     let indices = (0..boxes.len() as u32).collect();
-    let mut tree = PlocBuilder::with_capacity(boxes.len()).build(
-        PlocSearchDistance::Medium,
-        boxes,
-        indices,
-        SortPrecision::U64,
-        2,
-    );
+    let mut tree =
+        PlocBuilder::with_capacity(boxes.len()).build(PlocSearchDistance::Low, boxes, indices, SortPrecision::U64, 0);
     job.check()?;
     job.report(0.7);
     ReinsertionOptimizer::default().run(&mut tree, 0.05, None);

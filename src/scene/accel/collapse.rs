@@ -33,7 +33,7 @@ pub(super) struct Source<'a> {
 
 /// Builds the nodes and packets of `accel`.
 pub(super) fn run(source: &Source, accel: &mut Accel, job: Job) -> Result<()> {
-    let scale = Scale::of(accel.high - accel.low);
+    let scale = Scale::of(accel.low, accel.high);
     // Costs: of the parts in parallel, then of what lies above them.
     let cut = source.cut();
     let part = |&root: &u32| job.check().map(|()| Binary::new(source, root, &HashMap::new(), &[], scale));
@@ -51,7 +51,7 @@ pub(super) fn run(source: &Source, accel: &mut Accel, job: Job) -> Result<()> {
     let (mut nodes, mut packets) = (top.nodes.len(), top.packets.len());
     let mut bases = vec![(0, 0)];
     for (task, wide) in tasks.iter().zip(&done) {
-        top.nodes[task.node].children[task.lane] = wide.root.shifted(nodes, packets);
+        top.nodes[task.node].children[task.lane] = wide.root.shifted(nodes, packets).bits();
         top.stack_need = top.stack_need.max(task.waiting + wide.stack_need);
         bases.push((nodes, packets));
         nodes += wide.nodes.len();
@@ -65,7 +65,7 @@ pub(super) fn run(source: &Source, accel: &mut Accel, job: Job) -> Result<()> {
         // The top is in place, and knows where the others are.
         if i > 0 {
             let (nodes, packets) = bases[i];
-            node.children.iter_mut().for_each(|child| *child = child.shifted(nodes, packets));
+            node.children.iter_mut().for_each(|c| *c = Child::from_bits(*c).shifted(nodes, packets).bits());
         }
         node
     })?;
@@ -109,18 +109,18 @@ fn ordered(area: f32) -> u32 {
 struct Scale(f64);
 
 impl Scale {
-    fn of(extent: Vec3) -> Self {
-        Self(1.0 / Self::half_area(extent).max(f64::MIN_POSITIVE))
-    }
-
-    fn half_area(extent: Vec3) -> f64 {
-        let d = extent.as_dvec3();
-        d.x * d.y + d.y * d.z + d.z * d.x
+    fn of(low: Vec3, high: Vec3) -> Self {
+        Self(1.0 / half_area(low, high).max(f64::MIN_POSITIVE))
     }
 
     fn area(self, low: Vec3, high: Vec3) -> f32 {
-        (Self::half_area(high - low) * self.0) as f32
+        (half_area(low, high) * self.0) as f32
     }
+}
+
+fn half_area(low: Vec3, high: Vec3) -> f64 {
+    let d = high.as_dvec3() - low.as_dvec3();
+    d.x * d.y + d.y * d.z + d.z * d.x
 }
 
 #[derive(Clone, Copy)]

@@ -34,6 +34,12 @@ pub(super) trait Lanes: Copy {
     fn or(a: Self::Mask, b: Self::Mask) -> Self::Mask;
     /// Bit `i` is set where lane `i` is.
     fn bits(mask: Self::Mask) -> u32;
+    /// Writes `payload[i] | bits(self[i]) << 32` for every lane `i` of `mask`, in order of the lanes; what comes after
+    /// that, up to the eighth place, is overwritten with anything.
+    ///
+    /// # Safety
+    /// There is room for eight at `to`.
+    unsafe fn pack(self, payload: &[u32; 8], mask: u32, to: *mut u64);
 }
 
 /// Two registers of four: SSE2 on x86-64, NEON on aarch64, scalars elsewhere.
@@ -142,6 +148,20 @@ impl Lanes for Baseline {
     fn bits(mask: Self::Mask) -> u32 {
         mask[0].bitmask() | mask[1].bitmask() << 4
     }
+
+    #[inline(always)]
+    unsafe fn pack(self, payload: &[u32; 8], mut mask: u32, mut to: *mut u64) {
+        let row = self.store();
+        while mask != 0 {
+            let lane = mask.trailing_zeros() as usize & 7;
+            mask &= mask - 1;
+            // SAFETY: a mask has eight bits at most.
+            unsafe {
+                to.write(u64::from(payload[lane]) | u64::from(row.0[lane].to_bits()) << 32);
+                to = to.add(1);
+            }
+        }
+    }
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -156,6 +176,24 @@ mod avx2 {
     /// once, when it is built, and everything below is inlined into functions compiled for these.
     #[derive(Clone, Copy)]
     pub struct Avx2(__m256);
+
+    /// The lanes of each mask, one per byte from the lowest.
+    static LANES_OF: [u64; 256] = {
+        let mut table = [0; 256];
+        let mut mask = 0;
+        while mask < 256 {
+            let (mut lane, mut place) = (0, 0);
+            while lane < 8 {
+                if mask >> lane & 1 != 0 {
+                    table[mask] |= (lane as u64) << (8 * place);
+                    place += 1;
+                }
+                lane += 1;
+            }
+            mask += 1;
+        }
+        table
+    };
 
     impl Lanes for Avx2 {
         type Mask = __m256;
@@ -247,6 +285,19 @@ mod avx2 {
         #[inline(always)]
         fn bits(mask: __m256) -> u32 {
             unsafe { _mm256_movemask_ps(mask) as u32 }
+        }
+
+        #[inline(always)]
+        unsafe fn pack(self, payload: &[u32; 8], mask: u32, to: *mut u64) {
+            unsafe {
+                let lanes = _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(LANES_OF[mask as usize & 255] as i64));
+                let payload = _mm256_loadu_si256(payload.as_ptr().cast());
+                let high = _mm256_permutevar8x32_epi32(_mm256_castps_si256(self.0), lanes);
+                let low = _mm256_permutevar8x32_epi32(payload, lanes);
+                let (a, b) = (_mm256_unpacklo_epi32(low, high), _mm256_unpackhi_epi32(low, high));
+                _mm256_storeu_si256(to.cast(), _mm256_permute2x128_si256::<0x20>(a, b));
+                _mm256_storeu_si256(to.add(4).cast(), _mm256_permute2x128_si256::<0x31>(a, b));
+            }
         }
     }
 }

@@ -15,6 +15,7 @@ mod lanes;
 mod node;
 mod packet;
 mod pages;
+mod stack;
 mod units;
 
 use crate::error::Result;
@@ -23,6 +24,7 @@ use glam::Vec3;
 use lanes::{Baseline, Lanes};
 use node::{Child, Node, NodeRay};
 use packet::{Packet, TriangleRay};
+use stack::{SLACK, Stack, Waiting};
 use std::mem::MaybeUninit;
 
 /// A half-line; distances are in units of `direction`, which need not be of unit length.
@@ -73,14 +75,6 @@ pub struct Accel {
     wide_vectors: bool,
 }
 
-/// A child that waits to be visited, below the bits of where the ray enters its box: distances from 0 up sort as their
-/// bits do.
-type Waiting = u64;
-
-fn waiting(near: f32, child: Child) -> Waiting {
-    u64::from(near.to_bits()) << 32 | u64::from(child.bits())
-}
-
 /// Waiting children kept on the thread's own stack; deeper trees take theirs from the heap.
 const SHORT_STACK: usize = 128;
 
@@ -123,9 +117,9 @@ impl Accel {
             return None;
         }
         if self.stack_need <= SHORT_STACK {
-            self.search_with::<ANY>(ray, accept, &mut [MaybeUninit::uninit(); SHORT_STACK])
+            self.search_with::<ANY>(ray, accept, &mut [MaybeUninit::uninit(); SHORT_STACK + SLACK])
         } else {
-            self.search_with::<ANY>(ray, accept, &mut vec![MaybeUninit::uninit(); self.stack_need])
+            self.search_with::<ANY>(ray, accept, &mut vec![MaybeUninit::uninit(); self.stack_need + SLACK])
         }
     }
 
@@ -155,7 +149,7 @@ impl Accel {
         self.traverse::<lanes::Avx2, ANY>(ray, accept, stack)
     }
 
-    /// Visits boxes nearest first.
+    /// Visits boxes nearest first; if `ANY`, in any order.
     #[inline(always)]
     fn traverse<L: Lanes, const ANY: bool>(
         &self,
@@ -167,20 +161,18 @@ impl Accel {
         let triangle_ray = TriangleRay::<L>::new(ray);
         let mut best: Option<Hit> = None;
         let mut t_max = ray.t_max;
-        let stack = stack.as_mut_ptr().cast::<Waiting>();
-        let mut len = 0usize;
+        let mut stack = Stack::new(stack);
         let mut child = self.root;
         loop {
             if let Some(index) = child.packet() {
                 // Test eight triangles; only a hit that is accepted shortens the ray.
+                // SAFETY: children point into the lists they were built with.
                 let packet = unsafe { self.packets.get_unchecked(index) };
                 let (mut mask, hits) = packet.intersect(&triangle_ray, t_max);
                 if mask != 0 {
                     let hits = hits.store();
                     while mask != 0 {
-                        let lane = mask.trailing_zeros() as usize;
-                        mask &= mask - 1;
-                        let hit = hits.lane(lane, packet);
+                        let hit = hits.lane(take_lowest(&mut mask), packet);
                         if is_better(&hit, best.as_ref(), ray.t_max) && accept(&hit) {
                             if ANY {
                                 return Some(hit);
@@ -191,60 +183,65 @@ impl Accel {
                     }
                 }
             } else {
-                // Test eight boxes; go on with the nearest, let the others wait, nearest on top.
+                // Test eight boxes; go on with one of those that are hit, the nearest if that matters.
+                // SAFETY: as above.
                 let node = unsafe { self.nodes.get_unchecked(child.node()) };
                 let (mut mask, near) = node.intersect(&node_ray, t_max);
                 if mask != 0 {
-                    let first = mask.trailing_zeros() as usize & 7;
-                    mask &= mask - 1;
+                    let first = take_lowest(&mut mask);
                     if mask == 0 {
-                        child = node.children[first];
+                        child = node.child(first);
                         continue;
                     }
-                    let near = near.store();
-                    let entry = |lane: usize| waiting(near.0[lane & 7], node.children[lane & 7]);
-                    let a = entry(first);
-                    let b = entry(mask.trailing_zeros() as usize);
-                    mask &= mask - 1;
-                    let (mut next, far) = (a.min(b), a.max(b));
-                    unsafe { stack.add(len).write(far) };
-                    let bottom = len;
-                    len += 1;
-                    while mask != 0 {
-                        let c = entry(mask.trailing_zeros() as usize);
-                        mask &= mask - 1;
-                        let (low, high) = (next.min(c), next.max(c));
-                        next = low;
-                        let mut place = len;
-                        while place > bottom {
-                            let below = unsafe { stack.add(place - 1).read() };
-                            if below >= high {
-                                break;
-                            }
-                            unsafe { stack.add(place).write(below) };
-                            place -= 1;
-                        }
-                        unsafe { stack.add(place).write(high) };
-                        len += 1;
+                    child = if ANY {
+                        stack.push_all(near, &node.children, mask);
+                        node.child(first)
+                    } else {
+                        stack.push_all_but_nearest(&near.store(), &node.children, first, mask)
+                    };
+                    if let Some((_, next)) = stack.top() {
+                        self.prefetch(next);
                     }
-                    child = Child::from_bits(next as u32);
                     continue;
                 }
             }
             // Take the next child that could still hold a nearer hit, or an equal one of lower index.
-            loop {
-                if len == 0 {
-                    return best;
+            child = loop {
+                let Some((near, next)) = stack.pop() else { return best };
+                if ANY || near <= t_max {
+                    break next;
                 }
-                len -= 1;
-                let next = unsafe { stack.add(len).read() };
-                if f32::from_bits((next >> 32) as u32) <= t_max {
-                    child = Child::from_bits(next as u32);
-                    break;
-                }
-            }
+            };
         }
     }
+
+    /// Asks memory for a child that may be visited after the next one.
+    #[inline(always)]
+    fn prefetch(&self, child: Child) {
+        #[cfg(target_arch = "x86_64")]
+        {
+            use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+            let start = match child.packet() {
+                Some(index) => self.packets.as_ptr().wrapping_add(index).cast::<i8>(),
+                None => self.nodes.as_ptr().wrapping_add(child.node()).cast::<i8>(),
+            };
+            // A node, or all of a packet but the indices, which only hits need.
+            for line in 0..4 {
+                // SAFETY: a hint; it reads nothing, whatever the address.
+                unsafe { _mm_prefetch::<_MM_HINT_T0>(start.wrapping_add(64 * line)) };
+            }
+        }
+        #[cfg(not(target_arch = "x86_64"))]
+        let _ = child;
+    }
+}
+
+/// The lowest lane of a mask that is not empty, which is then taken from it.
+#[inline(always)]
+fn take_lowest(mask: &mut u32) -> usize {
+    let lane = mask.trailing_zeros() as usize & 7;
+    *mask &= *mask - 1;
+    lane
 }
 
 fn is_better(hit: &Hit, best: Option<&Hit>, t_max: f32) -> bool {

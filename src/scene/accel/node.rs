@@ -55,14 +55,15 @@ impl Child {
 #[repr(C, align(64))]
 pub(super) struct Node {
     pub bounds: [Row; 6],
-    pub children: [Child; 8],
+    /// Bits of a [`Child`] each, so that they can be moved eight at a time.
+    pub children: [u32; 8],
 }
 
 impl Node {
     /// No children: every box is inside out, so no ray hits it.
     pub fn empty() -> Self {
         let (low, high) = (Row([f32::INFINITY; 8]), Row([f32::NEG_INFINITY; 8]));
-        Self { bounds: [low, high, low, high, low, high], children: [Child::EMPTY; 8] }
+        Self { bounds: [low, high, low, high, low, high], children: [Child::EMPTY.0; 8] }
     }
 
     pub fn set(&mut self, lane: usize, low: Vec3, high: Vec3, child: Child) {
@@ -70,7 +71,12 @@ impl Node {
             self.bounds[2 * axis].0[lane] = low[axis];
             self.bounds[2 * axis + 1].0[lane] = high[axis];
         }
-        self.children[lane] = child;
+        self.children[lane] = child.0;
+    }
+
+    #[inline(always)]
+    pub fn child(&self, lane: usize) -> Child {
+        Child(self.children[lane & 7])
     }
 
     /// Mask of the boxes a ray may meet before `t_max`, and where it enters each. The last bits differ between

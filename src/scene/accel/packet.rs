@@ -158,7 +158,7 @@ impl<L: Lanes> TriangleRay<L> {
         Self {
             origin: [L::splat(ray.origin[x]), L::splat(ray.origin[y]), L::splat(ray.origin[z])],
             axes,
-            shear: [L::splat(d[x] / d[z]), L::splat(d[y] / d[z]), L::splat(inverse)],
+            shear: [L::splat(d[x] * inverse), L::splat(d[y] * inverse), L::splat(inverse)],
             nearest: L::splat(inverse.abs() * NEAREST),
         }
     }

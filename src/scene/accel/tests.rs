@@ -1,4 +1,5 @@
 use super::*;
+use crate::exec::Pool;
 use crate::job::Monitor;
 use crate::rng::Rng;
 
@@ -92,13 +93,19 @@ fn has_wide() -> bool {
 fn no_ray_escapes_a_closed_box_through_its_edges_and_vertices() {
     let mut rng = Rng::new(2, &[]);
     let mut escaped = 0;
-    for (scale, offset) in
-        [(1.0, Vec3::ZERO), (1e-4, Vec3::ZERO), (1e6, Vec3::ZERO), (1.0, Vec3::new(900.0, -70.0, 3.0))]
-    {
+    // The last but one keeps 16 steps of rounding per square; in the last, squares shrink to lines and are dropped.
+    for (scale, offset) in [
+        (1.0, Vec3::ZERO),
+        (1e-4, Vec3::ZERO),
+        (1e6, Vec3::ZERO),
+        (1.0, Vec3::new(900.0, -70.0, 3.0)),
+        (20.0, Vec3::splat(1e6)),
+        (0.5, Vec3::splat(1e6)),
+    ] {
         let n = 24;
         let triangles = tessellated_box(n, offset - Vec3::ONE * scale, offset + Vec3::new(1.0, 0.7, 1.3) * scale);
         let accel = build(&triangles);
-        for _ in 0..250_000 {
+        for _ in 0..200_000 {
             let [a, b, c] = triangles[rng.below(triangles.len())];
             // A vertex, a point of an edge, or a point of the diagonal two triangles share.
             let target = match rng.below(3) {
@@ -155,4 +162,100 @@ fn a_long_chain_of_nested_triangles_needs_no_deep_stack() {
     let ray = Ray::new(Vec3::ZERO, Vec3::Z);
     assert_eq!(accel.closest(&ray, |_| true), brute_force(&triangles, &ray));
     assert_eq!(accel.closest(&ray, |_| true).unwrap().triangle, 0);
+}
+
+/// A room of twelve large triangles with a finely divided block in it: large enough to be built in parts, with parts of
+/// very unlike sizes.
+fn room_with_block() -> Vec<[Vec3; 3]> {
+    let mut triangles = tessellated_box(1, Vec3::splat(-3.0), Vec3::splat(3.0));
+    triangles.extend(tessellated_box(34, Vec3::new(-0.5, -3.0, 0.2), Vec3::new(0.7, 0.4, 1.1)));
+    triangles
+}
+
+#[test]
+fn every_triangle_lies_in_one_packet_inside_all_boxes_above_it() {
+    let triangles = room_with_block();
+    let accel = build(&triangles);
+    let mut seen = vec![0; triangles.len()];
+    let mut open = vec![(accel.root, accel.low, accel.high)];
+    while let Some((child, low, high)) = open.pop() {
+        if let Some(packet) = child.packet() {
+            for id in (0..8).map(|lane| accel.packets[packet].id(lane)).filter(|&id| id != u32::MAX) {
+                seen[id as usize] += 1;
+                assert!(triangles[id as usize].iter().all(|p| p.cmpge(low).all() && p.cmple(high).all()));
+            }
+        } else {
+            let node = &accel.nodes[child.node()];
+            for lane in (0..8).filter(|&lane| !node.child(lane).is_empty()) {
+                let corner = |side: usize| Vec3::from_array([0, 2, 4].map(|axis| node.bounds[axis + side].0[lane]));
+                assert!(corner(0).cmpge(low).all() && corner(1).cmple(high).all());
+                open.push((node.child(lane), corner(0), corner(1)));
+            }
+        }
+    }
+    assert!(seen.iter().all(|&count| count == 1));
+}
+
+#[test]
+fn a_scene_built_in_parts_gives_the_hits_of_testing_every_triangle() {
+    let triangles = room_with_block();
+    let accel = build(&triangles);
+    let mut rng = Rng::new(5, &[]);
+    for _ in 0..150 {
+        let ray = Ray::new(random_vec(&mut rng) * 2.9, random_vec(&mut rng));
+        assert_eq!(accel.closest(&ray, |_| true), brute_force(&triangles, &ray));
+    }
+}
+
+#[test]
+fn the_structure_is_the_same_to_the_bit_on_any_number_of_threads() {
+    let triangles = room_with_block();
+    let [a, b] = [1, 3].map(|threads| Pool::new(threads).unwrap().run(|| build(&triangles)));
+    assert_eq!((a.root, a.stack_need, a.nodes.len()), (b.root, b.stack_need, b.nodes.len()));
+    for (a, b) in a.nodes.iter().zip(&b.nodes) {
+        assert_eq!(a.children, b.children);
+        assert!(a.bounds.iter().zip(&b.bounds).all(|(a, b)| a.0 == b.0));
+    }
+    let ids = |accel: &Accel| accel.packets.iter().flat_map(|p| (0..8).map(|lane| p.id(lane))).collect::<Vec<_>>();
+    assert_eq!(ids(&a), ids(&b));
+}
+
+#[test]
+fn ten_thousand_copies_of_one_triangle_are_each_met_once() {
+    let triangle = [Vec3::ZERO, Vec3::X, Vec3::Y];
+    let mut accel = build(&[triangle; 10_000]);
+    let ray = Ray::new(Vec3::new(0.2, 0.3, 1.0), Vec3::NEG_Z);
+    for wide in [has_wide(), false] {
+        accel.wide_vectors = wide;
+        let mut met = vec![0; 10_000];
+        let refuse = |hit: &Hit| {
+            met[hit.triangle as usize] += 1;
+            false
+        };
+        assert!(!accel.occluded(&ray, refuse));
+        assert!(met.iter().all(|&count| count == 1));
+        assert_eq!(accel.closest(&ray, |_| true).unwrap().triangle, 0);
+        assert_eq!(accel.closest(&ray, |hit| hit.triangle >= 9_999).unwrap().triangle, 9_999);
+    }
+}
+
+#[test]
+fn few_triangles_among_broken_ones_are_found_at_every_scale() {
+    for scale in [1e-4, 1.0, 1e6, 1e15] {
+        for count in [1, 5] {
+            let square = |i: usize| [Vec3::ZERO, Vec3::X, Vec3::Y].map(|p| (p + Vec3::new(0.0, 0.0, i as f32)) * scale);
+            let mut triangles: Vec<[Vec3; 3]> = (0..count).map(square).collect();
+            // A corner that is no number, a point, a line.
+            triangles.insert(1, [Vec3::NAN, Vec3::X, Vec3::Y]);
+            triangles.insert(0, [Vec3::X * scale; 3]);
+            triangles.push([Vec3::ZERO, Vec3::X * scale, Vec3::X * 2.0 * scale]);
+            let accel = build(&triangles);
+            assert_eq!(accel.dropped(), 3);
+            let from_above = Ray::new(Vec3::new(0.25, 0.25, 9.0) * scale, Vec3::NEG_Z);
+            assert_eq!(accel.closest(&from_above, |_| true), brute_force(&triangles, &from_above));
+            assert!(accel.closest(&from_above, |_| true).is_some());
+            assert!(accel.occluded(&from_above, |_| true));
+            assert!(!accel.occluded(&Ray { t_max: 0.5 * scale, ..from_above }, |_| true));
+        }
+    }
 }
