@@ -35,9 +35,14 @@ impl Texture {
 
     /// The texel that covers a point, without interpolation.
     pub fn nearest(&self, uv: Vec2) -> Vec4 {
-        let (w, h) = (self.image.width, self.image.height);
-        let x = wrap_index((uv.x * w as f32).floor(), w, self.wrap[0]);
-        let y = wrap_index((uv.y * h as f32).floor(), h, self.wrap[1]);
+        let size = Vec2::new(self.image.width as f32, self.image.height as f32);
+        self.continued((uv * size).floor())
+    }
+
+    /// The texel at whole coordinates, which may lie outside the image: there the texture continues as it wraps.
+    pub fn continued(&self, texel: Vec2) -> Vec4 {
+        let x = wrap_index(texel.x, self.image.width, self.wrap[0]);
+        let y = wrap_index(texel.y, self.image.height, self.wrap[1]);
         self.texel(x, y)
     }
 
@@ -69,6 +74,10 @@ fn wrap_index(i: f32, size: usize, wrap: Wrap) -> usize {
     // Beyond 2^24 a float cannot tell neighbouring texels apart; NaN becomes 0.
     let i = i.clamp(-16_777_216.0, 16_777_216.0) as i32;
     let n = size as i32;
+    // Most of the time nothing wraps, and dividing takes its time.
+    if (0..n).contains(&i) {
+        return i as usize;
+    }
     let wrapped = match wrap {
         Wrap::Repeat => i.rem_euclid(n),
         Wrap::Clamp => i.clamp(0, n - 1),
