@@ -6,7 +6,7 @@
 
 use super::bsdf::{Bsdf, Kind, Lobes};
 use super::environment;
-use super::light::{LightEnd, LightSample};
+use super::light::{LightEnd, LightSample, Receiver};
 use super::sampler::Sampler;
 use super::vertex::Vertex;
 use super::world::{NONE, Pane, World};
@@ -62,9 +62,9 @@ struct Leg {
     /// The triangle it leaves.
     from: u32,
     throughput: Vec3,
-    /// Where the light was last sampled for, and the density of the direction then chosen; none if only scattering could
+    /// For what the light was last sampled, and the density of the direction then chosen; none if only scattering could
     /// find what lies ahead.
-    rival: Option<(Vec3, f32)>,
+    rival: Option<(Receiver, f32)>,
     /// Uniform in `[0, 1)`: decides whether the path ends by chance at the next vertex.
     fate: f32,
 }
@@ -119,13 +119,14 @@ fn scatter<O: Observer>(
     vertex: &Vertex,
     bsdf: &Bsdf,
     throughput: Vec3,
-    rival: Option<(Vec3, f32)>,
+    rival: Option<(Receiver, f32)>,
     sampler: &mut Sampler,
     observer: &mut O,
 ) -> Option<Leg> {
     let lighting = sampler.next();
+    let receiver = Receiver { position: vertex.position, normal: bsdf.normal() };
     if bsdf.spreads()
-        && let Some(light) = world.lights().sample(world.scene(), vertex.position, &lighting)
+        && let Some(light) = world.lights().sample(world.scene(), &receiver, &lighting)
     {
         add_light(world, vertex, bsdf, throughput, &light, observer);
     }
@@ -137,7 +138,7 @@ fn scatter<O: Observer>(
     }
     observer.scatter(vertex.mesh, scattered.kind, scattered.lobes);
     let rival = match scattered.kind {
-        Kind::Spread(density) => Some((vertex.position, density)),
+        Kind::Spread(density) => Some((receiver, density)),
         Kind::Mirrored => None,
         Kind::Through => rival,
     };
@@ -190,9 +191,9 @@ fn add_emission<O: Observer>(world: &World, leg: &Leg, vertex: &Vertex, observer
     if emission == Vec3::ZERO {
         return;
     }
-    let weight = leg.rival.map_or(1.0, |(from, density)| {
-        let distance = vertex.position.distance(from);
-        let rival = lights.surface_density(world.scene(), index, vertex.barycentric, direction, distance);
+    let weight = leg.rival.map_or(1.0, |(receiver, density)| {
+        let distance = vertex.position.distance(receiver.position);
+        let rival = lights.surface_density(&receiver, index, (emission, uv), direction, distance);
         power_heuristic(density, rival)
     });
     let source = LightSource::Surface { mesh: vertex.mesh, triangle: vertex.triangle, uv };

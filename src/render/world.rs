@@ -82,11 +82,11 @@ impl World {
         first.push(next as u32);
         let accel = Accel::build(&triangles, job.part(0.0, 0.8))?;
         // Gather the lights.
-        let emitters = Emitters::build(&scene, &facets, &first)?;
+        let (emitters, pieces) = Emitters::build(&scene, &facets, &first)?;
         emitters.emitters.iter().enumerate().for_each(|(i, e)| facets[e.id as usize].emitter = i as u32);
         job.check()?;
         let (low, high) = accel.bounds();
-        let lights = Lights::build(&scene, emitters, centre, (high - low).length() / 2.0)?;
+        let lights = Lights::build(&scene, emitters, pieces, centre, (high - low).length() / 2.0)?;
         // Find out what can be left out.
         let has_top = |m: &Material| m.ior > 1.0 || m.metallic > 0.0;
         let albedo_table = scene.materials.iter().any(has_top).then(AlbedoTable::new);

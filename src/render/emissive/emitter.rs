@@ -1,0 +1,93 @@
+//! A triangle that emits: what, from which side, and where.
+
+use crate::render::facet::Facet;
+use crate::scene::{Scene, Texture};
+use glam::{DVec2, Vec2, Vec3};
+
+pub struct Emitter {
+    pub mesh: u32,
+    /// Index within its mesh, and among all triangles of the scene.
+    pub triangle: u32,
+    pub id: u32,
+    pub corners: [Vec3; 3],
+    /// Of the front face, unit.
+    pub normal: Vec3,
+    pub area: f32,
+    pub double_sided: bool,
+    pub(super) factor: Vec3,
+    pub(super) texture: Option<usize>,
+    /// Texture coordinates of the corners, transformed as the material says.
+    pub(super) uv: [Vec2; 3],
+}
+
+impl Emitter {
+    /// None for a triangle that emits nothing or has no area.
+    pub(super) fn new(scene: &Scene, facet: &Facet, id: u32, first: &[u32]) -> Option<Self> {
+        let (mesh, triangle) = (facet.mesh, id - first[facet.mesh as usize]);
+        let m = &scene.meshes[mesh as usize];
+        let material = &scene.materials[m.material];
+        if material.emission.max_element() <= 0.0 {
+            return None;
+        }
+        let corners = facet.corners();
+        let [a, b, c] = corners.map(|p| p.as_dvec3());
+        let doubled = (b - a).cross(c - a);
+        let area = (doubled.length() / 2.0) as f32;
+        if !(area.is_finite() && area > 0.0) {
+            return None;
+        }
+        let mut uv = [Vec2::ZERO; 3];
+        if let Some(t) = &material.emission_texture
+            && !m.uvs[t.uv_set].is_empty()
+        {
+            uv = m.triangles[triangle as usize].map(|i| t.transform.transform_point2(m.uvs[t.uv_set][i as usize]));
+        }
+        Some(Self {
+            mesh,
+            triangle,
+            id,
+            corners,
+            normal: doubled.normalize().as_vec3(),
+            area,
+            double_sided: material.double_sided,
+            factor: material.emission.max(Vec3::ZERO),
+            texture: material.emission_texture.as_ref().map(|t| t.texture),
+            uv,
+        })
+    }
+
+    /// What a point emits in cd/m² per channel, and the texture coordinates it was looked up with.
+    pub fn emission(&self, scene: &Scene, barycentric: Vec2) -> (Vec3, Vec2) {
+        let b = barycentric;
+        let uv = self.uv[0] * (1.0 - b.x - b.y) + self.uv[1] * b.x + self.uv[2] * b.y;
+        match self.texture {
+            None => (self.factor, uv),
+            Some(texture) => (self.factor * scene.textures[texture].nearest(uv).truncate().max(Vec3::ZERO), uv),
+        }
+    }
+
+    /// What a texel of the emitter's texture, continued as it wraps, emits.
+    pub(super) fn emission_of_texel(&self, texture: &Texture, texel: Vec2) -> f32 {
+        mean_channel(self.factor * texture.continued(texel).truncate().max(Vec3::ZERO))
+    }
+
+    pub fn point(&self, b: Vec2) -> Vec3 {
+        self.corners[0] * (1.0 - b.x - b.y) + self.corners[1] * b.x + self.corners[2] * b.y
+    }
+
+    /// Whether the side seen along `direction` (towards the emitter) emits.
+    pub fn faces(&self, direction: Vec3) -> bool {
+        self.double_sided || self.normal.dot(direction) < 0.0
+    }
+
+    /// Corners in texels.
+    pub(super) fn texels(&self, texture: &Texture) -> [DVec2; 3] {
+        let size = DVec2::new(texture.image.width as f64, texture.image.height as f64);
+        self.uv.map(|uv| uv.as_dvec2() * size)
+    }
+}
+
+/// Brightness by which light is shared out: no channel that emits is overlooked.
+pub fn mean_channel(v: Vec3) -> f32 {
+    v.element_sum() / 3.0
+}

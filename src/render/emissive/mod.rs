@@ -1,0 +1,164 @@
+//! Light from emissive triangles, their textures sampled in proportion to what they emit.
+//!
+//! Emitters are cut into pieces, among which [`super::light`] chooses: a triangle of even emission is one piece, of a
+//! textured one every tile of 8 × 8 texels that emits. Within a piece a point is chosen in proportion to its emission,
+//! texel by texel: its density is its own emission over the intensity of the piece. So thousands of small lamps in one
+//! texture cost what one lamp costs, and a light never is chosen where it is dark. Emissive textures are looked up without
+//! interpolation for that. Triangles whose texture coordinates span no area (or too many texels to enumerate) are one
+//! piece, sampled uniformly.
+
+mod emitter;
+mod polygon;
+mod tiles;
+
+pub use emitter::{Emitter, mean_channel};
+
+use super::facet::Facet;
+use super::light::Bounds;
+use crate::error::Result;
+use crate::image::try_vec;
+use crate::scene::Scene;
+use glam::Vec2;
+use polygon::uniform_in_triangle;
+use rayon::prelude::*;
+use tiles::{LitTile, Tile, Tiling};
+
+/// No piece, no tiling.
+const NONE: u32 = u32::MAX;
+
+pub struct Emitters {
+    pub emitters: Vec<Emitter>,
+    /// How each emitter is divided.
+    divisions: Vec<Division>,
+    tilings: Vec<Tiling>,
+    /// For every tile of every tiling the piece that it is, or `NONE` where it is dark.
+    piece_of_tile: Vec<u32>,
+    /// The pieces: triangles of even emission, then tiles.
+    even: Vec<Even>,
+    tiles: Vec<Tile>,
+    /// Flux of all emitters in lumens, one-sided.
+    pub power: f64,
+}
+
+#[derive(Clone, Copy)]
+enum Division {
+    /// One piece, or `NONE` where it is dark.
+    Even(u32),
+    /// By a tiling whose tiles start at an entry of `piece_of_tile`.
+    Tiled { tiling: u32, first: usize },
+}
+
+/// A triangle that is one piece.
+struct Even {
+    emitter: u32,
+    /// Emission times area, mean of the channels: luminous intensity (cd) head-on.
+    intensity: f32,
+}
+
+impl Emitters {
+    /// `facets` are the triangles of a scene whose indices have been checked, `first` the number of each mesh's first.
+    /// Returns the bounds of every piece as well.
+    pub fn build(scene: &Scene, facets: &[Facet], first: &[u32]) -> Result<(Self, Vec<Bounds>)> {
+        let numbered = facets.iter().zip(0..);
+        let emitters: Vec<Emitter> = numbered.filter_map(|(f, id)| Emitter::new(scene, f, id, first)).collect();
+        let mut this = Self {
+            divisions: try_vec(emitters.len(), Division::Even(NONE))?,
+            emitters,
+            tilings: Vec::new(),
+            piece_of_tile: Vec::new(),
+            even: Vec::new(),
+            tiles: Vec::new(),
+            power: 0.0,
+        };
+        let mut bounds = Vec::new();
+        this.add_even(scene, &mut bounds);
+        this.add_tiled(scene, &mut bounds)?;
+        let intensities = this.even.iter().map(|e| e.intensity).chain(this.tiles.iter().map(|t| t.intensity));
+        this.power = std::f64::consts::PI * intensities.map(f64::from).sum::<f64>();
+        Ok((this, bounds))
+    }
+
+    /// Pieces for the emitters that are not to be cut up, tilings for the others.
+    fn add_even(&mut self, scene: &Scene, bounds: &mut Vec<Bounds>) {
+        for (index, emitter) in self.emitters.iter().enumerate() {
+            let texture = emitter.texture.map(|t| &scene.textures[t]);
+            if let Some(tiling) = texture.and_then(|t| Tiling::new(emitter, t)) {
+                self.divisions[index] = Division::Tiled { tiling: self.tilings.len() as u32, first: 0 };
+                self.tilings.push(tiling);
+                continue;
+            }
+            let mean = texture.map_or(f64::from(mean_channel(emitter.factor)), |t| Tiling::mean_around(emitter, t));
+            let intensity = (mean * f64::from(emitter.area)) as f32;
+            if intensity > 0.0 && intensity.is_finite() {
+                self.divisions[index] = Division::Even(self.even.len() as u32);
+                self.even.push(Even { emitter: index as u32, intensity });
+                bounds.push(Bounds::of_surface(&emitter.corners, emitter.normal, emitter.double_sided, intensity));
+            }
+        }
+    }
+
+    /// A piece for every tile that emits.
+    fn add_tiled(&mut self, scene: &Scene, bounds: &mut Vec<Bounds>) -> Result<()> {
+        // Rows of tiles are the units of work; those of an emitter follow each other.
+        let mut work = Vec::new();
+        let mut count = 0;
+        for (index, division) in self.divisions.iter_mut().enumerate() {
+            if let Division::Tiled { tiling, first } = division {
+                *first = count;
+                let tiling = &self.tilings[*tiling as usize];
+                work.extend((0..tiling.rows).map(|row| (index, row, count + row * tiling.columns, tiling)));
+                count += tiling.rows * tiling.columns;
+            }
+        }
+        self.piece_of_tile = try_vec(count, NONE)?;
+        let lit: Vec<Vec<LitTile>> = work
+            .par_iter()
+            .map(|&(index, row, _, tiling)| {
+                let emitter = &self.emitters[index];
+                let texture = emitter.texture.map(|t| &scene.textures[t]);
+                texture.map_or(Vec::new(), |t| tiling.lit_tiles(index as u32, emitter, t, row))
+            })
+            .collect();
+        for (&(index, _, first, _), tiles) in work.iter().zip(lit) {
+            let emitter = &self.emitters[index];
+            for LitTile { tile, column, outline } in tiles {
+                self.piece_of_tile[first + column] = (self.even.len() + self.tiles.len()) as u32;
+                bounds.push(Bounds::of_surface(&outline, emitter.normal, emitter.double_sided, tile.intensity));
+                self.tiles.push(tile);
+            }
+        }
+        Ok(())
+    }
+
+    /// A point of a piece in proportion to its emission: the emitter and the barycentric coordinates. `u` chooses the
+    /// texel, `v` the point.
+    pub fn sample(&self, piece: usize, u: f64, v: Vec2) -> Option<(usize, Vec2)> {
+        let Some(tile) = piece.checked_sub(self.even.len()).map(|t| &self.tiles[t]) else {
+            return Some((self.even[piece].emitter as usize, uniform_in_triangle(v)));
+        };
+        let emitter = tile.emitter as usize;
+        let Division::Tiled { tiling, .. } = self.divisions[emitter] else { return None };
+        Some((emitter, self.tilings[tiling as usize].sample(tile, u, v)?))
+    }
+
+    /// The piece that a point of an emitter belongs to, by its texture coordinates; none where it is dark.
+    pub fn piece_at(&self, emitter: usize, uv: Vec2) -> Option<usize> {
+        let piece = match self.divisions[emitter] {
+            Division::Even(piece) => piece,
+            Division::Tiled { tiling, first } => self.piece_of_tile[first + self.tilings[tiling as usize].tile_at(uv)],
+        };
+        (piece != NONE).then_some(piece as usize)
+    }
+
+    /// Probability per m² with which [`Emitters::sample`] chooses a point of a piece that emits `brightness`, the mean of
+    /// the channels.
+    pub fn density(&self, piece: usize, brightness: f32) -> f32 {
+        match piece.checked_sub(self.even.len()) {
+            Some(tile) => brightness / self.tiles[tile].intensity,
+            None => 1.0 / self.emitters[self.even[piece].emitter as usize].area,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

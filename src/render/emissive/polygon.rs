@@ -1,0 +1,119 @@
+//! The part of a rectangle of texels inside a triangle.
+
+use glam::{DVec2, Vec2};
+
+/// Rectangles of texels, from and to which they run along u and v.
+#[derive(Clone, Copy)]
+pub struct Rectangle {
+    pub low: DVec2,
+    pub high: DVec2,
+}
+
+/// How a rectangle lies to a triangle.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Overlap {
+    None,
+    /// Some of it is inside, or so little of it is outside that only clipping can tell.
+    Part,
+    Whole,
+}
+
+impl Rectangle {
+    pub fn area(&self) -> f64 {
+        (self.high - self.low).element_product()
+    }
+
+    /// Which part of the rectangle a triangle covers, by its edges alone.
+    pub fn overlap(&self, triangle: &[DVec2; 3]) -> Overlap {
+        let [a, b, c] = *triangle;
+        let side = (b - a).perp_dot(c - a).signum();
+        let (centre, half) = ((self.low + self.high) / 2.0, (self.high - self.low) / 2.0);
+        let mut overlap = Overlap::Whole;
+        for (p, q) in [(a, b), (b, c), (c, a)] {
+            let edge = q - p;
+            let (middle, spread) = (edge.perp_dot(centre - p) * side, edge.abs().perp().abs().dot(half));
+            if middle + spread <= 0.0 {
+                return Overlap::None;
+            }
+            if middle - spread < 0.0 {
+                overlap = Overlap::Part;
+            }
+        }
+        overlap
+    }
+}
+
+/// A triangle clipped to a rectangle: at most seven corners.
+pub struct Polygon {
+    corners: [DVec2; 8],
+    len: usize,
+}
+
+impl Polygon {
+    pub fn clipped(triangle: &[DVec2; 3], to: &Rectangle) -> Self {
+        let mut polygon = Self { corners: [DVec2::ZERO; 8], len: 3 };
+        polygon.corners[..3].copy_from_slice(triangle);
+        polygon.clip(|p| p.x - to.low.x);
+        polygon.clip(|p| to.high.x - p.x);
+        polygon.clip(|p| p.y - to.low.y);
+        polygon.clip(|p| to.high.y - p.y);
+        polygon
+    }
+
+    pub fn corners(&self) -> &[DVec2] {
+        &self.corners[..self.len]
+    }
+
+    /// Keeps the part where `inside` is not negative (Sutherland and Hodgman 1974).
+    fn clip(&mut self, inside: impl Fn(DVec2) -> f64) {
+        let from = self.corners;
+        let mut len = 0;
+        for i in 0..self.len {
+            let (p, q) = (from[i], from[(i + 1) % self.len]);
+            let (dp, dq) = (inside(p), inside(q));
+            if dp >= 0.0 && len < 8 {
+                self.corners[len] = p;
+                len += 1;
+            }
+            if dp * dq < 0.0 && len < 8 {
+                self.corners[len] = p + (q - p) * (dp / (dp - dq));
+                len += 1;
+            }
+        }
+        self.len = len;
+    }
+
+    /// Doubled areas of the triangles of a fan.
+    fn fan(&self, i: usize) -> f64 {
+        let [a, b, c] = [self.corners[0], self.corners[i], self.corners[i + 1]];
+        (b - a).perp_dot(c - a).abs()
+    }
+
+    pub fn area(&self) -> f64 {
+        (1..self.len.saturating_sub(1)).map(|i| self.fan(i)).sum::<f64>() / 2.0
+    }
+
+    /// A point uniform by area: `u` chooses the triangle of the fan, `v` the point in it.
+    pub fn sample(&self, u: f64, v: Vec2) -> Option<DVec2> {
+        let mut target = u * 2.0 * self.area();
+        let last = self.len.checked_sub(2).filter(|&l| l > 0)?;
+        let mut chosen = last;
+        for i in 1..=last {
+            let area = self.fan(i);
+            if target < area {
+                chosen = i;
+                break;
+            }
+            target -= area;
+        }
+        let b = uniform_in_triangle(v).as_dvec2();
+        let [p, q, r] = [self.corners[0], self.corners[chosen], self.corners[chosen + 1]];
+        Some(p + (q - p) * b.x + (r - p) * b.y)
+    }
+}
+
+/// Barycentric coordinates of corners 1 and 2, uniform by area.
+pub fn uniform_in_triangle(v: Vec2) -> Vec2 {
+    let root = v.x.sqrt();
+    Vec2::new(root * (1.0 - v.y), root * v.y)
+}

@@ -1,0 +1,197 @@
+//! A triangle's part of its texture, cut into tiles of 8 × 8 texels, each with a table by which its texels are chosen.
+//!
+//! Tiles lie on the grid of texels, repeated as the texture wraps; of those on the triangle's edge only the covered part
+//! counts. A tile's table is four cache lines, and dark tiles have none.
+
+use super::emitter::Emitter;
+use super::polygon::{Overlap, Polygon, Rectangle};
+use crate::scene::Texture;
+use glam::{DMat2, DVec2, Vec2, Vec3};
+
+/// Texels along the side of a tile.
+pub const SIDE: usize = 8;
+
+/// Beyond this many texels, and four times those of the texture, a triangle is not cut up.
+const MAX_TEXELS: f64 = (1 << 26) as f64;
+/// Where single-precision texture coordinates no longer tell neighbouring texels apart.
+const FARTHEST: f64 = 8e6;
+
+/// How a triangle is cut into tiles.
+pub struct Tiling {
+    /// The triangle's corners in texels.
+    triangle: [DVec2; 3],
+    /// From the offset to the first corner, in texels, to barycentric coordinates.
+    to_barycentric: DMat2,
+    /// First texel, and number of tiles along u and v.
+    start: [i64; 2],
+    pub columns: usize,
+    pub rows: usize,
+    /// Size of the texture in texels, as its look-up has it.
+    size: Vec2,
+}
+
+/// A tile that emits, all of it side by side in memory.
+#[repr(align(64))]
+pub struct Tile {
+    pub emitter: u32,
+    /// Emission times area, mean of the channels: luminous intensity (cd) head-on.
+    pub intensity: f32,
+    column: u32,
+    row: u32,
+    /// Whether the triangle covers all of it.
+    whole: bool,
+    /// Share of the tile's light that comes from its texels up to and including each, row by row.
+    shares: [f32; SIDE * SIDE],
+}
+
+/// A tile with its column, and with corners of a part of the triangle's plane that holds all of the tile's light.
+pub struct LitTile {
+    pub tile: Tile,
+    pub column: usize,
+    pub outline: Vec<Vec3>,
+}
+
+impl Tiling {
+    /// None where texture coordinates span no area or a single texel, or too many texels to enumerate.
+    pub fn new(emitter: &Emitter, texture: &Texture) -> Option<Self> {
+        let triangle = emitter.texels(texture);
+        let [a, b, c] = triangle;
+        let (low, high) = (a.min(b).min(c).floor(), a.max(b).max(c).floor());
+        let span = high - low + 1.0;
+        let area = (b - a).perp_dot(c - a).abs() / 2.0;
+        let texels = texture.image.width as f64 * texture.image.height as f64;
+        let texels_spanned = span.element_product();
+        let countable = texels_spanned > 1.0 && texels_spanned <= MAX_TEXELS.max(4.0 * texels);
+        if !(countable && low.abs().max(high.abs()).max_element() < FARTHEST && area > 1e-6 * texels_spanned) {
+            return None;
+        }
+        let to_barycentric = DMat2::from_cols(b - a, c - a).inverse();
+        let tiles = |texels: f64| (texels as usize).div_ceil(SIDE);
+        to_barycentric.is_finite().then(|| Self {
+            triangle,
+            to_barycentric,
+            start: [low.x as i64, low.y as i64],
+            columns: tiles(span.x),
+            rows: tiles(span.y),
+            size: Vec2::new(texture.image.width as f32, texture.image.height as f32),
+        })
+    }
+
+    /// The tile, counted row by row, that the texture coordinates of a point lie in.
+    pub fn tile_at(&self, uv: Vec2) -> usize {
+        let texel = (uv * self.size).floor();
+        let tile = |texel: f32, start: i64, count: usize| {
+            // Rounding can put a point of the border one texel outside the triangle's tiles.
+            ((texel as i64 - start) / SIDE as i64).clamp(0, count as i64 - 1) as usize
+        };
+        tile(texel.y, self.start[1], self.rows) * self.columns + tile(texel.x, self.start[0], self.columns)
+    }
+
+    /// The tiles of a row that emit.
+    pub fn lit_tiles(&self, index: u32, emitter: &Emitter, texture: &Texture, row: usize) -> Vec<LitTile> {
+        let doubled = (self.triangle[1] - self.triangle[0]).perp_dot(self.triangle[2] - self.triangle[0]).abs();
+        let scale = 2.0 * f64::from(emitter.area) / doubled;
+        let tile = |column| self.tile(emitter, texture, column, row, scale);
+        let with_index = |lit: LitTile| LitTile { tile: Tile { emitter: index, ..lit.tile }, ..lit };
+        (0..self.columns).filter_map(tile).map(with_index).collect()
+    }
+
+    /// `scale` is the area in m² of a texel.
+    fn tile(&self, emitter: &Emitter, texture: &Texture, column: usize, row: usize, scale: f64) -> Option<LitTile> {
+        let first = self.first_texel(column, row);
+        let overlap = rectangle(first, SIDE as f64).overlap(&self.triangle);
+        if overlap == Overlap::None {
+            return None;
+        }
+        let mut sums = [0.0f64; SIDE * SIDE];
+        let mut sum = 0.0;
+        let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+        for (i, running) in sums.iter_mut().enumerate() {
+            let texel = first + DVec2::new((i % SIDE) as f64, (i / SIDE) as f64);
+            let emission = emitter.emission_of_texel(texture, texel.as_vec2());
+            if emission > 0.0 {
+                let area = if overlap == Overlap::Whole { 1.0 } else { self.covered(&rectangle(texel, 1.0)) };
+                if area > 0.0 {
+                    sum += f64::from(emission) * area * scale;
+                    (low, high) = (low.min(texel), high.max(texel + 1.0));
+                }
+            }
+            *running = sum;
+        }
+        let intensity = sum as f32;
+        if !(intensity > 0.0 && intensity.is_finite()) {
+            return None;
+        }
+        let lit = Polygon::clipped(&self.triangle, &Rectangle { low, high });
+        let outline = lit.corners().iter().map(|&p| emitter.point(self.barycentric(p))).collect();
+        let shares = sums.map(|s| (s / sum) as f32);
+        let whole = overlap == Overlap::Whole;
+        let tile = Tile { emitter: 0, intensity, column: column as u32, row: row as u32, whole, shares };
+        Some(LitTile { tile, column, outline })
+    }
+
+    /// Area of the triangle's part of a rectangle, in texels.
+    fn covered(&self, rectangle: &Rectangle) -> f64 {
+        match rectangle.overlap(&self.triangle) {
+            Overlap::None => 0.0,
+            Overlap::Whole => rectangle.area(),
+            Overlap::Part => Polygon::clipped(&self.triangle, rectangle).area(),
+        }
+    }
+
+    /// A point of a tile in proportion to its emission, in barycentric coordinates: `u` chooses the texel, `v` the point.
+    pub fn sample(&self, tile: &Tile, u: f64, v: Vec2) -> Option<Vec2> {
+        let (shares, target) = (&tile.shares, u as f32);
+        // All at once rather than by halves: the table is in the cache, and nothing is to be predicted.
+        let before = shares.iter().map(|&share| u32::from(share <= target)).sum::<u32>() as usize;
+        let index = before.min(SIDE * SIDE - 1);
+        let texel = self.first_texel(tile.column as usize, tile.row as usize)
+            + DVec2::new((index % SIDE) as f64, (index / SIDE) as f64);
+        let point = if tile.whole {
+            texel + v.as_dvec2()
+        } else {
+            let low = if index == 0 { 0.0 } else { shares[index - 1] };
+            let within = ((target - low) / (shares[index] - low)).clamp(0.0, 1.0);
+            let texel = rectangle(texel, 1.0);
+            match texel.overlap(&self.triangle) {
+                Overlap::Whole => texel.low + v.as_dvec2(),
+                _ => Polygon::clipped(&self.triangle, &texel).sample(f64::from(within), v)?,
+            }
+        };
+        Some(self.barycentric(point))
+    }
+
+    fn first_texel(&self, column: usize, row: usize) -> DVec2 {
+        let texel = |start: i64, tile: usize| (start + (tile * SIDE) as i64) as f64;
+        DVec2::new(texel(self.start[0], column), texel(self.start[1], row))
+    }
+
+    fn barycentric(&self, texel: DVec2) -> Vec2 {
+        let b = (self.to_barycentric * (texel - self.triangle[0])).max(DVec2::ZERO);
+        (b / b.element_sum().max(1.0)).as_vec2()
+    }
+
+    /// Mean emission of the texels around the triangle: positive if any of it emits.
+    pub fn mean_around(emitter: &Emitter, texture: &Texture) -> f64 {
+        let [a, b, c] = emitter.texels(texture);
+        let (low, high) = (a.min(b).min(c).floor(), a.max(b).max(c).floor());
+        let (width, height) = (texture.image.width, texture.image.height);
+        let span = high - low + 1.0;
+        // More texels than the texture has: all of them.
+        let fits = span.x <= width as f64 && span.y <= height as f64 && low.abs().max_element() < FARTHEST;
+        let (low, columns, rows) =
+            if fits { (low, span.x as usize, span.y as usize) } else { (DVec2::ZERO, width, height) };
+        let mut sum = 0.0;
+        for y in 0..rows {
+            for x in 0..columns {
+                let texel = low + DVec2::new(x as f64, y as f64);
+                sum += f64::from(emitter.emission_of_texel(texture, texel.as_vec2()));
+            }
+        }
+        sum / (columns * rows) as f64
+    }
+}
+
+fn rectangle(low: DVec2, side: f64) -> Rectangle {
+    Rectangle { low, high: low + side }
+}

@@ -1,0 +1,482 @@
+//! Light sampling: frequencies against stated probabilities, and estimates against closed forms.
+
+use super::*;
+use crate::exec::Pool;
+use crate::image::Image;
+use crate::job::Monitor;
+use crate::render::sampler::Sampler;
+use crate::render::{PathSink, SurfacePoint, World, irradiance};
+use crate::rng::Rng;
+use crate::scene::{Environment, Material, Mesh, PunctualLight, Texture, TextureRef};
+use glam::Vec3Swizzles;
+use std::f32::consts::{FRAC_PI_2, TAU};
+use std::sync::Arc;
+
+fn direction(rng: &mut Rng) -> Vec3 {
+    let (z, angle) = (1.0 - 2.0 * rng.next_f32(), TAU * rng.next_f32());
+    let r = (1.0 - z * z).sqrt();
+    Vec3::new(r * angle.cos(), r * angle.sin(), z)
+}
+
+fn within(rng: &mut Rng, side: f32) -> Vec3 {
+    (Vec3::new(rng.next_f32(), rng.next_f32(), rng.next_f32()) - 0.5) * side
+}
+
+/// Triangles of all sizes, one- and two-sided, points and cones, `offset` from the origin.
+fn lights(count: usize, offset: Vec3, rng: &mut Rng) -> Vec<(Bounds, [Vec3; 3])> {
+    let mut light = |i: usize| {
+        let intensity = 10f32.powf(4.0 * rng.next_f32() - 2.0);
+        let place = offset + within(rng, 10.0);
+        match i % 8 {
+            0 => (Bounds::of_point(place, intensity), [place; 3]),
+            1 => (Bounds::of_cone(place, direction(rng), 0.1 + 1.4 * rng.next_f32(), intensity), [place; 3]),
+            kind => {
+                let size = 10f32.powf(3.0 * rng.next_f32() - 2.5);
+                let corners = [place, place + direction(rng) * size, place + direction(rng) * size];
+                let [a, b, c] = corners.map(|p| p.as_dvec3());
+                let normal = (b - a).cross(c - a).normalize().as_vec3();
+                (Bounds::of_surface(&corners, normal, kind > 5, intensity), corners)
+            }
+        }
+    };
+    (0..count).map(&mut light).collect()
+}
+
+fn receivers(count: usize, offset: Vec3, rng: &mut Rng) -> Vec<Receiver> {
+    (0..count).map(|_| Receiver { position: offset + within(rng, 12.0), normal: direction(rng) }).collect()
+}
+
+fn tree(lights: &[(Bounds, [Vec3; 3])]) -> LightTree {
+    LightTree::build(&lights.iter().map(|l| l.0).collect::<Vec<_>>()).unwrap()
+}
+
+/// Upper quantile of chi-squared for a standard normal deviate `z` (Wilson and Hilferty 1931).
+fn chi_squared_quantile(degrees: f64, z: f64) -> f64 {
+    let a = 2.0 / (9.0 * degrees);
+    degrees * (1.0 - a + z * a.sqrt()).powi(3)
+}
+
+#[test]
+fn lights_are_chosen_as_often_as_the_tree_states() {
+    let mut rng = Rng::new(41, &[]);
+    let n = 40_000;
+    for count in [1, 2, 8, 9, 300] {
+        let lights = lights(count, Vec3::ZERO, &mut rng);
+        let tree = tree(&lights);
+        for receiver in receivers(8, Vec3::ZERO, &mut rng) {
+            let stated: Vec<f64> = (0..count).map(|l| f64::from(tree.probability(&receiver, l))).collect();
+            let total: f64 = stated.iter().sum();
+            assert!(total < 1.0 + 1e-5);
+            let mut counts = vec![0.0; count + 1];
+            for i in 0..n {
+                // Stratified: chi-squared is then below its limit all the more, unless something is wrong.
+                match tree.sample(&receiver, (f64::from(i) + rng.next_f64()) / f64::from(n)) {
+                    None => counts[count] += 1.0,
+                    Some((light, probability, rest)) => {
+                        counts[light] += 1.0;
+                        assert!((0.0..1.0).contains(&rest));
+                        // The product is taken upwards there and downwards here.
+                        assert!((f64::from(probability) / stated[light] - 1.0).abs() < 1e-5);
+                    }
+                }
+            }
+            let expected = stated.iter().copied().chain([(1.0 - total).max(0.0)]).map(|p| p * f64::from(n));
+            let (mut chi2, mut degrees, mut pool) = (0.0, 0.0, (0.0, 0.0));
+            for (&count, mean) in counts.iter().zip(expected) {
+                pool = (pool.0 + count, pool.1 + mean);
+                if pool.1 >= 10.0 {
+                    chi2 += (pool.0 - pool.1).powi(2) / pool.1;
+                    degrees += 1.0;
+                    pool = (0.0, 0.0);
+                }
+            }
+            // Significance 1e-3 over all 40 cases (Šidák).
+            assert!(chi2 < chi_squared_quantile(degrees, 4.06), "{chi2} for {count} lights, {degrees} degrees");
+        }
+    }
+}
+
+#[test]
+fn no_light_that_can_arrive_has_probability_0() {
+    let mut rng = Rng::new(42, &[]);
+    for offset in [Vec3::ZERO, Vec3::new(1e6, -3e5, 2e5)] {
+        let lights = lights(200, offset, &mut rng);
+        let tree = tree(&lights);
+        let mut arriving = 0;
+        for receiver in receivers(100, offset, &mut rng) {
+            for (index, (bounds, [a, b, c])) in lights.iter().enumerate() {
+                let (u, v) = (rng.next_f32(), rng.next_f32());
+                let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
+                let towards = a + (b - a) * u + (c - a) * v - receiver.position;
+                let off_axis = bounds.axis.angle_between(-towards);
+                let shines = bounds.axis == Vec3::ZERO
+                    || off_axis < bounds.reach
+                    || (bounds.two_sided && std::f32::consts::PI - off_axis < bounds.reach);
+                if shines && towards.dot(receiver.normal) > 0.0 {
+                    arriving += 1;
+                    assert!(tree.probability(&receiver, index) > 0.0, "{bounds:?} to {receiver:?}");
+                }
+            }
+        }
+        assert!(arriving > 4000, "{arriving}");
+    }
+}
+
+#[test]
+fn near_lamps_are_preferred_to_far_ones_and_those_behind_are_left_out() {
+    // A ceiling of 40 × 40 lamps, 3 m above.
+    let lamp = |i: usize| {
+        let corner = Vec3::new((i % 40) as f32, 3.0, (i / 40) as f32);
+        Bounds::of_surface(&[corner, corner + Vec3::new(0.1, 0.0, 0.1)], Vec3::NEG_Y, false, 1.0)
+    };
+    let bounds: Vec<Bounds> = (0..1600).map(lamp).collect();
+    let tree = LightTree::build(&bounds).unwrap();
+    let position = Vec3::new(10.0, 0.0, 20.0);
+    let near = |normal: Vec3| -> f32 {
+        let receiver = Receiver { position, normal };
+        let around = (0..1600).filter(|&i| (bounds[i].low - position).length() < 9.0);
+        around.map(|i| tree.probability(&receiver, i)).sum()
+    };
+    // E = ∫ h² / (h² + r²)² dA: the share within r = √72 of 3 m is 72 / 81.
+    assert!((near(Vec3::Y) - 72.0 / 81.0).abs() < 0.05, "{}", near(Vec3::Y));
+    assert_eq!(near(Vec3::NEG_Y), 0.0);
+    let from_above = Receiver { position: position + Vec3::Y * 4.0, normal: Vec3::NEG_Y };
+    assert!(tree.sample(&from_above, 0.5).is_none());
+}
+
+#[test]
+fn any_number_of_threads_builds_the_same_tree() {
+    let mut rng = Rng::new(43, &[]);
+    let lights = lights(10_000, Vec3::ZERO, &mut rng);
+    let receivers = receivers(200, Vec3::ZERO, &mut rng);
+    let choices = |threads| {
+        Pool::new(threads).unwrap().run(|| {
+            let tree = tree(&lights);
+            receivers.iter().map(|r| tree.sample(r, 0.37)).collect::<Vec<_>>()
+        })
+    };
+    assert!(choices(1) == choices(3));
+}
+
+#[test]
+fn lights_all_in_one_place_or_of_all_sizes_make_a_tree() {
+    let same = vec![Bounds::of_point(Vec3::ONE, 1.0); 1000];
+    let growing: Vec<Bounds> =
+        (0..600).map(|i| Bounds::of_point(Vec3::X * 1.05f32.powi(i - 300), 1.1f32.powi(300 - i))).collect();
+    for lights in [same, growing] {
+        let tree = LightTree::build(&lights).unwrap();
+        let receiver = Receiver { position: Vec3::NEG_X, normal: Vec3::X };
+        let sum: f32 = (0..lights.len()).map(|l| tree.probability(&receiver, l)).sum();
+        assert!((sum - 1.0).abs() < 1e-3, "{sum}");
+    }
+    let halves = [1.0, 3.0].map(|intensity| Bounds::of_point(Vec3::ONE, intensity));
+    let tree = LightTree::build(&halves).unwrap();
+    let receiver = Receiver { position: Vec3::NEG_X, normal: Vec3::X };
+    assert_eq!([0, 1].map(|l| tree.probability(&receiver, l)), [0.25, 0.75]);
+    assert_eq!(tree.sample(&receiver, 0.5), Some((1, 0.75, 1.0 / 3.0)));
+    let none = LightTree::build(&[]).unwrap();
+    assert!(none.sample(&Receiver { position: Vec3::ZERO, normal: Vec3::X }, 0.5).is_none());
+}
+
+fn matt(albedo: f32, emission: f32) -> Material {
+    Material { emission: Vec3::splat(emission), double_sided: false, ..Material::diffuse("", Vec3::splat(albedo)) }
+}
+
+fn quad(corner: Vec3, u: Vec3, v: Vec3, material: usize) -> Mesh {
+    Mesh {
+        material,
+        positions: vec![corner, corner + u, corner + u + v, corner + v],
+        uvs: [vec![Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y], Vec::new()],
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+        ..Mesh::default()
+    }
+}
+
+/// A black floor of 2 × 2 mm around the origin, facing up, and others.
+fn over_floor(meshes: Vec<Mesh>, materials: Vec<Material>) -> Scene {
+    let floor = quad(Vec3::new(-1e-3, 0.0, -1e-3), Vec3::Z * 2e-3, Vec3::X * 2e-3, 0);
+    let meshes = std::iter::once(floor).chain(meshes).collect();
+    Scene { meshes, materials: std::iter::once(matt(0.0, 0.0)).chain(materials).collect(), ..Scene::default() }
+}
+
+fn world(scene: Scene) -> World {
+    World::build(Arc::new(scene), Monitor::default().job()).unwrap()
+}
+
+struct Sum(f64);
+
+impl PathSink for Sum {
+    fn add(&mut self, _: LightSource, importance: Vec3, emission: Vec3) {
+        self.0 += f64::from(importance.x * emission.x);
+    }
+}
+
+const ORIGIN: SurfacePoint = SurfacePoint { mesh: 0, triangle: 0, barycentric: Vec2::new(0.0, 0.5), front: true };
+
+/// Mean irradiance of the floor and its standard error.
+fn measure(scene: Scene) -> (f64, f64) {
+    let world = world(scene);
+    let (batches, per_batch) = (32u32, 512);
+    let means: Vec<f64> = (0..batches)
+        .map(|batch| {
+            let mut sum = Sum(0.0);
+            (0..per_batch).for_each(|i| irradiance(&world, &ORIGIN, u64::from(batch), i, &mut sum));
+            sum.0 / f64::from(per_batch)
+        })
+        .collect();
+    let n = f64::from(batches);
+    let mean = means.iter().sum::<f64>() / n;
+    (mean, (means.iter().map(|m| (m - mean).powi(2)).sum::<f64>() / (n * (n - 1.0))).sqrt())
+}
+
+/// `slack` is relative: what the closed form and the geometry differ by.
+fn assert_close((mean, error): (f64, f64), expected: f64, slack: f64, what: &str) {
+    assert!((mean - expected).abs() < 4.0 * error + slack * expected, "{what}: {mean} ± {error}, expected {expected}");
+}
+
+/// Irradiance at the origin, facing up, of a polygon of radiance 1 above the horizon (Lambert 1760).
+fn lambert(corners: &[Vec3]) -> f64 {
+    let edge = |i: usize| {
+        let a = corners[i].as_dvec3().normalize();
+        let b = corners[(i + 1) % corners.len()].as_dvec3().normalize();
+        let across = a.cross(b);
+        // The angle by its tangent: cosines of small angles are too close to 1.
+        across.length().atan2(a.dot(b)) * across.normalize_or_zero().y
+    };
+    (0..corners.len()).map(edge).sum::<f64>().abs() / 2.0
+}
+
+#[test]
+fn many_triangles_light_as_their_closed_forms_add_up_to() {
+    // One triangle in each of 16 × 8 solid angles, so that none hides another; distances, sizes and powers vary widely.
+    let mut rng = Rng::new(51, &[]);
+    for (near, far) in [(1.0, 1.0), (0.5, 200.0)] {
+        let (mut meshes, mut materials, mut expected) = (Vec::new(), Vec::new(), 0.0);
+        for i in 0..128 {
+            let mut place = || {
+                let polar = FRAC_PI_2 * ((i / 16) as f32 + 0.05 + 0.9 * rng.next_f32()) / 8.0;
+                let angle = TAU * ((i % 16) as f32 + 0.05 + 0.9 * rng.next_f32()) / 16.0;
+                Vec3::new(polar.sin() * angle.cos(), polar.cos(), polar.sin() * angle.sin())
+            };
+            let mut corners = [place(), place(), place()];
+            let distance = near * (far / near as f32).powf(rng.next_f32());
+            corners = corners.map(|c| c * distance * (0.9 + 0.2 * rng.next_f32()));
+            let faces = (corners[1] - corners[0]).cross(corners[2] - corners[0]).dot(corners[0]) < 0.0;
+            // Every third is two-sided; of the others only those that face the floor light it.
+            let emission = 10f32.powf(2.0 * rng.next_f32());
+            let double_sided = i % 3 == 0;
+            expected += if faces || double_sided { lambert(&corners) * f64::from(emission) } else { 0.0 };
+            let mesh =
+                Mesh { material: i + 1, positions: corners.to_vec(), triangles: vec![[0, 1, 2]], ..Mesh::default() };
+            meshes.push(mesh);
+            materials.push(Material { double_sided, ..matt(0.0, emission) });
+        }
+        let measured = measure(over_floor(meshes, materials));
+        assert_close(measured, expected, 1e-5, "triangles");
+        // Clusters hold lights that face away as well, so that some choices come to nothing.
+        assert!(measured.1 < 0.02 * expected, "{measured:?}");
+    }
+}
+
+#[test]
+fn discs_and_spheres_light_by_their_form_factors() {
+    // A disc overhead of half its height: r² / (r² + h²); 720 corners fall short of its area by 1e-5.
+    let rim = |i: usize| Vec3::new((TAU * i as f32 / 720.0).cos(), 2.0, (TAU * i as f32 / 720.0).sin());
+    let mut disc = Mesh { material: 1, positions: (0..720).map(rim).collect(), ..Mesh::default() };
+    disc.triangles = (1..719).map(|i| [0, i, i + 1]).collect();
+    let measured = measure(over_floor(vec![disc], vec![matt(0.0, 1.0)]));
+    assert_close(measured, PI / 5.0, 5e-5, "disc");
+
+    // A sphere overhead: r² / d²; facets as flat as these fall short of it by less than 1 %.
+    let (rows, columns, centre) = (24, 48, Vec3::Y * 3.0);
+    let at = |i: usize, j: usize| {
+        let (polar, angle) = (PI as f32 * i as f32 / rows as f32, TAU * (j % columns) as f32 / columns as f32);
+        centre + Vec3::new(polar.sin() * angle.cos(), polar.cos(), polar.sin() * angle.sin())
+    };
+    let mut sphere = Mesh { material: 1, ..Mesh::default() };
+    let mut exact = 0.0;
+    for i in 0..rows {
+        for j in 0..columns {
+            for t in [[at(i, j), at(i, j + 1), at(i + 1, j)], [at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)]] {
+                let normal = (t[1] - t[0]).cross(t[2] - t[0]);
+                let first = sphere.positions.len() as u32;
+                sphere.positions.extend(t);
+                sphere.triangles.push([first, first + 1, first + 2]);
+                // Of a convex body all is seen that faces the receiver.
+                exact += if normal.dot(t[0]) < 0.0 && normal.length() > 1e-6 { lambert(&t) } else { 0.0 };
+            }
+        }
+    }
+    let measured = measure(over_floor(vec![sphere], vec![matt(0.0, 1.0)]));
+    assert_close(measured, exact, 1e-4, "sphere of facets");
+    assert!((exact / (PI / 9.0) - 1.0).abs() < 0.01, "{exact}");
+}
+
+#[test]
+fn textured_lamps_light_as_the_polygons_of_their_texels() {
+    let image =
+        Image::from_fn(37, 23, |x, y| [if (x * 7 + y * 3) % 11 < 2 { (1 + x % 3) as f32 } else { 0.0 }]).unwrap();
+    for (width, slack) in [(3.0f32, 1e-5), (1e-3, 1e-5), (1e-8, 1e-4)] {
+        let corner = Vec3::new(-width / 2.0, 1.0, -width / 2.0);
+        let lamp = quad(corner, Vec3::X * width, Vec3::Z * width, 1);
+        let mut expected = 0.0;
+        for (x, y) in (0..23).flat_map(|y| (0..37).map(move |x| (x, y))) {
+            let texel = Vec2::new(width / 37.0, width / 23.0);
+            let place = corner + Vec3::new(x as f32 * texel.x, 0.0, y as f32 * texel.y);
+            let emission = f64::from(image.pixel(x, y)[0]) * 1e6;
+            // Far smaller than far away, the closed form cancels; then it is the solid angle.
+            expected += emission
+                * if width < 0.1 {
+                    f64::from(texel.x) * f64::from(texel.y)
+                } else {
+                    lambert(&[
+                        place,
+                        place + Vec3::X * texel.x,
+                        place + texel.extend(0.0).xzy(),
+                        place + Vec3::Z * texel.y,
+                    ])
+                };
+        }
+        let mut scene = over_floor(vec![lamp], vec![matt(0.0, 1e6)]);
+        scene.materials[1].emission_texture = Some(TextureRef::new(0));
+        scene.textures.push(Texture::new("", image.clone()));
+        let measured = measure(scene);
+        assert_close(measured, expected, slack, &format!("width {width}"));
+    }
+}
+
+#[test]
+fn lamps_without_area_or_power_are_none_and_extreme_ones_are_exact() {
+    let up = |size: f32| quad(Vec3::new(-size / 2.0, 1.0, -size / 2.0), Vec3::X * size, Vec3::Z * size, 1);
+    let needle = quad(Vec3::new(0.0, 1.0, 0.0), Vec3::X, Vec3::X * 2.0, 1);
+    for dark in [over_floor(vec![needle], vec![matt(0.0, 5.0)]), over_floor(vec![up(1.0)], vec![matt(0.0, 0.0)])] {
+        assert_eq!(measure(dark), (0.0, 0.0));
+    }
+    let one = lambert(&up(1.0).positions);
+    for emission in [1e-12, 1e12f32] {
+        let measured = measure(over_floor(vec![up(1.0)], vec![matt(0.0, emission)]));
+        assert_close(measured, one * f64::from(emission), 1e-5, "intensity");
+    }
+    // A dim lamp beside one 1e12 times as bright, which faces away from the floor.
+    let away = quad(Vec3::new(-0.5, 2.0, -0.5), Vec3::Z, Vec3::X, 2);
+    let measured = measure(over_floor(vec![up(1.0), away], vec![matt(0.0, 1.0), matt(0.0, 1e12)]));
+    assert_close(measured, one, 1e-5, "beside");
+    assert!(measured.1 < 0.01 * one, "what faces away is not chosen: {measured:?}");
+}
+
+#[test]
+fn point_and_spot_lights_add_up() {
+    let mut rng = Rng::new(52, &[]);
+    let mut scene = over_floor(Vec::new(), Vec::new());
+    let mut expected = 0.0;
+    for i in 0..60 {
+        let position = within(&mut rng, 8.0) + Vec3::Y * 3.0;
+        let intensity = 10f32.powf(2.0 * rng.next_f32());
+        let cosine = f64::from(position.normalize().y.max(0.0));
+        let received = f64::from(intensity) * cosine / f64::from(position.length_squared());
+        if i % 2 == 0 {
+            scene.lights.push(PunctualLight::Point { position, intensity: Vec3::splat(intensity) });
+            expected += received;
+        } else {
+            let direction = direction(&mut rng);
+            let (inner_angle, outer_angle) = (0.3, 1.2f32);
+            let off_axis = f64::from(direction.angle_between(-position));
+            let (inner, outer) = (f64::from(inner_angle).cos(), f64::from(outer_angle).cos());
+            expected += received * ((off_axis.cos() - outer) / (inner - outer)).clamp(0.0, 1.0).powi(2);
+            let intensity = Vec3::splat(intensity);
+            scene.lights.push(PunctualLight::Spot { position, direction, intensity, inner_angle, outer_angle });
+        }
+    }
+    let measured = measure(scene);
+    assert_close(measured, expected, 1e-5, "points");
+    assert!(measured.1 < 0.02 * expected, "{measured:?}");
+}
+
+#[test]
+fn a_sample_states_the_density_that_scattering_into_it_would() {
+    let image = Image::from_fn(64, 64, |x, y| [((x / 3 + y / 5) % 4 / 3) as f32 * (1 + x % 2) as f32]).unwrap();
+    let lamp = |i: usize| quad(Vec3::new(i as f32 * 1.5 - 7.0, 2.0, -1.0), Vec3::X, Vec3::Z, 1 + i % 2);
+    let mut scene = over_floor((0..10).map(lamp).collect(), vec![matt(0.0, 3.0), matt(0.0, 9.0)]);
+    scene.materials[1].emission_texture = Some(TextureRef::new(0));
+    scene.textures.push(Texture::new("", image));
+    scene.environment = Some(Environment::Constant(Vec3::splat(0.1)));
+    let world = world(scene);
+    let mut rng = Rng::new(53, &[]);
+    let (mut surfaces, mut disagreed) = (0, 0);
+    for i in 0..20_000 {
+        let receiver =
+            Receiver { position: within(&mut rng, 4.0), normal: (direction(&mut rng) + Vec3::Y).normalize() };
+        let block = Sampler::new(7, i).next();
+        let Some(sample) = world.lights().sample(world.scene(), &receiver, &block) else { continue };
+        let stated = match sample.end {
+            Some(LightEnd::Emitter(index, b)) => {
+                surfaces += 1;
+                let emitter = &world.lights().emitters.emitters[index];
+                let distance = emitter.point(b).distance(receiver.position);
+                let emission = emitter.emission(world.scene(), b);
+                world.lights().surface_density(&receiver, index, emission, sample.direction, distance)
+            }
+            _ => world.lights().environment_density(sample.direction),
+        };
+        disagreed += usize::from((stated / sample.density - 1.0).abs() > 1e-4);
+    }
+    // Only points within rounding of a tile's border.
+    assert!(surfaces > 5000 && disagreed <= 5, "{disagreed} of {surfaces}");
+}
+
+#[test]
+fn light_goes_from_one_surface_to_another_as_it_comes_back() {
+    // Between two matt quads, past an obstacle and by way of a wall: ⟨e₁, T e₂⟩ = ⟨e₂, T e₁⟩.
+    let quads = || {
+        vec![
+            quad(Vec3::new(-1.0, 0.0, -1.0), Vec3::Z * 2.0, Vec3::X * 2.0, 0),
+            quad(Vec3::new(0.3, 1.5, -0.7), Vec3::new(0.8, -0.5, 0.0), Vec3::Z * 0.6, 1),
+            quad(Vec3::new(0.2, 0.7, -0.5), Vec3::X * 0.4, Vec3::Z * 0.9, 2),
+            quad(Vec3::new(-1.0, 0.0, -1.0), Vec3::X * 3.0, Vec3::Y * 3.0, 2),
+        ]
+    };
+    let albedos = [0.5, 0.3, 0.7];
+    let transport = |from: usize, to: u32| {
+        let materials = (0..3).map(|i| matt(albedos[i], f32::from(u8::from(i == from)))).collect();
+        let world = world(Scene { meshes: quads(), materials, ..Scene::default() });
+        let mut rng = Rng::new(54, &[u64::from(to)]);
+        let n = 60_000u32;
+        let (mut sum, mut square) = (0.0, 0.0);
+        for i in 0..n {
+            let (u, v) = (rng.next_f32(), rng.next_f32());
+            let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
+            let point = SurfacePoint { mesh: to, triangle: i % 2, barycentric: Vec2::new(u, v), front: true };
+            let mut one = Sum(0.0);
+            irradiance(&world, &point, u64::from(i), 0, &mut one);
+            sum += one.0;
+            square += one.0 * one.0;
+        }
+        let [a, b, c] = world.scene().meshes[to as usize].corners(0);
+        let area = f64::from((b - a).cross(c - a).length());
+        let mean = sum / f64::from(n);
+        (mean * area, area * ((square / f64::from(n) - mean * mean) / f64::from(n)).sqrt())
+    };
+    let (there, back) = (transport(0, 1), transport(1, 0));
+    let error = there.1.hypot(back.1);
+    assert!((there.0 - back.0).abs() < 4.0 * error && error < 0.02 * there.0, "{there:?} and {back:?}");
+}
+
+#[test]
+fn the_floor_of_a_hall_with_thousands_of_lamps_sees_them_all() {
+    // As many lamps again hidden above the ceiling must not matter, and the mean must be that of the closed form.
+    let side = 48;
+    let lamp = |i: usize| Vec3::new((i % side) as f32 - 23.5, 3.0, (i / side) as f32 - 23.5);
+    let mut lamps = Mesh { material: 1, ..Mesh::default() };
+    let mut expected = 0.0;
+    for i in 0..side * side {
+        let q = quad(lamp(i), Vec3::X * 0.1, Vec3::Z * 0.1, 1);
+        expected += lambert(&q.positions) * 1000.0;
+        let first = lamps.positions.len() as u32;
+        lamps.positions.extend(q.positions);
+        lamps.triangles.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
+    }
+    let measured = measure(over_floor(vec![lamps], vec![matt(0.0, 1000.0)]));
+    assert_close(measured, expected, 1e-5, "hall");
+    // 16 k samples of a single lamp scatter by about as much.
+    assert!(measured.1 < 0.005 * expected, "{measured:?}");
+}

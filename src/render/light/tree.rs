@@ -1,0 +1,287 @@
+//! A tree over lights, descended by their importance to a receiver with a single random number.
+//!
+//! Nodes have up to eight children, which are weighed together: wide nodes need few steps, and fewer of the choices rest on
+//! the coarse bounds of large clusters. Clusters are split where intensity, extent and spread of directions say
+//! (the surface area orientation heuristic of Conty Estevez and Kulla 2018, section 4.4, with the squared diagonal for the
+//! area, which lamps in one line have as well, and the length of the mean direction for the solid angle).
+
+use super::bounds::{Bounds, BoundsLanes, LANES, Receiver};
+use crate::error::Result;
+use crate::image::try_vec;
+use crate::render::distribution::Distribution;
+use glam::Vec3;
+use rayon::prelude::*;
+
+/// Bins in which a split is looked for along each axis.
+const BINS: usize = 12;
+/// Splits deeper than this halve the number of lights, whatever the heuristic says.
+const MAX_HEURISTIC_DEPTH: u32 = 16;
+/// Clusters smaller than this are split on one thread.
+const PARALLEL_FROM: usize = 2048;
+/// No node above, no child.
+const NONE: u32 = u32::MAX;
+/// Marks children that are lights.
+const LIGHT: u32 = 1 << 31;
+
+pub struct LightTree {
+    /// Probabilities that are the same for every receiver, in place of nodes: one light, or several within one box, as the
+    /// two triangles of a rectangle.
+    fixed: Option<Distribution>,
+    nodes: Vec<Node>,
+    /// For every light the place that holds it: eight times its node plus its lane.
+    places: Vec<u32>,
+    /// Squared; see [`BoundsLanes::importance`].
+    nearest: f32,
+}
+
+#[derive(Clone)]
+struct Node {
+    bounds: BoundsLanes,
+    /// Nodes, or lights where marked.
+    children: [u32; LANES],
+    /// The place in the node above.
+    parent: u32,
+}
+
+/// A light to be put into the tree.
+struct Item {
+    bounds: Bounds,
+    centre: Vec3,
+    light: u32,
+}
+
+/// The tree as it grows.
+enum Branch {
+    Light(u32, Bounds),
+    Cluster(Vec<Branch>, Bounds),
+}
+
+impl LightTree {
+    /// Over fewer than 2^31 lights, each of some intensity.
+    pub fn build(lights: &[Bounds]) -> Result<Self> {
+        let mut tree = Self { fixed: None, nodes: Vec::new(), places: Vec::new(), nearest: f32::MIN_POSITIVE };
+        if lights.len() <= LANES && lights.windows(2).all(|pair| pair[0].differs_only_in_intensity(&pair[1])) {
+            tree.fixed = Some(Distribution::new(lights.iter().map(|b| f64::from(b.intensity)))?);
+            return Ok(tree);
+        }
+        let mut items = Vec::new();
+        items.extend(lights.iter().zip(0..).map(|(&bounds, light)| Item { bounds, centre: bounds.centre(), light }));
+        tree.places = try_vec(lights.len(), NONE)?;
+        let whole = Bounds::union(lights);
+        let root = Branch::Cluster(grow(&mut items, 0), whole);
+        // Intensities relative to their sum and distances to the scene's size keep importances far from overflow.
+        tree.nearest = (whole.radius() * 1e-9).powi(2).max(1e-30);
+        tree.add(&root, NONE, 1.0 / whole.intensity.max(f32::MIN_POSITIVE));
+        Ok(tree)
+    }
+
+    /// Lays a cluster out, each node before the nodes under it.
+    fn add(&mut self, branch: &Branch, parent: u32, scale: f32) -> u32 {
+        match branch {
+            Branch::Light(light, _) => {
+                self.places[*light as usize] = parent;
+                LIGHT | light
+            }
+            Branch::Cluster(branches, _) => {
+                let index = self.nodes.len() as u32;
+                let bounds = branches.iter().map(|(Branch::Light(_, b) | Branch::Cluster(_, b))| *b);
+                self.nodes.push(Node { bounds: BoundsLanes::new(bounds, scale), children: [NONE; LANES], parent });
+                for (lane, branch) in branches.iter().enumerate() {
+                    self.nodes[index as usize].children[lane] =
+                        self.add(branch, index * LANES as u32 + lane as u32, scale);
+                }
+                index
+            }
+        }
+    }
+
+    /// A light by its importance, the probability of the choice, and where within its share `u` fell, in `[0, 1)`.
+    pub fn sample(&self, receiver: &Receiver, u: f64) -> Option<(usize, f32, f64)> {
+        if let Some(fixed) = &self.fixed {
+            let (light, rest) = (fixed.len() > 0).then(|| fixed.sample(u))?;
+            return Some((light, fixed.probability(light) as f32, rest));
+        }
+        let (mut probability, mut u) = (1.0, u);
+        let mut node = self.nodes.first()?;
+        loop {
+            let importance = node.bounds.importance(receiver, self.nearest);
+            let sum: f32 = importance.iter().sum();
+            if !(sum > 0.0) {
+                return None;
+            }
+            // The lane where the running sum passes the target.
+            let target = u * f64::from(sum);
+            let (mut lane, mut below, mut running) = (0, 0.0, 0.0);
+            for (i, &share) in importance.iter().enumerate() {
+                if share > 0.0 && running <= target {
+                    (lane, below) = (i, running);
+                }
+                running += f64::from(share);
+            }
+            let share = importance[lane];
+            u = ((target - below) / f64::from(share)).clamp(0.0, 1.0 - f64::EPSILON);
+            probability *= share / sum;
+            match node.children[lane] {
+                NONE => return None,
+                child if child & LIGHT != 0 => return Some(((child & !LIGHT) as usize, probability, u)),
+                child => node = &self.nodes[child as usize],
+            }
+        }
+    }
+
+    /// The probability with which [`LightTree::sample`] chooses a light.
+    pub fn probability(&self, receiver: &Receiver, light: usize) -> f32 {
+        if let Some(fixed) = &self.fixed {
+            return fixed.probability(light) as f32;
+        }
+        let mut probability = 1.0;
+        let mut place = self.places[light];
+        while place != NONE {
+            let node = &self.nodes[place as usize / LANES];
+            let importance = node.bounds.importance(receiver, self.nearest);
+            let sum: f32 = importance.iter().sum();
+            let share = importance[place as usize % LANES];
+            if !(share > 0.0) {
+                return 0.0;
+            }
+            probability *= share / sum;
+            place = node.parent;
+        }
+        probability
+    }
+}
+
+/// The parts of a cluster, split until there are eight or each is a light.
+fn grow(items: &mut [Item], depth: u32) -> Vec<Branch> {
+    fn with_cost(part: &mut [Item]) -> (f32, &mut [Item]) {
+        (Extent::of(part).cost(), part)
+    }
+    let mut parts: Vec<(f32, &mut [Item])> = vec![with_cost(items)];
+    while parts.len() < LANES {
+        // Next, the part with the most to gain.
+        let divisible = (0..parts.len()).filter(|&i| parts[i].1.len() > 1);
+        let Some(most) = divisible.max_by(|&a, &b| parts[a].0.total_cmp(&parts[b].0)) else { break };
+        let part = parts.remove(most).1;
+        let at = if depth < MAX_HEURISTIC_DEPTH { split(part) } else { part.len() / 2 };
+        let (left, right) = part.split_at_mut(at);
+        parts.insert(most, with_cost(right));
+        parts.insert(most, with_cost(left));
+    }
+    let branch = |(_, part): (f32, &mut [Item])| match part {
+        [item] => Branch::Light(item.light, item.bounds),
+        _ => {
+            let branches = grow(part, depth + 1);
+            let bounds: Vec<Bounds> = branches.iter().map(|(Branch::Light(_, b) | Branch::Cluster(_, b))| *b).collect();
+            Branch::Cluster(branches, Bounds::union(&bounds))
+        }
+    };
+    let count: usize = parts.iter().map(|p| p.1.len()).sum();
+    if count < PARALLEL_FROM {
+        parts.into_iter().map(branch).collect()
+    } else {
+        parts.into_par_iter().map(branch).collect()
+    }
+}
+
+/// What the heuristic knows of a cluster.
+#[derive(Clone, Copy)]
+struct Extent {
+    low: Vec3,
+    high: Vec3,
+    /// Sum of the main directions, by intensity; those of two-sided lights turned to one half-space.
+    direction: Vec3,
+    intensity: f32,
+    count: usize,
+}
+
+impl Extent {
+    const NOTHING: Self =
+        Self { low: Vec3::INFINITY, high: Vec3::NEG_INFINITY, direction: Vec3::ZERO, intensity: 0.0, count: 0 };
+
+    fn of(items: &[Item]) -> Self {
+        let mut extent = Self::NOTHING;
+        items.iter().for_each(|item| extent.add(item));
+        extent
+    }
+
+    fn add(&mut self, item: &Item) {
+        let b = &item.bounds;
+        let turned = b.two_sided && b.axis.dot(Vec3::new(1.0, 0.7, 0.4)) < 0.0;
+        self.merge(&Self {
+            low: b.low,
+            high: b.high,
+            direction: if turned { -b.axis } else { b.axis } * b.intensity,
+            intensity: b.intensity,
+            count: 1,
+        });
+    }
+
+    fn merge(&mut self, other: &Self) {
+        self.low = self.low.min(other.low);
+        self.high = self.high.max(other.high);
+        self.direction += other.direction;
+        self.intensity += other.intensity;
+        self.count += other.count;
+    }
+
+    /// Solid angle from 1 (all alike) to 4 (all around), times the squared diagonal, times the intensity.
+    fn cost(&self) -> f32 {
+        if self.count == 0 {
+            return 0.0;
+        }
+        let alike = self.direction.length() / self.intensity.max(f32::MIN_POSITIVE);
+        self.intensity * (4.0 - 3.0 * alike.min(1.0)) * (self.high - self.low).length_squared()
+    }
+}
+
+/// Divides a cluster of at least two in place and returns the size of the first part, neither of them empty.
+fn split(items: &mut [Item]) -> usize {
+    let low = items.iter().fold(Vec3::INFINITY, |a, i| a.min(i.centre));
+    let high = items.iter().fold(Vec3::NEG_INFINITY, |a, i| a.max(i.centre));
+    let mut best = (f32::INFINITY, 0, 0);
+    for axis in 0..3 {
+        let Some(bin_of) = binning(low[axis], high[axis]) else { continue };
+        let mut bins = [Extent::NOTHING; BINS];
+        items.iter().for_each(|item| bins[bin_of(item.centre[axis])].add(item));
+        // Costs of what lies above each bin, then of both sides.
+        let mut above = [0.0; BINS];
+        let mut extent = Extent::NOTHING;
+        for i in (1..BINS).rev() {
+            extent.merge(&bins[i]);
+            above[i] = extent.cost();
+        }
+        let mut extent = Extent::NOTHING;
+        for i in 1..BINS {
+            extent.merge(&bins[i - 1]);
+            let cost = extent.cost() + above[i];
+            if extent.count > 0 && extent.count < items.len() && cost < best.0 {
+                best = (cost, axis, i);
+            }
+        }
+    }
+    let (cost, axis, bin) = best;
+    if cost < f32::INFINITY
+        && let Some(bin_of) = binning(low[axis], high[axis])
+    {
+        return partition(items, |item| bin_of(item.centre[axis]) < bin);
+    }
+    items.len() / 2
+}
+
+/// The bin of a coordinate between two ends; none if they are the same.
+fn binning(low: f32, high: f32) -> Option<impl Fn(f32) -> usize> {
+    let scale = BINS as f32 / (high - low);
+    (scale > 0.0 && scale.is_finite()).then_some(move |x: f32| (((x - low) * scale) as usize).min(BINS - 1))
+}
+
+/// Moves the items that belong first to the front and returns how many they are.
+fn partition(items: &mut [Item], first: impl Fn(&Item) -> bool) -> usize {
+    let mut count = 0;
+    for i in 0..items.len() {
+        if first(&items[i]) {
+            items.swap(count, i);
+            count += 1;
+        }
+    }
+    count
+}
