@@ -1622,14 +1622,24 @@ typedef struct luxfer_render_params {
     uint32_t width;
     /** Height of the image in pixels, in [1, 65536]; default 720. */
     uint32_t height;
-    /** Paths per pixel, in [1, 1048576]; default 64. */
+    /** Paths per pixel, in [1, 1048576]; default 64. With a target this is the most on the average over the image. */
     uint32_t samples;
-    /** Stop when the mean relative standard error falls below this, >= 0; default 0: never. */
+    /**
+     * Stop when the error of the report falls to this, >= 0, and give paths to where they lower it most; default 0: never.
+     */
     float target_error;
     /** Stop after this many milliseconds; default 0: never. */
     uint32_t time_budget_ms;
     /** Seed of the paths; default 1. */
     uint64_t seed;
+    /**
+     * Stop when every part of the image (8 x 8 pixels, root mean square) is known to this, >= 0: half the width of the 95 %
+     * interval of a pixel's luminance, relative to that luminance or to a tenth of the image's mean, whichever is more.
+     * 0.1 means within 10 % of its value, 19 times out of 20. Default 0: never.
+     */
+    float pixel_error;
+    /** 0. */
+    uint32_t reserved;
 } luxfer_render_params;
 
 /** An image of a rendering: a LUXFER_RENDER_ value. */
@@ -1639,10 +1649,15 @@ typedef int32_t luxfer_render_image;
 typedef struct luxfer_render_report {
     /** sizeof(luxfer_render_report), set by the caller. */
     uint32_t struct_size;
-    /** Paths per pixel so far. */
+    /** Paths per pixel so far, on the average. */
     uint32_t samples;
-    /** Mean over the pixels of the standard error, relative to the image's mean. */
+    /**
+     * Root mean square over the pixels of the standard error, relative to the image's mean; infinite while a pixel has less
+     * than two paths.
+     */
     double error;
+    /** Paths that were left out because their radiance was no finite number. */
+    uint64_t discarded;
 } luxfer_render_report;
 
 /** Mean radiance of each pixel, linear RGB in cd/m². */
@@ -1650,6 +1665,15 @@ typedef struct luxfer_render_report {
 
 /** Variance of that mean; 3 channels. */
 #define LUXFER_RENDER_VARIANCE 1
+
+/** Number of paths of each pixel; 1 channel. */
+#define LUXFER_RENDER_PATHS 2
+
+/**
+ * Half the width of the interval around each pixel of the beauty that holds the true radiance with a probability of 95 %,
+ * in cd/m²; 3 channels; infinite where a pixel has less than two paths.
+ */
+#define LUXFER_RENDER_INTERVAL 3
 
 /**
  * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
