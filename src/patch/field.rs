@@ -77,6 +77,13 @@ impl Field {
         Ok(inverse)
     }
 
+    /// Takes over matches and distances computed row by row.
+    pub(super) fn set_rows(&mut self, rows: Vec<Vec<(u32, u32)>>) {
+        for (i, (at, error)) in rows.into_iter().flatten().enumerate() {
+            (self.at[i], self.error[i]) = (at, error);
+        }
+    }
+
     /// Sum of the distances of matched patches.
     pub fn energy(&self) -> f64 {
         self.error.iter().filter(|&&e| e != u32::MAX).map(|&e| f64::from(e)).sum()

@@ -86,9 +86,7 @@ impl Search<'_> {
             }
             row
         })?;
-        for (i, (at, error)) in rows.into_iter().flatten().enumerate() {
-            (field.at[i], field.error[i]) = (at, error);
-        }
+        field.set_rows(rows);
         Ok(())
     }
 
