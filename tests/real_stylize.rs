@@ -38,16 +38,9 @@ fn pair() -> Option<Pair> {
 
 fn stylise(pair: &Pair, params: &Params) -> Output {
     let guides: Vec<Guide> = (pair.guides.iter())
-        .map(|(source, target)| Guide { source, target, weight: 1.0, range: Range::Light })
+        .map(|(source, target)| Guide { name: "light", source, target, weight: 1.0, range: Range::Light })
         .collect();
-    let input = Input {
-        artwork: &pair.artwork,
-        guides: &guides,
-        source_mask: None,
-        target_mask: None,
-        known: None,
-        previous: None,
-    };
+    let input = Input::new(&pair.artwork, &guides);
     run(&input, params, Monitor::default().job()).unwrap()
 }
 

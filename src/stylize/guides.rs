@@ -1,6 +1,6 @@
 //! Guides: channel pairs of exemplar and target, brought to `[0, 1]` on a common scale.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, check_range};
 use crate::exec;
 use crate::image::Image;
 use crate::image::colour::linear_to_srgb;
@@ -20,12 +20,17 @@ pub enum Range {
 /// One property of the scene, drawn for the exemplar and for the target.
 #[derive(Clone, Copy)]
 pub struct Guide<'a> {
+    /// What messages call it.
+    pub name: &'a str,
     pub source: &'a Image,
     pub target: &'a Image,
     /// Weight against the other guides, in `[0, 1e6]`.
     pub weight: f32,
     pub range: Range,
 }
+
+/// Most channels of all guides together: with an artwork of four they fill the 64 of an image.
+pub const MAX_CHANNELS: usize = 60;
 
 /// All guides side by side.
 pub(super) struct Channels {
@@ -39,18 +44,20 @@ pub(super) struct Channels {
 }
 
 impl Channels {
-    pub fn new(guides: &[Guide], job: Job) -> Result<Self> {
+    pub fn new(guides: &[Guide], match_appearance: f32, job: Job) -> Result<Self> {
         let first = guides.first().ok_or_else(|| Error::argument("guides is empty; give at least one pair"))?;
         let count: usize = guides.iter().map(|g| g.source.channels).sum();
-        if count > 60 {
-            return Err(Error::argument(format!("the guides have {count} channels; there may be 1 to 60 in all")));
+        if count > MAX_CHANNELS {
+            return Err(Error::argument(format!(
+                "the guides have {count} channels; there may be 1 to {MAX_CHANNELS} in all"
+            )));
         }
         let mut source = Image::new(first.source.width, first.source.height, count)?;
         let mut target = Image::new(first.target.width, first.target.height, count)?;
         let total: f64 = guides.iter().map(|g| f64::from(g.weight)).sum();
         let mut weights = Vec::with_capacity(count);
-        for (i, guide) in guides.iter().enumerate() {
-            guide.check(i, first)?;
+        for guide in guides {
+            guide.check(first)?;
             let channels = guide.source.channels;
             let normalise = guide.normalisation(job)?;
             for (from, into) in [(guide.source, &mut source), (guide.target, &mut target)] {
@@ -66,7 +73,33 @@ impl Channels {
         }
         let broken_source = clear_broken(&mut source);
         let broken_target = clear_broken(&mut target);
+        if match_appearance > 0.0 {
+            let light = guides.iter().flat_map(|g| std::iter::repeat_n(g.range == Range::Light, g.source.channels));
+            for channel in light.enumerate().filter(|c| c.1).map(|c| c.0) {
+                job.check()?;
+                match_channel(&mut source, &target, channel, match_appearance);
+            }
+        }
         Ok(Self { source, target, weights, broken_source, broken_target })
+    }
+}
+
+/// Moves a channel's range from that of the source towards that of the target: its 5th and 95th percentile.
+fn match_channel(source: &mut Image, target: &Image, channel: usize, strength: f32) {
+    let ends = |image: &Image| {
+        let step = (image.width * image.height >> 18).max(1) * image.channels;
+        let mut values: Vec<f32> = image.data.iter().skip(channel).step_by(step).copied().collect();
+        values.sort_unstable_by(f32::total_cmp);
+        let at = |percent: usize| values[(values.len() - 1) * percent / 100];
+        (at(5), at(95) - at(5))
+    };
+    let ((low, range), (new_low, new_range)) = (ends(source), ends(target));
+    // What is nearly flat has no contrast to be changed.
+    let gain = if range > 0.02 { new_range / range } else { 1.0 };
+    let channels = source.channels;
+    for v in source.data.iter_mut().skip(channel).step_by(channels) {
+        let matched = ((*v - low) * gain + new_low).clamp(0.0, 1.0);
+        *v += (matched - *v) * strength;
     }
 }
 
@@ -99,22 +132,30 @@ impl Normalisation {
 }
 
 impl Guide<'_> {
-    fn check(&self, index: usize, first: &Guide) -> Result<()> {
-        let name = |side: &str| format!("guides[{index}].{side}");
-        if !(0.0..=1e6).contains(&self.weight) {
-            return Err(Error::argument(format!("{} is {}; it must lie in [0, 1000000]", name("weight"), self.weight)));
-        }
+    /// What one side of it is called.
+    pub(super) fn side(&self, side: &str) -> String {
+        format!("the {side} of guide {:?}", self.name)
+    }
+
+    /// Checks what can be told of a guide by itself.
+    pub fn check_alone(&self) -> Result<()> {
+        check_range(&self.side("weight"), self.weight, 0.0, 1e6)?;
         if self.source.channels != self.target.channels {
             return Err(Error::argument(format!(
                 "{} has {} channels and {} {}; they must have the same number",
-                name("source"),
+                self.side("source"),
                 self.source.channels,
-                name("target"),
+                self.side("target"),
                 self.target.channels
             )));
         }
-        first.source.check_same_size("guides[0].source", self.source, &name("source"))?;
-        first.target.check_same_size("guides[0].target", self.target, &name("target"))
+        Ok(())
+    }
+
+    fn check(&self, first: &Guide) -> Result<()> {
+        self.check_alone()?;
+        first.source.check_same_size(&first.side("source"), self.source, &self.side("source"))?;
+        first.target.check_same_size(&first.side("target"), self.target, &self.side("target"))
     }
 
     fn normalisation(&self, job: Job) -> Result<Normalisation> {

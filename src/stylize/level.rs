@@ -32,9 +32,10 @@ impl Problem {
         if ![1, 3, 4].contains(&artwork.channels) {
             return Err(Error::argument(format!("artwork has {} channels; it must have 1, 3 or 4", artwork.channels)));
         }
-        let mut guides = Channels::new(input.guides, job)?;
-        check_side("guides[0].target", &guides.target)?;
-        artwork.check_same_size("artwork", &guides.source, "guides[0].source")?;
+        let mut guides = Channels::new(input.guides, params.match_appearance, job)?;
+        let first = input.guides[0];
+        check_side(&first.side("target"), &guides.target)?;
+        artwork.check_same_size("artwork", &guides.source, &first.side("source"))?;
         let mut style = artwork.clone();
         let mut source_mask = mask("source_mask", input.source_mask, &guides.source)?;
         let target_mask = mask("target_mask", input.target_mask, &guides.target)?;
@@ -50,6 +51,16 @@ impl Problem {
             mask.iter_mut().zip(&broken).for_each(|(m, b)| *m &= !b);
         }
         encode(&mut style, job)?;
+        if let Some(motion) = input.motion {
+            motion.check_same_size("motion", &guides.target, "the target of the guides")?;
+            if motion.channels != 2 || input.previous.is_none() {
+                return Err(Error::argument(format!(
+                    "motion has {} channels and previous is {}; it must have 2, and there must be a previous field",
+                    motion.channels,
+                    if input.previous.is_some() { "there" } else { "missing" }
+                )));
+            }
+        }
         let known = input.known.map(|known| encode_known(known, &guides.target, artwork.channels, job)).transpose()?;
 
         if params.preview {
@@ -140,7 +151,7 @@ pub(super) fn encoded(linear: f32) -> f32 {
 }
 
 fn encode_known(known: &Image, target: &Image, channels: usize, job: Job) -> Result<Image> {
-    known.check_same_size("known", target, "guides[0].target")?;
+    known.check_same_size("known", target, "the target of the guides")?;
     if known.channels != channels {
         return Err(Error::argument(format!(
             "known has {} channels and the artwork {channels}; they must have the same number",

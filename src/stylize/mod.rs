@@ -10,7 +10,7 @@
 //!
 //! `guides` normalises, `level` quantises one resolution, `retrieve` matches under the budget, `budget` fits the knee,
 //! `finder` searches,
-//! `schedule` goes from coarse to fine, `study` follows changes of the artwork, `greedy` is Hertzmann's algorithm for comparison, `report` measures.
+//! `schedule` goes from coarse to fine, `study` follows changes of the artwork, `animate` goes from frame to frame, `greedy` is Hertzmann's algorithm for comparison, `report` measures.
 //!
 //! Colours are compared and averaged as they are encoded for display (sRGB), which is how paint is looked at.
 //!
@@ -19,11 +19,12 @@
 //! choosing the nearest vote at the end brings texture power from 0.85 to 0.93 of the exemplar's (plain EM: 0.78); further
 //! iterations and sweeps change both by less than a tenth.
 //!
-//! Not modelled: rotation of strokes along the target's shapes, and the time dimension of a sequence.
+//! Not modelled: rotation of strokes along the target's shapes, and sequences as a whole: each frame knows the one before.
 //!
 //! Covered by patents in the US (StyLit: US 9,881,413 and 10,176,624; patch usage: US 9,905,054; PatchMatch:
 //! US 8,861,869, 8,571,328 and 8,625,927); hence the Cargo feature `stylize`, which a distributor can leave out.
 
+mod animate;
 mod budget;
 mod finder;
 mod greedy;
@@ -39,7 +40,7 @@ mod study;
 mod tests;
 
 pub use budget::{Budget, Hyperbola, budget};
-pub use guides::{Guide, Range};
+pub use guides::{Guide, MAX_CHANNELS, Range};
 pub use report::{LevelReport, Report, Usage};
 pub use retrieve::Pass;
 pub use study::Study;
@@ -88,6 +89,16 @@ pub struct Input<'a> {
     pub known: Option<&'a Image>,
     /// A field of an earlier result for targets of the same size, to start from instead of from nothing.
     pub previous: Option<&'a Field>,
+    /// Where each target pixel was in the frame that `previous` belongs to, relative to where it is, in pixels: two channels,
+    /// NaN where it was not to be seen. Its matches move along, and as many are kept as `Params::coherence` says.
+    pub motion: Option<&'a Image>,
+}
+
+impl<'a> Input<'a> {
+    /// The whole exemplar for the whole target.
+    pub fn new(artwork: &'a Image, guides: &'a [Guide<'a>]) -> Self {
+        Self { artwork, guides, source_mask: None, target_mask: None, known: None, previous: None, motion: None }
+    }
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -116,6 +127,12 @@ pub struct Params {
     pub vote: Vote,
     /// How the last picture is made from the last field.
     pub final_vote: Vote,
+    /// Share of the matches of the frame before that are kept where they fit, in `[0, 1]`; without motion it has no effect. Give
+    /// each frame its own `seed`, or the same places boil.
+    pub coherence: f32,
+    /// How far the exemplar's light is changed to the brightness and contrast of the target's, in `[0, 1]`: for targets under
+    /// another light than the exemplar (Fig. 16).
+    pub match_appearance: f32,
     /// Half resolution, guides compressed to their principal components: for watching while painting.
     pub preview: bool,
     pub seed: u64,
@@ -137,6 +154,8 @@ impl Default for Params {
             settle: 2,
             vote: Vote::Weighted,
             final_vote: Vote::Nearest,
+            coherence: 1.0,
+            match_appearance: 0.0,
             preview: false,
             seed: 1,
         }
@@ -167,7 +186,8 @@ impl Params {
         Self { preview: true, iterations: 2, finest_iterations: 1, passes: 3, ..Self::default() }
     }
 
-    fn check(&self) -> Result<()> {
+    /// Checks that every setting is in its range.
+    pub fn check(&self) -> Result<()> {
         check_range("patch", self.patch, 1, 33)?;
         if self.patch % 2 == 0 {
             return Err(Error::argument(format!("patch is {}; it must be odd", self.patch)));
@@ -179,6 +199,8 @@ impl Params {
         check_range("sweeps", self.sweeps, 1, 100)?;
         check_range("coverage", self.coverage, 0.0, 1.0)?;
         check_range("settle", self.settle, 0, 100)?;
+        check_range("coherence", self.coherence, 0.0, 1.0)?;
+        check_range("match_appearance", self.match_appearance, 0.0, 1.0)?;
         check_range("passes", self.passes, 1, 1000)?;
         Ok(())
     }
@@ -193,13 +215,22 @@ pub struct Output {
     pub report: Report,
 }
 
-/// Called with the picture so far (linear colour) after each level, coarsest first; the second argument says how many
-/// halvings the level is below the result.
-pub type Publish<'a> = &'a (dyn Fn(&Image, usize) + Sync);
+/// How far a run is: shown after each level but the last, coarsest first.
+pub struct Glimpse<'a> {
+    /// The picture so far, linear colour, of the size of the level.
+    pub picture: Image,
+    /// How often that size is half the target's, rounded down.
+    pub halvings: usize,
+    /// The levels done.
+    pub levels: &'a [LevelReport],
+}
+
+/// What is called with each glimpse.
+pub type Publish<'a> = &'a (dyn Fn(Glimpse) + Sync);
 
 /// Stylises the target.
 pub fn run(input: &Input, params: &Params, job: Job) -> Result<Output> {
-    run_and_publish(input, params, &|_, _| (), job)
+    run_and_publish(input, params, &|_| (), job)
 }
 
 /// Stylises the target and shows a picture after each level.

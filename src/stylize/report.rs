@@ -39,6 +39,11 @@ pub struct Report {
     /// One channel per target pixel: root mean square difference of the weighted guides between the target and what was
     /// painted there, in `[0, 1]`. High where the exemplar has nothing that fits (Fig. 17).
     pub guide_error: Image,
+    /// Two channels per target pixel: x and y in the artwork, in pixels, of what was painted there, or rather of the patch
+    /// whose centre is nearest; -1 where nothing was.
+    pub sources: Image,
+    /// How often the sides of the result are half those of the target: 1 in preview, else 0.
+    pub halvings: usize,
     /// Width of patches that was used.
     pub patch: usize,
     /// Exemplar pixels left out because they are NaN or infinite, and target guide pixels taken as 0 for it.
@@ -73,22 +78,41 @@ pub(super) fn energy(field: &Field, level: &Level) -> f64 {
     field.energy() / level.wanted.len().max(1) as f64 / level.unit()
 }
 
-/// The guide error of each pixel: that of the patch whose centre is nearest.
+/// The exemplar pixel that the patch with the nearest centre puts at a target pixel.
+fn source_of(field: &Field, patch: usize, x: usize, y: usize) -> Option<(usize, usize)> {
+    let nearest = |pixel: usize, count: usize| pixel.saturating_sub(patch / 2).min(count - 1);
+    let (fx, fy) = (nearest(x, field.width), nearest(y, field.height));
+    let at = field.at[fy * field.width + fx];
+    let (px, py) = unpack(at);
+    (at != NONE).then_some((px + x - fx, py + y - fy))
+}
+
+/// The guide error of each pixel.
 pub(super) fn guide_error(field: &Field, problem: &Problem, job: Job) -> Result<Image> {
     let (source, target) = (&problem.guides.source, &problem.guides.target);
     let mut out = Image::new(target.width, target.height, 1)?;
-    let half = problem.patch / 2;
     exec::for_rows(&mut out.data, target.width, job, |y, row| {
-        let fy = y.saturating_sub(half).min(field.height - 1);
         for (x, error) in row.iter_mut().enumerate() {
-            let fx = x.saturating_sub(half).min(field.width - 1);
-            let at = field.at[fy * field.width + fx];
-            if at != NONE {
-                let (px, py) = unpack(at);
-                let (a, b) = (source.pixel(px + x - fx, py + y - fy), target.pixel(x, y));
-                let terms = a.iter().zip(b).zip(&problem.guides.weights);
+            if let Some((px, py)) = source_of(field, problem.patch, x, y) {
+                let terms = source.pixel(px, py).iter().zip(target.pixel(x, y)).zip(&problem.guides.weights);
                 let sum: f64 = terms.map(|((a, b), w)| w * f64::from(a - b).powi(2)).sum();
                 *error = sum.sqrt() as f32;
+            }
+        }
+    })?;
+    Ok(out)
+}
+
+/// Where in the artwork, which was halved `halvings` times for matching, each pixel comes from.
+pub(super) fn sources(field: &Field, problem: &Problem, halvings: usize, job: Job) -> Result<Image> {
+    let target = &problem.guides.target;
+    let mut out = Image::new(target.width, target.height, 2)?;
+    let pixel = (1 << halvings) as f32;
+    exec::for_rows(&mut out.data, 2 * target.width, job, |y, row| {
+        for (x, source) in row.chunks_exact_mut(2).enumerate() {
+            match source_of(field, problem.patch, x, y) {
+                Some((px, py)) => source.copy_from_slice(&[(px as f32 + 0.5) * pixel, (py as f32 + 0.5) * pixel]),
+                None => source.fill(-1.0),
             }
         }
     })?;

@@ -35,8 +35,15 @@ pub struct Pass {
 const LEAST_GAIN: f64 = 0.005;
 
 /// Matches every wanted target patch; `field` holds matches or hints of the last iteration, and what it returns has the
-/// distances of this one.
-pub(super) fn retrieve(level: &Level, field: &mut Field, params: &Params, round: u64, job: Job) -> Result<Vec<Pass>> {
+/// distances of this one. Where `kept` is set the match of `field` stays as it is.
+pub(super) fn retrieve(
+    level: &Level,
+    field: &mut Field,
+    kept: &[bool],
+    params: &Params,
+    round: u64,
+    job: Job,
+) -> Result<Vec<Pass>> {
     let wanted = level.wanted.len();
     let nearest = Nearest::new(level, params, job.part(0.0, 0.02))?;
     let search = level.forward();
@@ -44,6 +51,12 @@ pub(super) fn retrieve(level: &Level, field: &mut Field, params: &Params, round:
     let mut free = level.wanted.clone();
     let mut reverse = field.invert(&level.allowed)?;
     let mut matched = Field::new(field.width, field.height)?;
+    for i in (0..kept.len()).filter(|&i| kept[i]) {
+        (matched.at[i], matched.error[i]) = (field.at[i], field.error[i]);
+        free.remove(i);
+    }
+    free.compact();
+    let is_kept = |i: usize| kept.get(i) == Some(&true);
     let mut passes = Vec::new();
     let enough = if params.mode == Mode::Uniform { 1.0 } else { f64::from(params.coverage) };
 
@@ -69,7 +82,7 @@ pub(super) fn retrieve(level: &Level, field: &mut Field, params: &Params, round:
     // Let patches continue their neighbours' matches where those fit better.
     for k in 0..params.settle {
         let sweep = Sweep { index: k as u64, reach: 0, fresh: 0 };
-        search.sweep(&mut matched, sweep, job.part(0.9, 1.0), |i| level.wanted.contains_index(i))?;
+        search.sweep(&mut matched, sweep, job.part(0.9, 1.0), |i| level.wanted.contains_index(i) && !is_kept(i))?;
     }
     *field = matched;
     Ok(passes)

@@ -1,11 +1,13 @@
 //! From coarse to fine (§3.4): on each level match and vote a few times, then go on from the doubled field.
 
+use super::animate::{keep, moved};
 use super::finder::Nearest;
 use super::level::{Level, Problem};
-use super::report::{LevelReport, Report, Usage, energy, guide_error};
+use super::report::{LevelReport, Report, Usage, energy, guide_error, sources};
 use super::retrieve::retrieve;
-use super::{Finder, Input, Mode, Output, Params, Publish, greedy};
+use super::{Finder, Glimpse, Input, Mode, Output, Params, Publish, greedy};
 use crate::error::{Error, Result};
+use crate::exec;
 use crate::image::Image;
 use crate::image::colour::srgb_to_linear;
 use crate::job::Job;
@@ -16,9 +18,17 @@ use crate::rng::hash;
 const EXHAUSTIVE: usize = 1 << 24;
 
 pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Publish, job: Job) -> Result<Output> {
+    let halved = usize::from(!problem.is_of(input.artwork));
+    // A frame that keeps what it can of the one before, or a result to start from, needs the finest level only.
+    let moved = match (input.previous, input.motion) {
+        (Some(before), Some(motion)) => Some(moved(&checked_size(before, problem)?, motion, problem, halved, job)?),
+        _ => None,
+    };
+    let goes_on = input.previous.is_some() && (moved.is_none() || params.coherence == 1.0);
     // Build the pyramid; the coarsest level keeps at least five patches' widths.
-    let levels = match (params.mode, input.previous) {
-        (Mode::LitSphere, _) | (_, Some(_)) => 1,
+    let levels = match params.mode {
+        Mode::LitSphere => 1,
+        _ if goes_on => 1,
         _ => level_count(problem.shortest_side(), 5 * problem.patch, params.levels),
     };
     let mut coarser: Vec<Problem> = Vec::new();
@@ -32,7 +42,11 @@ pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Pu
     let total: f64 = (0..levels).map(cost).sum();
     let mut done = 0.0;
     let mut reports = Vec::new();
-    let mut field: Option<Field> = input.previous.cloned();
+    let mut field = match (&moved, input.previous) {
+        _ if !goes_on => None,
+        (None, Some(previous)) => Some(checked_size(previous, problem)?),
+        (moved, _) => moved.clone(),
+    };
     for l in (0..levels).rev() {
         let job = job.part(0.01 + 0.98 * done / total, 0.01 + 0.98 * (done + cost(l)) / total);
         done += cost(l);
@@ -51,6 +65,18 @@ pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Pu
             Some(coarse) if l + 1 < levels => coarse.upsample(width, height, &level.allowed)?,
             Some(previous) => checked(previous, &level)?,
             None => by_guides_alone(problem, params, seed, job.part(0.0, 0.1))?,
+        };
+        // What the frame before has made stays where it fits.
+        let kept = match &moved {
+            Some(moved) if l == 0 => {
+                let mut moved = checked(moved.clone(), &level)?;
+                let kept = keep(&mut level, &mut moved, params, hash(seed, &[1]), job.part(0.1, 0.1))?;
+                for i in (0..kept.len()).filter(|&i| kept[i]) {
+                    (current.at[i], current.error[i]) = (moved.at[i], moved.error[i]);
+                }
+                kept
+            }
+            _ => Vec::new(),
         };
         let mut picture = problem.blank_picture()?;
         let how = if params.mode == Mode::LitSphere { Vote::Nearest } else { params.vote };
@@ -77,7 +103,7 @@ pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Pu
             level.set_picture(&picture, part(0.0, 0.01))?;
             match params.mode {
                 Mode::Budget | Mode::Uniform => {
-                    report.passes.push(retrieve(&level, &mut current, params, k as u64, part(0.0, 0.9))?);
+                    report.passes.push(retrieve(&level, &mut current, &kept, params, k as u64, part(0.0, 0.9))?);
                 }
                 Mode::Nearest | Mode::LitSphere => nearest(&level, &mut current, params, k, part(0.0, 0.9))?,
                 Mode::Greedy => {
@@ -94,7 +120,6 @@ pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Pu
             }
         }
         reports.push(report);
-        publish(&decode(&picture), l);
 
         if l == 0 {
             let image = finish(&picture, &current, problem, input.artwork, input.known, job)?;
@@ -102,12 +127,15 @@ pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Pu
                 levels: reports,
                 usage: Usage::of(&current, &level)?,
                 guide_error: guide_error(&current, problem, job)?,
+                sources: sources(&current, problem, halved, job)?,
+                halvings: halved,
                 patch: problem.patch,
                 broken_source: problem.broken.0,
                 broken_target: problem.broken.1,
             };
             return Ok(Output { image, field: current, report });
         }
+        publish(Glimpse { picture: decode(&picture, job)?, halvings: l + halved, levels: &reports });
         field = Some(current);
     }
     Err(Error::new(crate::error::ErrorKind::Internal, "the pyramid has no levels"))
@@ -142,18 +170,22 @@ fn by_guides_alone(problem: &Problem, params: &Params, seed: u64, job: Job) -> R
     Ok(field)
 }
 
-/// A field from outside: of the right size, and its matches inside the exemplar.
-fn checked(field: Field, level: &Level) -> Result<Field> {
-    let (width, height) = (level.wanted.width, level.wanted.height);
-    if (field.width, field.height) != (width, height)
-        || field.at.len() != width * height
-        || field.error.len() != width * height
-    {
+/// A field from outside: of the size that the target asks for.
+fn checked_size(field: &Field, problem: &Problem) -> Result<Field> {
+    let target = &problem.guides.target;
+    let (width, height) = (target.width + 1 - problem.patch, target.height + 1 - problem.patch);
+    let count = width * height;
+    if (field.width, field.height) != (width, height) || field.at.len() != count || field.error.len() != count {
         return Err(Error::argument(format!(
             "previous is a field of {} x {} patches; this target has {width} x {height}",
             field.width, field.height
         )));
     }
+    Ok(field.clone())
+}
+
+/// A field from outside, its matches inside the exemplar.
+fn checked(field: Field, level: &Level) -> Result<Field> {
     let outside = |&at: &u32| {
         let (x, y) = unpack(at);
         at != NONE && (x >= level.allowed.width || y >= level.allowed.height)
@@ -186,10 +218,13 @@ fn restore_known(picture: &mut Image, problem: &Problem) {
     }
 }
 
-fn decode(picture: &Image) -> Image {
+fn decode(picture: &Image, job: Job) -> Result<Image> {
     let mut out = picture.clone();
-    out.data.iter_mut().for_each(|v| *v = srgb_to_linear(*v));
-    out
+    let row_len = out.row_len();
+    exec::for_rows(&mut out.data, row_len, job.part(1.0, 1.0), |_, row| {
+        row.iter_mut().for_each(|v| *v = srgb_to_linear(*v));
+    })?;
+    Ok(out)
 }
 
 /// The result in linear colour. Pixels that all patches agree on, and known ones, are copied and not decoded, so that
@@ -202,7 +237,7 @@ pub(super) fn finish(
     known: Option<&Image>,
     job: Job,
 ) -> Result<Image> {
-    let mut image = decode(picture);
+    let mut image = decode(picture, job)?;
     if !problem.is_of(artwork) {
         return Ok(image);
     }

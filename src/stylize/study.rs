@@ -2,10 +2,11 @@
 //! anew, starting from the field of the last result. The cost of matching is that of the places concerned.
 
 use super::level::{Level, Problem, encode, encoded};
+use super::report::sources;
 use super::schedule::{self, paint};
-use super::{Input, Output, Params};
+use super::{Input, Output, Params, Publish};
 use crate::error::{Error, Result};
-use crate::image::Image;
+use crate::image::{Image, try_vec};
 use crate::job::Job;
 use crate::patch::{Field, NONE, Sweep, halve, halve_mask, unpack};
 
@@ -24,14 +25,16 @@ pub struct Study {
     /// What the target shows outside its mask, linear.
     known: Option<Image>,
     field: Field,
+    /// Pixels of the artwork that have changed since the field was last brought up to date: a cancelled update leaves some.
+    pending: Vec<bool>,
 }
 
 impl Study {
     /// Stylises the target once, as [`super::run`] does.
-    pub fn new(input: &Input, params: &Params, job: Job) -> Result<(Self, Output)> {
+    pub fn new(input: &Input, params: &Params, publish: Publish, job: Job) -> Result<(Self, Output)> {
         params.check()?;
         let problem = Problem::new(input, params, job.part(0.0, 0.03))?;
-        let output = schedule::run(&problem, input, params, &|_, _| (), job.part(0.03, 1.0))?;
+        let output = schedule::run(&problem, input, params, publish, job.part(0.03, 1.0))?;
         let mut display = input.artwork.clone();
         encode(&mut display, job)?;
         let study = Self {
@@ -41,13 +44,15 @@ impl Study {
             encoded: display,
             known: input.known.cloned(),
             field: output.field.clone(),
+            pending: try_vec(input.artwork.width * input.artwork.height, false)?,
         };
         job.report(1.0);
         Ok((study, output))
     }
 
     /// Takes over the pixels of `artwork` (linear, of the first one's size) where the one-channel `changed` is above
-    /// 0.5, and returns the new picture, linear. A change that is no number counts as black.
+    /// 0.5, and returns the new picture, linear. A change that is no number counts as black. After an error (a cancel) the
+    /// next call brings up to date what this one has not.
     pub fn repaint(&mut self, artwork: &Image, changed: &Image, job: Job) -> Result<Image> {
         self.artwork.check_same_size("the first artwork", artwork, "artwork")?;
         self.artwork.check_same_size("artwork", changed, "changed")?;
@@ -57,21 +62,32 @@ impl Study {
                 artwork.channels, changed.channels, self.artwork.channels
             )));
         }
-        let mut changed: Vec<bool> = changed.data.iter().map(|&v| v > 0.5).collect();
         let channels = artwork.channels;
-        for i in (0..changed.len()).filter(|&i| changed[i]) {
+        for i in (0..changed.data.len()).filter(|&i| changed.data[i] > 0.5) {
+            self.pending[i] = true;
             let pixel = i * channels..(i + 1) * channels;
             self.artwork.data[pixel.clone()].copy_from_slice(&artwork.data[pixel.clone()]);
             self.encoded.data[pixel.clone()].iter_mut().zip(&artwork.data[pixel]).for_each(|(e, v)| *e = encoded(*v));
         }
-        if self.problem.is_of(artwork) {
+        let halved;
+        let changed = if self.problem.is_of(artwork) {
             self.problem.style.data.copy_from_slice(&self.encoded.data);
+            &self.pending
         } else {
             self.problem.style = halve(&self.encoded, job.part(0.0, 0.1))?;
-            changed = halve_mask(&changed, artwork.width, artwork.height, true);
-        }
-        let picture = rematch(&self.problem, &mut self.field, &changed, &self.params, job.part(0.1, 1.0))?;
-        schedule::finish(&picture, &self.field, &self.problem, &self.artwork, self.known.as_ref(), job)
+            halved = halve_mask(&self.pending, artwork.width, artwork.height, true);
+            &halved
+        };
+        let picture = rematch(&self.problem, &mut self.field, changed, &self.params, job.part(0.1, 0.9))?;
+        let job = job.part(0.9, 1.0);
+        let image = schedule::finish(&picture, &self.field, &self.problem, &self.artwork, self.known.as_ref(), job)?;
+        self.pending.fill(false);
+        Ok(image)
+    }
+
+    /// Where in the artwork each pixel comes from now: see `Report::sources`.
+    pub fn sources(&self, job: Job) -> Result<Image> {
+        sources(&self.field, &self.problem, usize::from(!self.problem.is_of(&self.artwork)), job)
     }
 }
 

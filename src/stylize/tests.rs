@@ -33,11 +33,11 @@ fn artwork(guide: &Image) -> Image {
 }
 
 fn guide<'a>(source: &'a Image, target: &'a Image) -> Guide<'a> {
-    Guide { source, target, weight: 1.0, range: Range::Light }
+    Guide { name: "light", source, target, weight: 1.0, range: Range::Light }
 }
 
 fn input<'a>(artwork: &'a Image, guides: &'a [Guide<'a>]) -> Input<'a> {
-    Input { artwork, guides, source_mask: None, target_mask: None, known: None, previous: None }
+    Input::new(artwork, guides)
 }
 
 fn stylise(input: &Input, params: &Params) -> Result<Output> {
@@ -250,7 +250,11 @@ fn contradictions_are_named() {
     fails(&input(&art, &[]), &default, "guides");
     fails(&input(&art, &[guide(&a, &two)]), &default, "channels");
     fails(&input(&art, &[guide(&b, &a)]), &default, "artwork");
-    fails(&input(&art, &[guide(&a, &b), guide(&b, &b)]), &default, "guides[1].source");
+    fails(
+        &input(&art, &[guide(&a, &b), Guide { name: "normals", ..guide(&b, &b) }]),
+        &default,
+        "the source of guide \"normals\" is 50 x 30",
+    );
     fails(&input(&art, &[Guide { weight: f32::NAN, ..guide(&a, &b) }]), &default, "weight");
     fails(&Input { source_mask: Some(&empty), ..good }, &default, "source_mask");
     fails(&Input { source_mask: Some(&two), ..good }, &default, "source_mask");
@@ -274,13 +278,13 @@ fn each_level_is_published_progress_ends_at_one_and_cancel_is_obeyed() {
     let guides = [guide(&a, &b)];
     let monitor = Monitor::default();
     let seen = Mutex::new(Vec::new());
-    let publish = |image: &Image, depth: usize| seen.lock().unwrap().push((image.width, depth));
+    let publish = |g: Glimpse| seen.lock().unwrap().push((g.picture.width, g.halvings, g.levels.len()));
     run_and_publish(&input(&art, &guides), &Params::default(), &publish, monitor.job()).unwrap();
-    assert_eq!(*seen.lock().unwrap(), [(50, 1), (100, 0)]);
+    assert_eq!(*seen.lock().unwrap(), [(50, 1, 1)]);
     assert_eq!(monitor.progress(), 1.0);
 
     let monitor = Monitor::default();
-    let stop = |_: &Image, _: usize| monitor.cancel();
+    let stop = |_: Glimpse| monitor.cancel();
     let error = run_and_publish(&input(&art, &guides), &Params::default(), &stop, monitor.job()).unwrap_err();
     assert_eq!(error.kind, ErrorKind::Cancelled);
     assert!(monitor.progress() < 1.0);
@@ -311,7 +315,8 @@ fn a_study_follows_its_artwork_where_it_changed_and_nowhere_else() {
     let guides = [guide(&a, &b)];
     for preview in [false, true] {
         let params = if preview { Params::preview() } else { Params::fast() };
-        let (mut study, before) = Study::new(&input(&art, &guides), &params, Monitor::default().job()).unwrap();
+        let (mut study, before) =
+            Study::new(&input(&art, &guides), &params, &|_| (), Monitor::default().job()).unwrap();
         let whole = stylise(&input(&art, &guides), &params).unwrap();
         assert!(before.image == whole.image);
 
@@ -327,4 +332,52 @@ fn a_study_follows_its_artwork_where_it_changed_and_nowhere_else() {
         assert_eq!(after.pixel(corner.0, corner.1), before.image.pixel(corner.0, corner.1));
         assert!(study.repaint(&b, &before.image, Monitor::default().job()).is_err());
     }
+}
+
+#[test]
+fn paint_moves_along_with_what_it_is_on_as_far_as_it_is_to() {
+    let a = scene(80, 60, 40.0, 30.0, 18.0);
+    let (now, next) = (scene(90, 70, 40.0, 36.0, 18.0), scene(90, 70, 46.0, 33.0, 18.0));
+    let art = artwork(&a);
+    let first = stylise(&input(&art, &[guide(&a, &now)]), &Params::default()).unwrap();
+    let motion = Image::from_fn(90, 70, |_, _| [-6.0, 3.0]).unwrap();
+    // Share of the ball that is painted as it was.
+    let same = |coherence: f32, preview: bool, seed: u64| {
+        let params = Params { coherence, preview, seed, ..Params::default() };
+        let start = if preview { stylise(&input(&art, &[guide(&a, &now)]), &params).unwrap() } else { first.clone() };
+        let guides = [guide(&a, &next)];
+        let moved = Input { previous: Some(&start.field), motion: Some(&motion), ..input(&art, &guides) };
+        let frame = stylise(&moved, &params).unwrap().image;
+        let ball = (20..46).flat_map(|y| (33..59).map(move |x| (x, y)));
+        let kept = ball.filter(|&(x, y)| preview || frame.pixel(x, y) == start.image.pixel(x - 6, y + 3));
+        (kept.count() as f64 / (26.0 * 26.0), frame)
+    };
+    let boiled = (2..8).map(|seed| same(0.5, false, seed).0).sum::<f64>() / 6.0;
+    let (all, none) = (same(1.0, false, 2).0, same(0.0, false, 2).0);
+    assert!(all > 0.9 && all > boiled + 0.05 && boiled > none + 0.05, "{all} {boiled} {none}");
+    assert_eq!(same(1.0, true, 2).1.width, 45);
+
+    // Nothing is known of the frame before: as good as new, without NaN.
+    let hidden = Image::from_fn(90, 70, |_, _| [f32::NAN; 2]).unwrap();
+    let guides = [guide(&a, &next)];
+    let moved = Input { previous: Some(&first.field), motion: Some(&hidden), ..input(&art, &guides) };
+    assert!(stylise(&moved, &Params::default()).unwrap().image.data.iter().all(|v| v.is_finite()));
+    let wrong = Image::new(90, 70, 1).unwrap();
+    for bad in [Input { motion: Some(&wrong), ..moved }, Input { previous: None, ..moved }] {
+        assert!(stylise(&bad, &Params::default()).unwrap_err().message.contains("motion"));
+    }
+}
+
+#[test]
+fn an_exemplar_under_another_light_can_be_matched_to_the_target() {
+    let (mut a, b) = (scene(80, 60, 40.0, 30.0, 18.0), scene(80, 60, 37.0, 31.0, 18.0));
+    let art = artwork(&a);
+    a.data.iter_mut().for_each(|v| *v *= 0.3);
+    let error = |match_appearance: f32| {
+        let params = Params { match_appearance, ..Params::default() };
+        let output = stylise(&input(&art, &[guide(&a, &b)]), &params).unwrap();
+        output.report.guide_error.data.iter().map(|v| f64::from(v * v)).sum::<f64>()
+    };
+    let (apart, matched) = (error(0.0), error(1.0));
+    assert!(matched < 0.5 * apart, "{matched} {apart}");
 }

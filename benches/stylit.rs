@@ -1,0 +1,275 @@
+//! Stylisation of the real pair in the test data (ebsynth's StyLit example, 1200 × 912, four guides): time and quality
+//! of the presets, by our own energy and by a judge that sees images only; quality against time over every knob; and the
+//! methods it is compared with, in the same engine.
+//!
+//! The judge is `tools/stylit_judge.py` beside the test data. It runs where `LUXFER_PYTHON` (else `python3`) has numpy,
+//! scipy and pillow. Pictures go to `out/bench/`.
+
+mod harness;
+
+use harness::plot::Plot;
+use harness::{Clock, Table, absent, figure, interleaved, scenes, time};
+use luxfer::exec::Pool;
+use luxfer::image::Image;
+use luxfer::image::colour::linear_to_srgb;
+use luxfer::image::io::{Encoding, encode_png, load};
+use luxfer::image::pyramid::resize;
+use luxfer::job::Monitor;
+use luxfer::patch::Vote;
+use luxfer::stylize::{Finder, Guide, Input, Mode, Output, Params, Range, Study, run};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+const GUIDES: [&str; 4] = ["fullgi", "dirdif", "dirspc", "indirb"];
+const ROUNDS: usize = 3;
+
+struct Pair {
+    folder: PathBuf,
+    artwork: Image,
+    guides: Vec<(Image, Image)>,
+}
+
+fn main() {
+    let pair = match Pair::load(1) {
+        Ok(pair) => pair,
+        Err(reason) => {
+            for name in ["full.seconds", "fast.seconds", "preview.seconds"] {
+                absent(&format!("stylit.{name}"), &reason);
+            }
+            return judged_absent(&reason);
+        }
+    };
+    let pool = Pool::new(2).expect("two threads");
+    presets(&pair, &pool);
+    update(&pair, &pool);
+    // Knobs and rivals at half size, where a run takes a quarter of the time.
+    let half = Pair::load(2).expect("it was there before");
+    methods(&half, &pool);
+    knobs(&half, &pool);
+}
+
+impl Pair {
+    fn load(shrink: usize) -> Result<Self, String> {
+        let folder = scenes::data("stylit/ebsynth_stylit")?;
+        let read = |name: String| -> Result<Image, String> {
+            let image = load(&folder.join(name), Encoding::Srgb).and_then(|i| i.to_rgb()).map_err(|e| e.to_string())?;
+            let (width, height) = (image.width / shrink, image.height / shrink);
+            resize(&image, width, height, Monitor::default().job()).map_err(|e| e.to_string())
+        };
+        let guide = |g: &&str| Ok((read(format!("source_{g}.png"))?, read(format!("target_{g}.png"))?));
+        let guides = GUIDES.iter().map(guide).collect::<Result<_, String>>()?;
+        Ok(Self { artwork: read("source_style.png".into())?, guides, folder: folder.clone() })
+    }
+
+    fn guides(&self) -> Vec<Guide<'_>> {
+        let names = GUIDES.iter().zip(&self.guides);
+        names.map(|(name, (source, target))| Guide { name, source, target, weight: 1.0, range: Range::Light }).collect()
+    }
+
+    fn stylise(&self, params: &Params, pool: &Pool) -> Output {
+        let guides = self.guides();
+        let monitor = Monitor::default();
+        pool.run(|| run(&input(&self.artwork, &guides), params, monitor.job())).expect("valid input")
+    }
+}
+
+fn input<'a>(artwork: &'a Image, guides: &'a [Guide<'a>]) -> Input<'a> {
+    Input::new(artwork, guides)
+}
+
+/// Time of each preset, in turns, and what it comes to.
+fn presets(pair: &Pair, pool: &Pool) {
+    let presets = [("full", Params::default()), ("fast", Params::fast()), ("preview", Params::preview())];
+    let outputs = std::cell::RefCell::new([None, None, None]);
+    let mut rivals: Vec<Box<dyn FnMut()>> = Vec::new();
+    for (i, (_, params)) in presets.iter().enumerate() {
+        let outputs = &outputs;
+        rivals.push(Box::new(move || outputs.borrow_mut()[i] = Some(pair.stylise(params, pool))));
+    }
+    let mut turns: Vec<&mut dyn FnMut()> = rivals.iter_mut().map(|r| &mut **r as &mut dyn FnMut()).collect();
+    let timings = interleaved(Clock::Wall, ROUNDS, &mut turns);
+    drop(rivals);
+
+    let mut table = Table::new(["preset", "seconds", "energy", "used %", "entropy", "guide error", "texture"]);
+    let outputs = outputs.into_inner();
+    for (i, (name, _)) in presets.iter().enumerate() {
+        let Some(output) = &outputs[i] else { continue };
+        let seconds = timings.median(i);
+        table.row([vec![name.to_string(), format!("{seconds:.2}")], numbers(output, &pair.artwork)].concat());
+        save(&format!("stylit_{name}"), &output.image);
+        figure(&format!("stylit.{name}.seconds"), seconds, "s");
+    }
+    table.print("presets, 1200 x 912, 2 threads");
+    if let Some(peak) = harness::peak_memory() {
+        println!("  peak memory {:.0} MiB", peak as f64 / f64::from(1 << 20));
+    }
+    match judge(pair, "stylit_full") {
+        Ok(line) => judged(&line),
+        Err(reason) => judged_absent(&reason),
+    }
+}
+
+/// Energy of Eq. 3, use of the exemplar, guide error, and texture kept.
+fn numbers(output: &Output, artwork: &Image) -> Vec<String> {
+    let energy = output.report.levels.last().and_then(|l| l.energy.last().copied()).unwrap_or(0.0);
+    let guide = &output.report.guide_error.data;
+    let rms = (guide.iter().map(|v| f64::from(v * v)).sum::<f64>() / guide.len() as f64).sqrt();
+    let usage = output.report.usage;
+    vec![
+        format!("{:.3}e-3", 1e3 * energy),
+        format!("{:.1}", 100.0 * usage.used),
+        format!("{:.2}", usage.entropy),
+        format!("{rms:.4}"),
+        format!("{:.3}", texture(&output.image) / texture(artwork)),
+    ]
+}
+
+/// Power of the encoded green channel's Laplacian.
+fn texture(image: &Image) -> f64 {
+    let green = |x: usize, y: usize| f64::from(linear_to_srgb(image.pixel(x, y)[1]));
+    let mut sum = 0.0;
+    for y in 1..image.height - 1 {
+        for x in 1..image.width - 1 {
+            let around = green(x - 1, y) + green(x + 1, y) + green(x, y - 1) + green(x, y + 1);
+            sum += (around - 4.0 * green(x, y)).powi(2);
+        }
+    }
+    sum / (image.width * image.height) as f64
+}
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("out/bench")
+}
+
+fn save(name: &str, image: &Image) {
+    std::fs::create_dir_all(folder()).expect("out/bench can be made");
+    let png = encode_png(image, 1.0).expect("three channels");
+    std::fs::write(folder().join(name).with_extension("png"), png).expect("out/bench can be written");
+    println!("picture out/bench/{name}.png");
+}
+
+/// What the judge says of a picture: its one line.
+fn judge(pair: &Pair, name: &str) -> Result<String, String> {
+    let program = scenes::data("../tools/stylit_judge.py")?;
+    let python = std::env::var("LUXFER_PYTHON").unwrap_or_else(|_| "python3".to_string());
+    let mut command = Command::new(&python);
+    command.arg(program).arg(pair.folder.join("source_style.png")).arg(folder().join(name).with_extension("png"));
+    for guide in GUIDES {
+        let side = |side: &str| pair.folder.join(format!("{side}_{guide}.png")).display().to_string();
+        command.arg(format!("{}:{}", side("source"), side("target")));
+    }
+    let output = command.output().map_err(|e| format!("{python} does not start: {e}"))?;
+    let error = String::from_utf8_lossy(&output.stderr);
+    let last = error.lines().last().unwrap_or("").to_string();
+    if output.status.success() {
+        Ok(String::from_utf8_lossy(&output.stdout).into_owned())
+    } else {
+        Err(format!("{python}: {last}"))
+    }
+}
+
+/// The judge's figures: where its line has each number, and its unit.
+const JUDGED: [(&str, &str, &str); 5] = [
+    ("coherence", "coherence ", "-"),
+    ("guide", "guide ", "-"),
+    ("used", "used ", "%"),
+    ("hf", "hf ", "-"),
+    ("hf_worst", "(min ", "-"),
+];
+
+fn judged(line: &str) {
+    for (name, before, unit) in JUDGED {
+        let number = line.split(before).nth(1).map(|rest| rest.split([' ', '%', ')', '\n']).next().unwrap_or(""));
+        match number.and_then(|n| n.parse().ok()) {
+            Some(value) => figure(&format!("stylit.full.{name}"), value, unit),
+            None => absent(&format!("stylit.full.{name}"), "the judge's line has no such number"),
+        }
+    }
+}
+
+fn judged_absent(reason: &str) {
+    for (name, _, _) in JUDGED {
+        absent(&format!("stylit.full.{name}"), reason);
+    }
+}
+
+/// Following a brush stroke in the artwork, in preview.
+fn update(pair: &Pair, pool: &Pool) {
+    let guides = pair.guides();
+    let monitor = Monitor::default();
+    let (mut study, _) = pool
+        .run(|| Study::new(&input(&pair.artwork, &guides), &Params::preview(), &|_| (), monitor.job()))
+        .expect("valid input");
+    let (width, height) = (pair.artwork.width, pair.artwork.height);
+    let stroke = Image::from_fn(width, height, |x, y| {
+        let inside = (500..700).contains(&x) && (y as isize - 300 - (x as isize - 500) / 4).abs() < 15;
+        [f32::from(u8::from(inside))]
+    })
+    .expect("a size that exists");
+    let mut painted = pair.artwork.clone();
+    for (pixel, _) in painted.data.chunks_exact_mut(3).zip(&stroke.data).filter(|(_, s)| **s > 0.5) {
+        pixel.copy_from_slice(&[0.05, 0.3, 0.1]);
+    }
+    let mut seconds = Vec::new();
+    for _ in 0..5 {
+        let repaint = || pool.run(|| study.repaint(&painted, &stroke, monitor.job())).expect("valid input");
+        seconds.push(time(Clock::Wall, repaint).0);
+    }
+    println!("\nupdate after a stroke of 200 x 30 pixels, preview: {:.3} s", harness::median(&seconds));
+}
+
+/// Other ways to make the matches, in the same engine.
+fn methods(pair: &Pair, pool: &Pool) {
+    let mut table = Table::new(["method", "seconds", "energy", "used %", "entropy", "guide error", "texture"]);
+    let of = |mode| Params { mode, ..Params::default() };
+    for (name, params) in [
+        ("error budget (Fiser 2016)", Params::default()),
+        ("the paper's settings", Params::paper()),
+        ("uniform (Jamriska 2015)", of(Mode::Uniform)),
+        ("nearest (Wexler 2007)", Params { sweeps: 3, ..of(Mode::Nearest) }),
+        ("nearest, mean", Params { sweeps: 3, final_vote: Vote::Plain, vote: Vote::Plain, ..of(Mode::Nearest) }),
+        ("greedy (Hertzmann 2001)", of(Mode::Greedy)),
+        ("error budget by table", Params { finder: Finder::Table, ..Params::default() }),
+    ] {
+        let (seconds, output) = time(Clock::Wall, || pair.stylise(&params, pool));
+        table.row([vec![name.to_string(), format!("{seconds:.2}")], numbers(&output, &pair.artwork)].concat());
+    }
+    table.print("methods, 600 x 456");
+}
+
+/// Energy against time, one knob at a time.
+fn knobs(pair: &Pair, pool: &Pool) {
+    let base = Params::default;
+    let mut knobs: Vec<(&str, Vec<(String, Params)>)> = Vec::new();
+    let mut knob = |name: &'static str, values: &[usize], set: fn(&mut Params, usize)| {
+        let with = |v: &usize| {
+            let mut params = base();
+            set(&mut params, *v);
+            (v.to_string(), params)
+        };
+        knobs.push((name, values.iter().map(with).collect()));
+    };
+    knob("levels", &[2, 4, 6], |p, v| p.levels = v);
+    knob("iterations", &[1, 3, 6, 9], |p, v| p.iterations = v);
+    knob("finest iterations", &[1, 2, 4], |p, v| p.finest_iterations = v);
+    knob("sweeps", &[1, 2, 4], |p, v| p.sweeps = v);
+    knob("passes", &[3, 6, 12, 24], |p, v| p.passes = v);
+    knob("settle", &[0, 1, 2, 4], |p, v| p.settle = v);
+    knob("coverage %", &[50, 80, 95, 99], |p, v| p.coverage = v as f32 / 100.0);
+    knob("patch", &[3, 5, 7], |p, v| p.patch = v);
+    let mut table = Table::new(["knob", "seconds", "energy", "used %", "entropy", "guide error", "texture"]);
+    let mut plot = Plot::new("Stylisation, one knob at a time (600 x 456)", "seconds", "energy (Eq. 3)");
+    for (name, values) in knobs {
+        let mut curve = Vec::new();
+        for (value, params) in values {
+            let (seconds, output) = time(Clock::Wall, || pair.stylise(&params, pool));
+            let mark = if params == base() { " (default)" } else { "" };
+            let title = format!("{name} {value}{mark}");
+            table.row([vec![title, format!("{seconds:.2}")], numbers(&output, &pair.artwork)].concat());
+            curve.push([seconds, output.report.levels.last().and_then(|l| l.energy.last().copied()).unwrap_or(0.0)]);
+        }
+        plot.add(name, curve);
+    }
+    table.print("knobs, 600 x 456");
+    plot.write("stylit_knobs").expect("out/bench can be written");
+}

@@ -1,0 +1,64 @@
+//! Sequences (section 5, future work): the matches of the frame before, moved along with what they show, are kept where they
+//! still fit, so that paint sticks to things; what has moved into the light, or into view, is painted anew.
+//!
+//! How much is kept is `Params::coherence`: at 1 all that fits, at 0 nothing, and between them blocks chosen anew for each
+//! frame, which boil as hand-painted frames do (after the temporal noise control of Fišer et al. 2014, "Color Me Noisy").
+
+use super::Params;
+use super::budget::budget;
+use super::level::{Level, Problem};
+use super::schedule::paint;
+use crate::error::Result;
+use crate::image::Image;
+use crate::job::Job;
+use crate::patch::{Field, NONE, halve};
+use crate::rng::Rng;
+
+/// Side in pixels of what is kept or given up together.
+const BLOCK: usize = 24;
+
+/// The field of the frame before seen in this one: each patch takes the match of the patch its centre comes from. `motion` is
+/// of the size of the guides; the problem may have been halved.
+pub(super) fn moved(before: &Field, motion: &Image, problem: &Problem, halved: usize, job: Job) -> Result<Field> {
+    if halved == 0 {
+        return advect(before, motion, problem.patch);
+    }
+    let mut half = halve(motion, job.part(0.0, 0.01))?;
+    half.data.iter_mut().for_each(|v| *v /= 2.0);
+    advect(before, &half, problem.patch)
+}
+
+fn advect(before: &Field, motion: &Image, patch: usize) -> Result<Field> {
+    let mut field = Field::new(before.width, before.height)?;
+    let inside = |v: f32, n: usize| (v >= 0.0 && v < n as f32).then_some(v as usize);
+    for (i, at) in field.at.iter_mut().enumerate() {
+        let (x, y) = (i % before.width, i / before.width);
+        let step = motion.pixel(x + patch / 2, y + patch / 2);
+        // Half a pixel more rounds to the nearest; NaN is nowhere.
+        let from = (inside(x as f32 + step[0] + 0.5, before.width), inside(y as f32 + step[1] + 0.5, before.height));
+        if let (Some(px), Some(py)) = from {
+            *at = before.at[py * before.width + px];
+        }
+    }
+    Ok(field)
+}
+
+/// Measures the moved field and says which patches keep its matches: those left of the knee of their errors, as far as their
+/// block is not to boil.
+pub(super) fn keep(level: &mut Level, field: &mut Field, params: &Params, seed: u64, job: Job) -> Result<Vec<bool>> {
+    let mut picture = level.problem.blank_picture()?;
+    paint(&mut picture, field, level.problem, level, params.vote, job)?;
+    level.set_picture(&picture, job)?;
+    level.forward().rescore(field, job, |i| level.wanted.contains_index(i))?;
+
+    let fits = |i: usize| level.wanted.contains_index(i) && field.at[i] != NONE && field.error[i] != u32::MAX;
+    let mut errors: Vec<u32> = (0..field.at.len()).filter(|&i| fits(i)).map(|i| field.error[i]).collect();
+    errors.sort_unstable();
+    let feasible = (budget(&errors).knee * errors.len() as f64).ceil() as usize;
+    let limit = errors.get(feasible.saturating_sub(1)).copied().unwrap_or(0);
+    let stays = |i: usize| {
+        let block = [(i % field.width / BLOCK) as u64, (i / field.width / BLOCK) as u64];
+        Rng::new(seed, &block).next_f32() < params.coherence
+    };
+    Ok((0..field.at.len()).map(|i| fits(i) && field.error[i] <= limit && stays(i)).collect())
+}
