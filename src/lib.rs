@@ -51,6 +51,8 @@ pub mod patch;
 pub mod stylize;
 
 pub mod demo;
+pub mod guides;
+pub mod sheet;
 pub mod transfer;
 
 pub mod ffi;

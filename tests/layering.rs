@@ -22,7 +22,9 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("relight", &["error", "job", "exec", "rng", "image", "geometry", "scene", "render"]),
     ("stylize", &["error", "job", "exec", "rng", "image", "geometry", "patch"]),
     // Those that pass data between stages.
-    ("demo", &["error", "job", "exec", "rng", "image", "geometry", "scene", "render", "segment"]),
+    ("guides", &["error", "job", "exec", "rng", "image", "geometry", "scene", "render"]),
+    ("sheet", &["error", "job", "exec", "image", "geometry", "rectify"]),
+    ("demo", &["error", "job", "exec", "rng", "image", "geometry", "scene", "render", "segment", "guides"]),
     (
         "transfer",
         &[

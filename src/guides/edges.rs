@@ -1,0 +1,53 @@
+//! Edges of shapes: where the material changes, the surface folds, or one thing stands before another.
+
+use crate::error::Result;
+use crate::exec;
+use crate::image::{Image, pyramid};
+use crate::job::Job;
+use glam::Vec3;
+
+/// Normals that differ by more than this (1 - cosine; about 40°) between neighbouring pixels make a full edge.
+const FOLD: f32 = 0.25;
+/// So does a step of depth, against the slope on either side, of this share of the depth.
+const STEP: f32 = 0.02;
+/// Edges are spread over this many pixels (standard deviation), so that patches beside them know of them.
+const SPREAD: f32 = 0.8;
+
+/// The strength of the edge at each pixel, in `[0, 1]`.
+pub fn edges(normals: &Image, material: &Image, depth: &Image, job: Job) -> Result<Image> {
+    let (width, height) = (normals.width, normals.height);
+    let mut sharp = Image::new(width, height, 1)?;
+    let normal = |x: usize, y: usize| Vec3::from_slice(normals.pixel(x, y));
+    exec::for_rows(&mut sharp.data, width, job, |y, row| {
+        for (x, edge) in row.iter_mut().enumerate() {
+            let around = [
+                (x.saturating_sub(1), y),
+                ((x + 1).min(width - 1), y),
+                (x, y.saturating_sub(1)),
+                (x, (y + 1).min(height - 1)),
+            ];
+            let here = normal(x, y);
+            for (i, j) in around {
+                let changes = material.pixel(i, j) != material.pixel(x, y);
+                let fold = (1.0 - here.dot(normal(i, j))) / FOLD;
+                *edge = edge.max(if changes {
+                    1.0
+                } else if here == Vec3::ZERO {
+                    0.0
+                } else {
+                    fold
+                });
+            }
+            // The second difference of depth: a slope alone is no step.
+            for pair in around.chunks_exact(2) {
+                let (d, a, b) =
+                    (depth.pixel(x, y)[0], depth.pixel(pair[0].0, pair[0].1)[0], depth.pixel(pair[1].0, pair[1].1)[0]);
+                let step = (a + b - 2.0 * d).abs() / (STEP * d);
+                *edge = if step.is_finite() { edge.max(step) } else { *edge };
+            }
+            // Faint ones are noise of curved surfaces.
+            *edge = ((*edge - 0.2) / 0.8).clamp(0.0, 1.0);
+        }
+    })?;
+    pyramid::blur(&sharp, SPREAD, job)
+}

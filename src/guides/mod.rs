@@ -1,0 +1,190 @@
+//! Guides of a scene: what the light does in each place of its picture, told apart by the way it came (StyLit, section 3.2),
+//! and what is there.
+//!
+//! [`run`] renders a camera's view once and keeps, beside the full picture, the light of five light path expressions, the
+//! normals, the edges of shapes ([`edges`](self)), and a colour for each material by its name, so that the red of one scene's
+//! ball is the red of another scene's vase. [`pairs`] brings two scenes' guides to a common exposure for `stylize`.
+//!
+//! The light is smoothed along surfaces (`smooth`): sampling noise would be matched like texture.
+//!
+//! For sequences [`motion`] tells where each pixel was in the frame before.
+//!
+//! Not modelled: motion of objects; only the camera moves.
+
+mod edges;
+mod motion;
+mod smooth;
+
+#[cfg(test)]
+mod tests;
+
+pub use motion::motion;
+
+use crate::error::{Result, check_range};
+use crate::image::Image;
+use crate::image::colour::luminance;
+use crate::job::Job;
+use crate::render::{self, Aov, Outputs, World};
+use crate::rng::Rng;
+use crate::scene::Camera;
+use glam::Vec3;
+
+/// The kinds of light, each a name and its expression (Heckbert's notation): all; reflected once by something matt; once by
+/// something glossy; matt after matt, which is where colours bleed; and once or twice matt, which tells shadows apart.
+pub const LIGHT: [(&str, &str); 5] =
+    [("full", "L.*E"), ("direct", "LDE"), ("specular", "LSE"), ("indirect", "L.*DDE"), ("two bounces", "LD{1,2}E")];
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct Params {
+    /// Size of the images in pixels, each in `[1, 32768]`.
+    pub width: usize,
+    pub height: usize,
+    /// Paths per pixel, in `[1, 1 << 20]`.
+    pub samples: u32,
+    pub seed: u64,
+    /// Whether to smooth the light along surfaces.
+    pub smooth: bool,
+}
+
+impl Default for Params {
+    fn default() -> Self {
+        Self { width: 800, height: 608, samples: 64, seed: 1, smooth: true }
+    }
+}
+
+#[derive(Clone, Debug)]
+pub struct Guides {
+    /// In the order of [`LIGHT`]: linear RGB in cd/m².
+    pub light: [Image; 5],
+    /// Unit normals as the camera has them: x right, y up, z towards the viewer; 0 where nothing is. 3 channels.
+    pub normals: Image,
+    /// 1 on edges of shapes, 0 away from them; 1 channel.
+    pub edges: Image,
+    /// A colour for each material, made from its name; black where nothing is. 3 channels.
+    pub materials: Image,
+    /// The camera they are seen by.
+    pub camera: Camera,
+    /// Distance along the viewing direction in metres, infinite where nothing is; 1 channel.
+    pub depth: Image,
+}
+
+/// Renders the guides of a view.
+pub fn run(world: &World, camera: &Camera, params: &Params, job: Job) -> Result<Guides> {
+    check_range("width", params.width, 1, 32_768)?;
+    check_range("height", params.height, 1, 32_768)?;
+    let mut outputs = Outputs { aovs: vec![Aov::Normal, Aov::Material, Aov::Depth], ..Outputs::default() };
+    for (name, expression) in &LIGHT[1..] {
+        outputs.add(name, expression)?;
+    }
+    let settings = render::Params {
+        width: params.width,
+        height: params.height,
+        samples: params.samples,
+        seed: params.seed,
+        outputs,
+        ..render::Params::default()
+    };
+    let film = render::run(world, camera, &settings, job.part(0.0, 0.95), &mut |_| {})?;
+    let job = job.part(0.95, 1.0);
+
+    // The layers come in the order they were asked for.
+    let mut layers = film.layers.into_iter().map(|l| l.image);
+    let mut next = || layers.next().ok_or_else(|| crate::error::Error::degenerate("the rendering has no layers"));
+    let mut light = [film.beauty, next()?, next()?, next()?, next()?];
+    let (mut normals, material, depth) = (next()?, next()?, next()?);
+
+    // Normals as the camera has them: what matters is how a surface lies in the picture.
+    let right = camera.forward.cross(camera.up).normalize_or_zero();
+    let axes = [right, right.cross(camera.forward).normalize_or_zero(), -camera.forward.normalize_or_zero()];
+    for n in normals.data.chunks_exact_mut(3) {
+        let world = Vec3::from_slice(n);
+        n.copy_from_slice(&axes.map(|axis| axis.dot(world)));
+    }
+    if params.smooth {
+        for image in &mut light {
+            *image = smooth::along_surfaces(image, &normals, &material, job)?;
+        }
+    }
+    let edges = edges::edges(&normals, &material, &depth, job)?;
+    let materials = coded(&material, &world.scene().materials)?;
+    job.report(1.0);
+    Ok(Guides { light, normals, edges, materials, camera: camera.clone(), depth })
+}
+
+/// The colour code of each pixel's material.
+fn coded(index: &Image, materials: &[crate::scene::Material]) -> Result<Image> {
+    let code = |name: &str| {
+        let letters: Vec<u64> = name.bytes().map(u64::from).collect();
+        let mut rng = Rng::new(1, &letters);
+        [0; 3].map(|_| 0.2 + 0.8 * rng.next_f32())
+    };
+    let codes: Vec<[f32; 3]> = materials.iter().map(|m| code(&m.name)).collect();
+    let mut out = Image::new(index.width, index.height, 3)?;
+    for (pixel, &i) in out.data.chunks_exact_mut(3).zip(&index.data) {
+        if let Some(code) = codes.get((i as usize).wrapping_sub(1)) {
+            pixel.copy_from_slice(code);
+        }
+    }
+    Ok(out)
+}
+
+/// What goes beside the light.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Extras {
+    pub normals: bool,
+    /// For shapes finer than the strokes (Fig. 16).
+    pub edges: bool,
+    /// For scenes whose materials are painted differently.
+    pub materials: bool,
+}
+
+/// One guide of two scenes.
+#[derive(Clone, Debug)]
+pub struct Pair {
+    pub name: &'static str,
+    pub source: Image,
+    pub target: Image,
+    /// Whether it is light, in `[0, 1]` but for highlights, or data.
+    pub is_light: bool,
+}
+
+/// The guides of an exemplar and a target at a common exposure: the luminance that nine tenths of both full pictures stay
+/// below becomes [`BRIGHT`].
+pub fn pairs(source: &Guides, target: &Guides, extras: Extras) -> Result<Vec<Pair>> {
+    let exposure = exposure(&source.light[0], &target.light[0]);
+    let mut pairs = Vec::new();
+    for (i, (name, _)) in LIGHT.iter().enumerate() {
+        // As a screen would show it: what is beyond white is white.
+        let expose = |image: &Image| {
+            let mut exposed = image.clone();
+            exposed.data.iter_mut().for_each(|v| *v = (*v * exposure).min(1.0));
+            exposed
+        };
+        let (source, target) = (expose(&source.light[i]), expose(&target.light[i]));
+        pairs.push(Pair { name, source, target, is_light: true });
+    }
+    let more: [(bool, &'static str, fn(&Guides) -> &Image); 3] = [
+        (extras.normals, "normals", |g| &g.normals),
+        (extras.edges, "edges", |g| &g.edges),
+        (extras.materials, "materials", |g| &g.materials),
+    ];
+    for (_, name, pick) in more.into_iter().filter(|m| m.0) {
+        pairs.push(Pair { name, source: pick(source).clone(), target: pick(target).clone(), is_light: false });
+    }
+    Ok(pairs)
+}
+
+/// Linear value that the brighter tenth of the pictures lies above.
+const BRIGHT: f32 = 0.8;
+
+/// The factor from cd/m² to the common exposure.
+pub fn exposure(source: &Image, target: &Image) -> f32 {
+    let pixels = source.data.chunks_exact(3).chain(target.data.chunks_exact(3));
+    let mut luminances: Vec<f32> = pixels.map(|p| luminance(Vec3::from_slice(p))).filter(|l| l.is_finite()).collect();
+    if luminances.is_empty() {
+        return 1.0;
+    }
+    let rank = (luminances.len() - 1) * 9 / 10;
+    let bright = *luminances.select_nth_unstable_by(rank, f32::total_cmp).1;
+    if bright > 0.0 { BRIGHT / bright } else { 1.0 }
+}

@@ -1,0 +1,150 @@
+//! Marks in a photo: saddles of brightness with four quadrants around them.
+
+use crate::error::Result;
+use crate::exec;
+use crate::image::{Image, pyramid};
+use crate::job::Job;
+use glam::{DMat2, DVec2};
+
+/// The search runs on a photo of at most this many pixels on its longer side.
+const SIDE: usize = 1400;
+/// Scales of the search in its pixels: marks of four to about forty pixels across.
+const SCALES: [f32; 3] = [1.5, 3.0, 6.0];
+/// Most candidates kept.
+const MOST: usize = 24;
+/// Least share of the second harmonic in the brightness around a mark; two cycles of a square wave have 0.81.
+const HARMONIC: f64 = 0.55;
+/// Least difference between black and white (encoded), as the amplitude of that harmonic.
+const CONTRAST: f64 = 0.06;
+
+/// A place that looks like a mark.
+#[derive(Clone, Copy, Debug)]
+pub struct Candidate {
+    /// In pixels of the photo.
+    pub at: DVec2,
+    strength: f64,
+}
+
+/// Places that look like marks, the clearest first.
+pub fn candidates(grey: &Image, job: Job) -> Result<Vec<Candidate>> {
+    let longest = grey.width.max(grey.height);
+    let reduced = longest.min(SIDE) as f64 / longest as f64;
+    let side = |n: usize| ((n as f64 * reduced).round() as usize).max(1);
+    let small = pyramid::resize(grey, side(grey.width), side(grey.height), job.part(0.0, 0.2))?;
+    let scale = DVec2::new(grey.width as f64 / small.width as f64, grey.height as f64 / small.height as f64);
+    let mut found: Vec<Candidate> = Vec::new();
+    for (k, &sigma) in SCALES.iter().enumerate() {
+        let job = job.part(0.2 + 0.25 * k as f64, 0.2 + 0.25 * (k + 1) as f64);
+        let blurred = pyramid::blur(&small, sigma, job.part(0.0, 0.5))?;
+        for (x, y) in saddles(&blurred, sigma, job.part(0.5, 1.0))? {
+            let at = DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
+            let strength =
+                quadrants(&small, at, 1.6 * f64::from(sigma)).min(quadrants(&small, at, 2.2 * f64::from(sigma)));
+            if strength > 0.0 {
+                found.push(Candidate { at: at * scale, strength });
+            }
+        }
+    }
+    // Where scales agree, the clearest.
+    found.sort_by(|a, b| b.strength.total_cmp(&a.strength));
+    let apart = 6.0 * scale.max_element();
+    let mut kept: Vec<Candidate> = Vec::new();
+    for candidate in found {
+        if kept.iter().all(|k| k.at.distance(candidate.at) > apart) && kept.len() < MOST {
+            kept.push(candidate);
+        }
+    }
+    Ok(kept)
+}
+
+/// Pixels where the determinant of the Hessian is more negative than anywhere near.
+fn saddles(image: &Image, sigma: f32, job: Job) -> Result<Vec<(usize, usize)>> {
+    let (width, height) = (image.width, image.height);
+    let mut response = Image::new(width, height, 1)?;
+    exec::for_rows(&mut response.data, width, job, |y, row| {
+        if y == 0 || y + 1 >= height {
+            return;
+        }
+        for x in 1..width.saturating_sub(1) {
+            let v = |dx: usize, dy: usize| image.pixel(x + dx - 1, y + dy - 1)[0];
+            let xx = v(0, 1) + v(2, 1) - 2.0 * v(1, 1);
+            let yy = v(1, 0) + v(1, 2) - 2.0 * v(1, 1);
+            let xy = (v(0, 0) + v(2, 2) - v(2, 0) - v(0, 2)) / 4.0;
+            row[x] = (xy * xy - xx * yy) * sigma.powi(4);
+        }
+    })?;
+    let reach = (1.5 * sigma).ceil() as usize;
+    let rows = exec::map(height, job, |y| {
+        let mut row = Vec::new();
+        for x in 0..width {
+            let here = response.pixel(x, y)[0];
+            if here < LEAST {
+                continue;
+            }
+            let mut around = (y.saturating_sub(reach)..(y + reach + 1).min(height))
+                .flat_map(|j| response.row(j)[x.saturating_sub(reach)..(x + reach + 1).min(width)].iter());
+            if around.all(|v| *v <= here) {
+                row.push((x, y));
+            }
+        }
+        row
+    })?;
+    Ok(rows.into_iter().flatten().collect())
+}
+
+/// Saddles weaker than this are noise: of a full mark the response is about 0.01.
+const LEAST: f32 = 2e-4;
+
+/// How clearly a circle around a place passes through two dark and two bright quadrants; 0 if it does not.
+fn quadrants(image: &Image, at: DVec2, radius: f64) -> f64 {
+    const STEPS: usize = 32;
+    let value = |i: usize| {
+        let p = at + radius * DVec2::from_angle(std::f64::consts::TAU * i as f64 / STEPS as f64);
+        f64::from(image.sample(p.x, p.y, 0))
+    };
+    let values: [f64; STEPS] = std::array::from_fn(value);
+    let mean = values.iter().sum::<f64>() / STEPS as f64;
+    let power: f64 = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / STEPS as f64;
+    let mut second = DVec2::ZERO;
+    for (i, v) in values.iter().enumerate() {
+        second += (v - mean) * DVec2::from_angle(2.0 * std::f64::consts::TAU * i as f64 / STEPS as f64);
+    }
+    let amplitude = 2.0 * second.length() / STEPS as f64;
+    let share = amplitude * amplitude / 2.0 / power.max(1e-12);
+    if share > HARMONIC && amplitude > CONTRAST { amplitude * share } else { 0.0 }
+}
+
+/// The saddle near a place to a part of a pixel: the point all gradients around it are across from (Förstner and Gülch 1987).
+/// `None` if it runs away.
+pub fn refine(grey: &Image, start: DVec2, radius: f64) -> Option<DVec2> {
+    let mut at = start;
+    for _ in 0..12 {
+        let (mut matrix, mut right) = (DMat2::ZERO, DVec2::ZERO);
+        let reach = radius.ceil() as isize;
+        for j in -reach..=reach {
+            for i in -reach..=reach {
+                let offset = DVec2::new(i as f64, j as f64);
+                let weight = (-2.0 * offset.length_squared() / (radius * radius)).exp();
+                let p = at + offset;
+                let v = |dx: f64, dy: f64| f64::from(grey.sample(p.x + dx, p.y + dy, 0));
+                let gradient = DVec2::new(v(1.0, 0.0) - v(-1.0, 0.0), v(0.0, 1.0) - v(0.0, -1.0));
+                let outer = DMat2::from_cols(gradient * gradient.x, gradient * gradient.y) * weight;
+                matrix += outer;
+                right += outer * p;
+            }
+        }
+        if matrix.determinant().abs() < 1e-12 {
+            return None;
+        }
+        let next = matrix.inverse() * right;
+        let moved = next.distance(at);
+        at = next;
+        if !(at.distance(start) < radius) {
+            return None;
+        }
+        if moved < 1e-3 {
+            break;
+        }
+    }
+    Some(at)
+}
