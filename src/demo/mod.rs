@@ -1,22 +1,28 @@
-//! A small world of its own to try everything on: two rooms, generated, and a photo taken of one of them.
+//! A small world of its own to try everything on: two rooms, generated, and a photo taken of one of them; a sphere on a
+//! table with artworks of it, and a still life.
 //!
 //! [`target_room`] is the furnished room to be lit; it has no lights. [`exemplar_room`] is a different room, an office
 //! under a grid of luminaires whose true positions and colour come along, so that a picture of it can stand for the photo
 //! and what is read from the picture can be checked.
 //!
+//! [`sphere_on_table`] is the exemplar of a stylisation, [`artwork`] draws it in three manners, [`still_life`] is a target.
+//!
 //! Metres, Y up, floors at y = 0. Nothing is loaded from files: shapes are boxes, sheets and bodies of revolution,
 //! textures are noise. The same bits every time.
 
+pub mod artwork;
 mod furniture;
 mod office;
 mod pattern;
 pub mod photo;
 mod room;
 mod shapes;
+mod still_life;
 mod strokes;
 
 pub use office::{Exemplar, LuminaireGrid, exemplar_room};
 pub use room::target_room;
+pub use still_life::{sphere_on_table, still_life};
 pub use strokes::{drawing, strokes};
 
 use crate::error::Result;

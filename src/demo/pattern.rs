@@ -9,7 +9,7 @@ use glam::{Vec2, Vec3};
 const SIDE: usize = 256;
 
 /// Smooth noise in `[0, 1]` that repeats every `period` cells (value noise on a lattice).
-fn noise(at: Vec2, period: [u64; 2], seed: u64) -> f32 {
+pub(super) fn noise(at: Vec2, period: [u64; 2], seed: u64) -> f32 {
     let cell = at.floor();
     let t = at - cell;
     let t = t * t * (3.0 - 2.0 * t);

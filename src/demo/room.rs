@@ -1,6 +1,6 @@
 //! The room to be lit: 6 × 4 m, 2.8 m high, furnished, with no light in it.
 
-use super::shapes::{ball, cuboid, moved, pierced, sheet};
+use super::shapes::{ball, cuboid, flat, moved, pierced, sheet};
 use super::{Builder, furniture, pattern};
 use crate::error::Result;
 use crate::scene::{Camera, Mesh, Scene};
@@ -26,13 +26,6 @@ pub fn target_room() -> Result<Scene> {
         ..Camera::look_at(Vec3::new(5.65, 1.55, 3.75), Vec3::new(2.2, 1.32, 1.15), 56f32.to_radians())
     });
     b.finish()
-}
-
-/// A flat mesh made by one shape.
-fn flat(build: impl FnOnce(&mut Mesh)) -> Mesh {
-    let mut mesh = Mesh::default();
-    build(&mut mesh);
-    mesh
 }
 
 /// Floor, ceiling and walls, all facing inwards.

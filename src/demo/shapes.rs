@@ -6,6 +6,13 @@
 use crate::scene::Mesh;
 use glam::{Mat3, Vec2, Vec3};
 
+/// A mesh made by one shape.
+pub fn flat(build: impl FnOnce(&mut Mesh)) -> Mesh {
+    let mut mesh = Mesh::default();
+    build(&mut mesh);
+    mesh
+}
+
 /// Adds a rectangle of `cells` from a corner; its front is on the side of `u × v`.
 pub fn sheet(mesh: &mut Mesh, corner: Vec3, u: Vec3, v: Vec3, cells: [u32; 2]) {
     let first = mesh.positions.len() as u32;

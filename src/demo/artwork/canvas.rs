@@ -1,0 +1,104 @@
+//! Paper, and what a tool leaves on it.
+
+use crate::demo::pattern::noise;
+use crate::error::Result;
+use crate::image::colour::srgb_to_linear;
+use crate::image::{Image, try_vec};
+use crate::rng::Rng;
+use glam::{Vec2, Vec3};
+
+/// A sheet; colours are as displayed.
+pub struct Canvas {
+    pub width: usize,
+    pub height: usize,
+    colour: Vec<Vec3>,
+    /// Roughness of the ground in `[0, 1]`: high places take ink first.
+    tooth: Vec<f32>,
+    /// Thickness of paint.
+    relief: Vec<f32>,
+}
+
+impl Canvas {
+    /// Paper of a colour, cloudy and fibrous.
+    pub fn paper(width: usize, height: usize, colour: Vec3, seed: u64) -> Result<Self> {
+        let mut canvas = Self {
+            width,
+            height,
+            colour: try_vec(width * height, colour)?,
+            tooth: try_vec(width * height, 0.0)?,
+            relief: try_vec(width * height, 0.0)?,
+        };
+        for i in 0..width * height {
+            let at = Vec2::new((i % width) as f32, (i / width) as f32);
+            let grain = Rng::new(seed, &[i as u64]).next_f32();
+            let fibre = noise(at / Vec2::new(3.1, 1.7), [4096; 2], seed + 1);
+            let cloud = noise(at / 61.0, [4096; 2], seed + 2);
+            canvas.tooth[i] = 0.5 * fibre + 0.5 * grain;
+            canvas.colour[i] *= 1.0 + 0.035 * (canvas.tooth[i] - 0.5) + 0.02 * (cloud - 0.5);
+        }
+        Ok(canvas)
+    }
+
+    /// Woven canvas.
+    pub fn linen(width: usize, height: usize, colour: Vec3, seed: u64) -> Result<Self> {
+        let mut canvas = Self::paper(width, height, colour, seed)?;
+        for i in 0..width * height {
+            let (x, y) = ((i % width) as f32, (i / width) as f32);
+            let thread = (x * 2.1).sin() * (y * 2.1).cos();
+            canvas.tooth[i] = 0.5 + 0.3 * thread + 0.4 * (canvas.tooth[i] - 0.5);
+            canvas.relief[i] = 0.25 * thread;
+        }
+        Ok(canvas)
+    }
+
+    /// A round spot, soft at its rim; `opacity` in `[0, 1]`. The ground's roughness breaks it where it is thin.
+    pub fn spot(&mut self, at: Vec2, radius: f32, colour: Vec3, opacity: f32) {
+        self.deposit(at, radius, |canvas, i, cover| {
+            let taken = cover * opacity * (0.55 + 0.9 * canvas.tooth[i]).min(1.0);
+            canvas.colour[i] = canvas.colour[i].lerp(colour, taken.clamp(0.0, 1.0));
+        });
+    }
+
+    /// A touch of thick paint.
+    pub fn touch(&mut self, at: Vec2, radius: f32, colour: Vec3, opacity: f32, thickness: f32) {
+        self.deposit(at, radius, |canvas, i, cover| {
+            // A loaded brush covers; a dry one only reaches the high places of the canvas.
+            let reach = (opacity * 1.6 - canvas.tooth[i] * 0.6).clamp(0.0, 1.0);
+            canvas.colour[i] = canvas.colour[i].lerp(colour, cover * reach);
+            canvas.relief[i] += (thickness - canvas.relief[i]) * cover * reach;
+        });
+    }
+
+    fn deposit(&mut self, at: Vec2, radius: f32, mut put: impl FnMut(&mut Self, usize, f32)) {
+        let (low, high) = (at - radius - 0.5, at + radius + 0.5);
+        let clamp = |v: f32, n: usize| (v.max(0.0) as usize).min(n);
+        for y in clamp(low.y, self.height)..clamp(high.y + 1.0, self.height) {
+            for x in clamp(low.x, self.width)..clamp(high.x + 1.0, self.width) {
+                let distance = (Vec2::new(x as f32 + 0.5, y as f32 + 0.5) - at).length();
+                let cover = (radius + 0.5 - distance).clamp(0.0, 1.0).min(2.0 * radius);
+                if cover > 0.0 {
+                    put(self, y * self.width + x, cover);
+                }
+            }
+        }
+    }
+
+    /// The sheet in linear colour, its relief lit from the upper left.
+    pub fn finish(self) -> Result<Image> {
+        let (width, height) = (self.width, self.height);
+        let relief = |x: usize, y: usize| self.relief[y.min(height - 1) * width + x.min(width - 1)];
+        let mut out = Image::new(width, height, 3)?;
+        for (i, pixel) in out.data.chunks_exact_mut(3).enumerate() {
+            let (x, y) = (i % width, i / width);
+            let slope = relief(x.saturating_sub(1), y.saturating_sub(1)) - relief(x + 1, y + 1);
+            let colour = self.colour[i] - 0.10 * slope;
+            pixel.copy_from_slice(&colour.clamp(Vec3::ZERO, Vec3::ONE).to_array().map(srgb_to_linear));
+        }
+        Ok(out)
+    }
+}
+
+/// Smooth noise in `[-1, 1]` along a line, for hands that are not machines.
+pub fn tremor(at: f32, seed: u64) -> f32 {
+    2.0 * noise(Vec2::new(at, 0.5), [1 << 20, 1], seed) - 1.0
+}

@@ -1,0 +1,77 @@
+//! Artworks for the sphere on a table, drawn by a program in place of an artist: a pen drawing, dots of ink, and a painting.
+//!
+//! Each is drawn stroke by stroke on paper or canvas, from the guides of the scene, so that it lies exactly on them; and
+//! each answers to the light as artists do: highlights are left white, shadows are crossed with more lines or take another
+//! colour, and where the ball's red light falls onto the table there is red ink. Sizes of strokes are a share of the width
+//! of the picture. The same bits every time.
+
+mod canvas;
+mod paint;
+mod pen;
+mod stipple;
+mod subject;
+
+use crate::error::Result;
+use crate::guides::Guides;
+use crate::image::Image;
+use subject::Subject;
+
+/// In what manner to draw.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Style {
+    /// Hatching with a pen and two inks.
+    Pen,
+    /// Dots of two inks.
+    Stipple,
+    /// Oil on canvas.
+    Paint,
+}
+
+/// Draws what the guides show: linear RGB of their size.
+pub fn draw(style: Style, guides: &Guides) -> Result<Image> {
+    let subject = Subject::new(guides)?;
+    let canvas = match style {
+        Style::Pen => pen::draw(&subject)?,
+        Style::Stipple => stipple::draw(&subject)?,
+        Style::Paint => paint::draw(&subject)?,
+    };
+    canvas.finish()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::demo;
+    use crate::guides::{Params, run};
+    use crate::image::colour::luminance;
+    use crate::job::Monitor;
+    use crate::render::World;
+    use glam::Vec3;
+    use std::sync::Arc;
+
+    #[test]
+    fn every_artwork_answers_to_the_light_and_is_the_same_each_time() {
+        let scene = demo::sphere_on_table().unwrap();
+        let (camera, job) = (scene.cameras[0].clone(), Monitor::default());
+        let world = World::build(Arc::new(scene), job.job()).unwrap();
+        let params = Params { width: 240, height: 180, samples: 16, ..Params::default() };
+        let guides = run(&world, &camera, &params, job.job()).unwrap();
+        for style in [Style::Pen, Style::Stipple, Style::Paint] {
+            let art = draw(style, &guides).unwrap();
+            assert!(art == draw(style, &guides).unwrap());
+            assert!(art.data.iter().all(|v| (0.0..=1.0).contains(v)));
+            let mean = |x: std::ops::Range<usize>, y: std::ops::Range<usize>| {
+                let count = (x.len() * y.len()) as f32;
+                y.flat_map(|y| x.clone().map(move |x| (x, y))).map(|(x, y)| art.rgb(x, y)).sum::<Vec3>() / count
+            };
+            let tone = |c: Vec3| luminance(c);
+            // Lit table, shadow; lit and dark side of the ball; red light on the table beside it.
+            let (lit, shadow) = (mean(190..230, 130..170), mean(60..100, 128..142));
+            assert!(tone(lit) > 1.5 * tone(shadow), "{style:?}: {lit} {shadow}");
+            let (day, night) = (mean(128..140, 42..56), mean(90..115, 100..115));
+            assert!(tone(day) > 1.2 * tone(night), "{style:?}: {day} {night}");
+            let bled = mean(158..178, 116..130);
+            assert!(bled.x / bled.z > 1.1 * lit.x / lit.z || style == Style::Paint, "{style:?}: {bled} {lit}");
+        }
+    }
+}

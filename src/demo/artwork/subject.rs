@@ -1,0 +1,92 @@
+//! What an artist sees in the scene: tones, not radiances.
+
+use crate::error::Result;
+use crate::guides::{self, Guides};
+use crate::image::Image;
+use crate::image::colour::{linear_to_srgb, luminance};
+use glam::{Vec2, Vec3};
+
+/// The axis that strokes go around, as the camera has it, and the way of strokes on the table.
+const AXIS: Vec3 = Vec3::new(0.45, 0.75, 0.48);
+const TABLE: Vec2 = Vec2::new(0.97, -0.24);
+
+/// A place in the picture.
+#[derive(Clone, Copy)]
+pub struct Sight {
+    /// Lightness of the whole, in `[0, 1]`.
+    pub tone: f32,
+    /// Lightness of the light that falls there directly.
+    pub lit: f32,
+    /// Strength of the highlight.
+    pub shine: f32,
+    /// How red the light from other things is.
+    pub bleed: f32,
+    /// Whether it is a thing on the table, not table or wall.
+    pub is_thing: bool,
+    /// Unit direction in the picture (y down) along which strokes follow the form.
+    pub along: Vec2,
+    /// Strength of the edge of a shape.
+    pub edge: f32,
+}
+
+pub struct Subject {
+    pub width: usize,
+    pub height: usize,
+    /// Length in pixels of what is one pixel in a picture 800 wide.
+    pub unit: f32,
+    sights: Vec<Sight>,
+}
+
+impl Subject {
+    pub fn new(guides: &Guides) -> Result<Self> {
+        let [full, direct, specular, indirect, _] = &guides.light;
+        let exposure = guides::exposure(full, full);
+        let lightness = |image: &Image, x: usize, y: usize, factor: f32| {
+            linear_to_srgb((luminance(image.rgb(x, y)) * exposure * factor).clamp(0.0, 1.0))
+        };
+        // What is in the corner is the ground.
+        let ground = guides.materials.pixel(0, 0);
+        // A thing's own colour is not its tone: its brightest part is light, however dark its paint.
+        let mut brightest = Vec::new();
+        for (i, pixel) in direct.data.chunks_exact(3).enumerate() {
+            if guides.materials.pixel(i % full.width, i / full.width) != ground {
+                brightest.push(luminance(Vec3::from_slice(pixel)));
+            }
+        }
+        brightest.sort_unstable_by(f32::total_cmp);
+        let light = brightest.get(brightest.len() * 98 / 100).copied().unwrap_or(0.0);
+        let own = if light > 0.0 { 0.7 / (light * exposure) } else { 1.0 };
+        let mut sights = Vec::new();
+        for y in 0..full.height {
+            for x in 0..full.width {
+                let is_thing = guides.materials.pixel(x, y) != ground;
+                let normal = Vec3::from_slice(guides.normals.pixel(x, y));
+                // Around the form, like the rings of a turned thing whose axis leans.
+                let ring = normal.cross(AXIS);
+                let along = if is_thing { Vec2::new(ring.x, -ring.y).normalize_or(Vec2::X) } else { TABLE };
+                let light = indirect.rgb(x, y) * exposure;
+                let factor = if is_thing { own } else { 1.0 };
+                sights.push(Sight {
+                    tone: lightness(full, x, y, factor),
+                    lit: lightness(direct, x, y, factor),
+                    shine: lightness(specular, x, y, 1.0),
+                    bleed: (light.x - 0.5 * (light.y + light.z)).max(0.0),
+                    is_thing,
+                    along,
+                    edge: guides.edges.pixel(x, y)[0],
+                });
+            }
+        }
+        Ok(Self { width: full.width, height: full.height, unit: full.width as f32 / 800.0, sights })
+    }
+
+    pub fn contains(&self, at: Vec2) -> bool {
+        at.x >= 0.0 && at.y >= 0.0 && at.x < self.width as f32 && at.y < self.height as f32
+    }
+
+    /// The nearest pixel.
+    pub fn at(&self, at: Vec2) -> &Sight {
+        let clamp = |v: f32, n: usize| (v.max(0.0) as usize).min(n - 1);
+        &self.sights[clamp(at.y, self.height) * self.width + clamp(at.x, self.width)]
+    }
+}
