@@ -2463,6 +2463,569 @@ luxfer_status luxfer_transfer_get_fixture(luxfer_transfer *transfer,
                                           luxfer_fixture *fixture);
 
 /* ====================================================================================================================
+ * Guides
+ *
+ * What the light does in a scene, as images for a stylisation: rendered once for the exemplar, once for the target. Guides
+ * from another renderer need none of this: see luxfer_stylize_add_guide.
+ * ==================================================================================================================== */
+
+/** The guides of a scene. See luxfer_guides_create. */
+typedef struct luxfer_guides luxfer_guides;
+
+/** Settings of guides. Fill them with luxfer_guides_params_init. */
+typedef struct luxfer_guides_params {
+    /** sizeof(luxfer_guides_params), set by luxfer_guides_params_init. */
+    uint32_t struct_size;
+    /** Width of the images in pixels, in [1, 32768]; default 800. */
+    uint32_t width;
+    /** Height of the images in pixels, in [1, 32768]; default 608. */
+    uint32_t height;
+    /** Paths per pixel, in [1, 1048576]; default 64. */
+    uint32_t samples;
+    /** Index of the scene's camera; default 0. */
+    uint32_t camera;
+    /** 1: smooth the light along surfaces, so that noise is not matched; default 1. */
+    uint32_t smooth;
+    /** Seed of the paths; default 1. */
+    uint64_t seed;
+} luxfer_guides_params;
+
+/** An image of guides: a LUXFER_GUIDES_ value. Light is linear RGB in cd/m². */
+typedef int32_t luxfer_guides_image;
+
+/** All light. */
+#define LUXFER_GUIDES_FULL 0
+
+/** Light reflected once, by something matt (LDE). */
+#define LUXFER_GUIDES_DIRECT 1
+
+/** Light reflected once, by something glossy (LSE). */
+#define LUXFER_GUIDES_SPECULAR 2
+
+/** Light whose last two reflections were matt (L.*DDE): where colours bleed. */
+#define LUXFER_GUIDES_INDIRECT 3
+
+/** Light reflected once or twice, by matt things (LD{1,2}E): what is in the shadow. */
+#define LUXFER_GUIDES_TWO_BOUNCES 4
+
+/** Normals as the camera has them: x right, y up, z towards it; 3 channels. */
+#define LUXFER_GUIDES_NORMALS 5
+
+/** Edges of shapes, in [0, 1]; 1 channel. */
+#define LUXFER_GUIDES_EDGES 6
+
+/** A colour for each material, made from its name; 3 channels. */
+#define LUXFER_GUIDES_MATERIALS 7
+
+/**
+ * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+ */
+luxfer_status luxfer_guides_params_init(luxfer_guides_params *params,
+                                        size_t size);
+
+/** Creates the stage. The caller releases *guides. Any thread. */
+luxfer_status luxfer_guides_create(luxfer_context *context, luxfer_guides **guides);
+
+/** Sets the scene; each start renders it as it is then. Any thread. */
+luxfer_status luxfer_guides_set_scene(luxfer_guides *guides, luxfer_scene *scene);
+
+/**
+ * Starts a job that renders the guides. params may be NULL for the defaults. The caller releases *job. Any thread.
+ * LUXFER_INVALID_OPERATION if the scene is missing or a job runs already; LUXFER_NOT_FOUND if the scene has no such
+ * camera. The job may end with LUXFER_INVALID_ARGUMENT if the scene is not valid or a setting is out of range.
+ */
+luxfer_status luxfer_guides_start(luxfer_guides *guides,
+                                  const luxfer_guides_params *params,
+                                  luxfer_job **job);
+
+/**
+ * Gets a guide; which is a LUXFER_GUIDES_ value. The caller releases *image. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded.
+ */
+luxfer_status luxfer_guides_get_image(luxfer_guides *guides,
+                                      luxfer_guides_image which,
+                                      luxfer_image **image);
+
+/**
+ * Makes the motion between two frames of one scene seen by a camera that moves, for luxfer_stylize_set_motion: where each
+ * pixel of this frame was in the frame before, relative to where it is, x and y in pixels, NaN where it was not to be seen. The
+ * caller releases *motion. Any thread.
+ * LUXFER_NOT_READY before both are rendered; LUXFER_INVALID_ARGUMENT if their sizes differ.
+ */
+luxfer_status luxfer_guides_motion(luxfer_guides *guides,
+                                   luxfer_guides *before,
+                                   luxfer_image **motion);
+
+/** Adds a reference. Any thread. */
+luxfer_status luxfer_guides_retain(luxfer_guides *guides);
+
+/** Gives a reference back; a job that runs goes on. Any thread. */
+luxfer_status luxfer_guides_release(luxfer_guides *guides);
+
+/* ====================================================================================================================
+ * Settings of a stylisation
+ *
+ * Presets, and every knob. The defaults are chosen on the curves of quality against time that benches/stylit.rs draws.
+ * ==================================================================================================================== */
+
+/** How matches between exemplar and target are made: a LUXFER_STYLIZE_MODE_ value. */
+typedef int32_t luxfer_stylize_mode;
+
+/** How nearest patches are searched for: a LUXFER_STYLIZE_SEARCH_ value. */
+typedef int32_t luxfer_stylize_search;
+
+/** How patches that overlap make a pixel: a LUXFER_STYLIZE_VOTE_ value. */
+typedef int32_t luxfer_stylize_vote;
+
+/**
+ * Settings of a stylisation. Fill them with luxfer_stylize_params_init or luxfer_stylize_params_preset; the defaults given
+ * here are those of LUXFER_STYLIZE_FULL.
+ */
+typedef struct luxfer_stylize_params {
+    /** sizeof(luxfer_stylize_params), set by luxfer_stylize_params_init. */
+    uint32_t struct_size;
+    /** LUXFER_STYLIZE_MODE_ value; default LUXFER_STYLIZE_MODE_BUDGET. */
+    luxfer_stylize_mode mode;
+    /** LUXFER_STYLIZE_SEARCH_ value; default LUXFER_STYLIZE_SEARCH_PATCHMATCH. */
+    luxfer_stylize_search search;
+    /** Width of a patch in pixels, odd, in [1, 33]; default 5. */
+    uint32_t patch;
+    /** Weight of all guides together against the artwork's colours together, in [0, 1e6]; default 2. */
+    float guide_weight;
+    /** Most resolution levels, each half of the next, in [1, 16]; default 6. */
+    uint32_t levels;
+    /** Rounds of matching and painting on each level but the finest, in [1, 100]; default 6. */
+    uint32_t iterations;
+    /** Rounds on the finest level, in [1, 100]; default 2. */
+    uint32_t finest_iterations;
+    /** Sweeps of a search, in [1, 100]; default 1. */
+    uint32_t sweeps;
+    /**
+     * Share of the target that is matched under the budget before the rest is matched without, in [0, 1]; default 0.95.
+     */
+    float coverage;
+    /** Most passes of matching under the budget in a round, in [1, 1000]; default 12. */
+    uint32_t passes;
+    /** Sweeps in which places may continue their neighbours' matches, in [0, 100]; default 2; 0 is the paper's. */
+    uint32_t settle;
+    /** LUXFER_STYLIZE_VOTE_ value; default LUXFER_STYLIZE_VOTE_WEIGHTED. */
+    luxfer_stylize_vote vote;
+    /** LUXFER_STYLIZE_VOTE_ value for the final picture; default LUXFER_STYLIZE_VOTE_NEAREST. */
+    luxfer_stylize_vote final_vote;
+    /** 1: work at half resolution with compressed guides, so the picture is half as wide and high; default 0. */
+    uint32_t preview;
+    /** 1: keep what luxfer_stylize_update needs, about as much memory as all guides take; default 0. */
+    uint32_t keep_for_update;
+    /**
+     * Share of the paint of the frame before that is kept where it fits, in [0, 1]; default 1. Below 1 it boils, as
+     * hand-painted frames do, if each frame has its own seed. Without luxfer_stylize_set_motion it has no effect.
+     */
+    float coherence;
+    /** How far the exemplar's light is changed to the brightness and contrast of the target's, in [0, 1]; default 0. */
+    float match_appearance;
+    /** Seed of the search; default 1. */
+    uint64_t seed;
+} luxfer_stylize_params;
+
+/** How good and how fast: a LUXFER_STYLIZE_ preset. */
+typedef int32_t luxfer_stylize_preset;
+
+/** Full quality, the default. */
+#define LUXFER_STYLIZE_FULL 0
+
+/** Nearly as good in half the time. */
+#define LUXFER_STYLIZE_FAST 1
+
+/** Half resolution, guides compressed: for watching while painting. */
+#define LUXFER_STYLIZE_PREVIEW 2
+
+/** The settings of the paper, for comparison. */
+#define LUXFER_STYLIZE_PAPER 3
+
+/** Exemplar patches look for their places under an error budget (Fiser et al. 2016), the default. */
+#define LUXFER_STYLIZE_MODE_BUDGET 0
+
+/** Every exemplar patch is used equally often (Jamriska et al. 2015). */
+#define LUXFER_STYLIZE_MODE_UNIFORM 1
+
+/** Each place takes its nearest exemplar patch (Wexler et al. 2007). */
+#define LUXFER_STYLIZE_MODE_NEAREST 2
+
+/** One pass in scan order (Hertzmann et al. 2001); on one thread. */
+#define LUXFER_STYLIZE_MODE_GREEDY 3
+
+/**
+ * Each pixel takes the exemplar pixel whose guides are nearest; with normals as guides the Lit Sphere (Sloan et al. 2001).
+ */
+#define LUXFER_STYLIZE_MODE_LIT_SPHERE 4
+
+/** PatchMatch, the default. */
+#define LUXFER_STYLIZE_SEARCH_PATCHMATCH 0
+
+/** A k-d tree over the means of patches: not PatchMatch. */
+#define LUXFER_STYLIZE_SEARCH_TABLE 1
+
+/** Their mean. */
+#define LUXFER_STYLIZE_VOTE_PLAIN 0
+
+/** Their mean, closer matches counting more. */
+#define LUXFER_STYLIZE_VOTE_WEIGHTED 1
+
+/** The one nearest to their mean, so that no colour is made that is not in the artwork. */
+#define LUXFER_STYLIZE_VOTE_NEAREST 2
+
+/**
+ * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+ */
+luxfer_status luxfer_stylize_params_init(luxfer_stylize_params *params,
+                                         size_t size);
+
+/**
+ * Sets *params, filled before by luxfer_stylize_params_init, to a preset: LUXFER_STYLIZE_FULL, _FAST, _PREVIEW or _PAPER.
+ * LUXFER_INVALID_ARGUMENT for another value.
+ */
+luxfer_status luxfer_stylize_params_preset(luxfer_stylize_params *params,
+                                           luxfer_stylize_preset preset);
+
+/* ====================================================================================================================
+ * Stylisation
+ *
+ * Paints a target scene as an artist has painted an exemplar scene (StyLit). Give the artwork, pairs of images that show
+ * what the light does in the exemplar and in the target (the guides), and start; or give a half-painted picture and have
+ * the rest painted. While its job runs, and after a cancel, the picture of the finest level done can be read.
+ *
+ * Some of its methods are covered by patents in some countries, so a build of the library may leave it out: its
+ * functions are there all the same, and luxfer_stylize_create then returns LUXFER_UNSUPPORTED.
+ * ==================================================================================================================== */
+
+/** Flag of luxfer_stylize_add_guides: normals too. */
+#define LUXFER_GUIDES_WITH_NORMALS 1
+
+/** Flag: edges too, for shapes finer than the strokes. */
+#define LUXFER_GUIDES_WITH_EDGES 2
+
+/** Flag: the colour code of materials too, so that things of one material are painted from things of the same. */
+#define LUXFER_GUIDES_WITH_MATERIALS 4
+
+/** A stylisation. See luxfer_stylize_create. */
+typedef struct luxfer_stylize luxfer_stylize;
+
+/** What the numbers of a guide mean: a LUXFER_GUIDE_ value. */
+typedef int32_t luxfer_guide_range;
+
+/** Linear light >= 0, such as renderings; compared as it would look on a screen. */
+#define LUXFER_GUIDE_LIGHT 0
+
+/**
+ * Numbers without a curve, such as normals, object codes and edges; the range of both images together becomes [0, 1].
+ */
+#define LUXFER_GUIDE_DATA 1
+
+/**
+ * Creates the stage. The caller releases *stylize. Any thread.
+ * LUXFER_UNSUPPORTED if stylisation was left out of this build.
+ */
+luxfer_status luxfer_stylize_create(luxfer_context *context, luxfer_stylize **stylize);
+
+/**
+ * Sets the artwork: the exemplar scene as the artist has painted it, linear colour, 1, 3 or 4 channels, aligned with the
+ * sources of the guides and of their size. Any thread.
+ */
+luxfer_status luxfer_stylize_set_artwork(luxfer_stylize *stylize,
+                                         luxfer_image *artwork);
+
+/**
+ * Adds a guide, or replaces the one of the same name: source shows the exemplar and target what is to be painted, with as
+ * many channels (60 at most in all guides). target may be NULL: the same image as source, for a picture that is
+ * half painted (luxfer_stylize_set_painted). weight, in [0, 1e6], is relative to the other guides'; range is a
+ * LUXFER_GUIDE_ value. All sources have one size, and all targets. Samples that are no numbers count as 0 in the target; the
+ * exemplar's pixels that have any are not used. Any thread.
+ * LUXFER_INVALID_ARGUMENT if the channels differ, are too many, or a value is out of range.
+ */
+luxfer_status luxfer_stylize_add_guide(luxfer_stylize *stylize,
+                                       const char *name,
+                                       luxfer_image *source,
+                                       luxfer_image *target,
+                                       float weight,
+                                       luxfer_guide_range range);
+
+/**
+ * Adds the guides of two scenes, both rendered: the five of light at a common exposure, named after LUXFER_GUIDES_FULL to
+ * LUXFER_GUIDES_TWO_BOUNCES "full", "direct", "specular", "indirect" and "two bounces", each with weight 1; and for each of
+ * the LUXFER_GUIDES_WITH_ flags in extras the one it names, with weight extra_weight. Any thread.
+ * LUXFER_NOT_READY before both are rendered; LUXFER_INVALID_ARGUMENT if an argument is out of range.
+ */
+luxfer_status luxfer_stylize_add_guides(luxfer_stylize *stylize,
+                                        luxfer_guides *source,
+                                        luxfer_guides *target,
+                                        uint32_t extras,
+                                        float extra_weight);
+
+/** Removes all guides. Any thread. */
+luxfer_status luxfer_stylize_clear_guides(luxfer_stylize *stylize);
+
+/**
+ * Sets where the artwork may be copied from: above 0.5; 1 channel, the artwork's size. mask may be NULL: everywhere. Any
+ * thread.
+ */
+luxfer_status luxfer_stylize_set_source_mask(luxfer_stylize *stylize,
+                                             luxfer_image *mask);
+
+/**
+ * Sets which pixels of the target to paint: above 0.5; 1 channel, the size of the guides' targets. The others are those of
+ * known (linear, as many channels as the artwork), to which what is painted is joined, or black if known is NULL. mask
+ * may be NULL: everything is painted. Any thread.
+ */
+luxfer_status luxfer_stylize_set_target_mask(luxfer_stylize *stylize,
+                                             luxfer_image *mask,
+                                             luxfer_image *known);
+
+/**
+ * Makes each start go on from the result before, the last frame of a sequence: motion (2 channels, the size of the guides'
+ * targets) tells where each pixel was in that frame, relative to where it is now, x and y in pixels, NaN where it was not
+ * to be seen. What was painted there moves along and stays where it fits; see luxfer_stylize_params.coherence. motion may
+ * be NULL: each start begins anew. Any thread.
+ */
+luxfer_status luxfer_stylize_set_motion(luxfer_stylize *stylize,
+                                        luxfer_image *motion);
+
+/**
+ * Starts a job that stylises. params may be NULL for the defaults. The caller releases *job. Any thread.
+ * LUXFER_INVALID_OPERATION if artwork or guides are missing or a job runs already; LUXFER_INVALID_ARGUMENT if a setting is
+ * out of range; LUXFER_NOT_READY if motion is set and there is no result before. The job may end with LUXFER_INVALID_ARGUMENT if sizes differ or a side is above 32768 pixels,
+ * LUXFER_DEGENERATE if a mask is empty or leaves no exemplar patch.
+ */
+luxfer_status luxfer_stylize_start(luxfer_stylize *stylize,
+                                   const luxfer_stylize_params *params,
+                                   luxfer_job **job);
+
+/**
+ * Starts a job that follows a change of the artwork: where the 1-channel image changed is above 0.5, artwork (of the first
+ * one's size and channels) has new paint, and what was painted from there is painted anew. Takes a fraction of the time
+ * of luxfer_stylize_start. The caller releases *job. Any thread.
+ * LUXFER_INVALID_OPERATION unless a job was started with keep_for_update = 1 and has succeeded, or if one runs. The job may
+ * end with LUXFER_INVALID_ARGUMENT if sizes differ; after a cancel the next update makes up for what was left.
+ */
+luxfer_status luxfer_stylize_update(luxfer_stylize *stylize,
+                                    luxfer_image *artwork,
+                                    luxfer_image *changed,
+                                    luxfer_job **job);
+
+/**
+ * Has the rest of a half-painted picture painted: the artwork is the picture, painted (1 channel, its size) is above 0.5
+ * where it is done, and the guides' sources show its scene, with NULL as target. Same as painted as the source mask, its
+ * opposite as the target mask and the artwork as known. Any thread.
+ * LUXFER_INVALID_OPERATION before the artwork is set; LUXFER_INVALID_ARGUMENT if painted has not its size or not 1 channel.
+ */
+luxfer_status luxfer_stylize_set_painted(luxfer_stylize *stylize,
+                                         luxfer_image *painted);
+
+/** Adds a reference. Any thread. */
+luxfer_status luxfer_stylize_retain(luxfer_stylize *stylize);
+
+/** Gives a reference back; a job that runs goes on. Any thread. */
+luxfer_status luxfer_stylize_release(luxfer_stylize *stylize);
+
+/* ====================================================================================================================
+ * Results of a stylisation
+ *
+ * The picture, where it was copied from, how well it follows the guides, and what the run did level by level.
+ * ==================================================================================================================== */
+
+/** An image of a stylisation: a LUXFER_STYLIZE_IMAGE_ value. */
+typedef int32_t luxfer_stylize_image;
+
+/** How good a stylisation is. Set struct_size before the call. */
+typedef struct luxfer_stylize_report {
+    /** sizeof(luxfer_stylize_report), set by the caller. */
+    uint32_t struct_size;
+    /** 1 if the run ended, 0 if only `levels` levels are done: then the fields from `used` on are 0. */
+    uint32_t finished;
+    /** Number of levels done; see luxfer_stylize_get_level. */
+    uint32_t levels;
+    /** How often the sides of the picture are half those of the target. */
+    uint32_t halvings;
+    /** Width of patches that was used. */
+    uint32_t patch;
+    /** Most uses of one exemplar patch. */
+    uint32_t most_used;
+    /**
+     * Mean squared difference of the channels in [0, 1] of matched patches (Eq. 3), last round; the artwork's channels
+     * count 1 together, the guides guide_weight.
+     */
+    double energy;
+    /** Share of the exemplar's patches that were used. */
+    double used;
+    /** Entropy of their usage in bits. */
+    double entropy;
+    /** Root mean square of LUXFER_STYLIZE_IMAGE_GUIDE_ERROR. */
+    double guide_error;
+    /** Exemplar pixels left out because they are no numbers. */
+    uint64_t broken_source;
+    /** Pixels of the target's guides taken as 0 for it. */
+    uint64_t broken_target;
+} luxfer_stylize_report;
+
+/** One round of matching and painting. Set struct_size before the call. */
+typedef struct luxfer_stylize_round {
+    /** sizeof(luxfer_stylize_round), set by the caller. */
+    uint32_t struct_size;
+    /** Passes of matching under the budget; see luxfer_stylize_get_pass. */
+    uint32_t passes;
+    /** As luxfer_stylize_report.energy, after this round. */
+    double energy;
+} luxfer_stylize_round;
+
+/** One pass of matching under the budget. Set struct_size before the call. */
+typedef struct luxfer_stylize_pass {
+    /** sizeof(luxfer_stylize_pass), set by the caller. */
+    uint32_t struct_size;
+    /** 0. */
+    uint32_t reserved;
+    /** Share of the exemplar's patches that fitted well enough, in [0, 1]. */
+    double knee;
+    /** Share of the target with a match after this pass, in [0, 1]. */
+    double coverage;
+    /** Target patches that were given a match in this pass. */
+    uint64_t gained;
+} luxfer_stylize_pass;
+
+/**
+ * The stylised target, linear, with the artwork's channels. Before the last level, in preview and after a cancel its sides
+ * are those of the target halved luxfer_stylize_report.halvings times, rounded down.
+ */
+#define LUXFER_STYLIZE_IMAGE_PICTURE 0
+
+/**
+ * How far the guides at each pixel are from those where its paint was taken, in [0, 1]; 1 channel. High where the exemplar
+ * has nothing that fits.
+ */
+#define LUXFER_STYLIZE_IMAGE_GUIDE_ERROR 1
+
+/**
+ * Where in the artwork the paint of each pixel was taken, x and y in pixels, -1 where nothing was painted; 2 channels.
+ */
+#define LUXFER_STYLIZE_IMAGE_SOURCES 2
+
+/**
+ * Gets an image of the result; which is a LUXFER_STYLIZE_IMAGE_ value. After an update (luxfer_stylize_update) picture and
+ * sources are its; the rest is that of the last full run. The caller releases *image. Any thread.
+ * LUXFER_NOT_READY before the first level of a job is done, and, but for the picture, before the last one is.
+ */
+luxfer_status luxfer_stylize_get_image(luxfer_stylize *stylize,
+                                       luxfer_stylize_image which,
+                                       luxfer_image **image);
+
+/**
+ * Tells how good the result is so far. Any thread.
+ * LUXFER_NOT_READY before the first level of a job is done.
+ */
+luxfer_status luxfer_stylize_get_report(luxfer_stylize *stylize, luxfer_stylize_report *report);
+
+/**
+ * Tells the size of a level, the coarsest being level 0, and the number of its rounds; any of the three may be NULL. Any
+ * thread.
+ * LUXFER_NOT_READY before the first level of a job is done; LUXFER_NOT_FOUND if there is no such level.
+ */
+luxfer_status luxfer_stylize_get_level(luxfer_stylize *stylize,
+                                       uint32_t level,
+                                       uint32_t *width,
+                                       uint32_t *height,
+                                       uint32_t *rounds);
+
+/**
+ * Describes a round of a level. Any thread.
+ * LUXFER_NOT_READY before the first level of a job is done; LUXFER_NOT_FOUND if there is no such level or round.
+ */
+luxfer_status luxfer_stylize_get_round(luxfer_stylize *stylize,
+                                       uint32_t level,
+                                       uint32_t index,
+                                       luxfer_stylize_round *round);
+
+/**
+ * Describes a pass of a round. Any thread.
+ * LUXFER_NOT_READY before the first level of a job is done; LUXFER_NOT_FOUND if there is no such level, round or pass.
+ */
+luxfer_status luxfer_stylize_get_pass(luxfer_stylize *stylize,
+                                      uint32_t level,
+                                      uint32_t round,
+                                      uint32_t index,
+                                      luxfer_stylize_pass *pass);
+
+/* ====================================================================================================================
+ * Print sheets
+ *
+ * For artists who paint on paper: the exemplar printed pale between alignment marks, and a photo or scan of the painted sheet
+ * brought back onto the exemplar by its marks. These calls return when they are done.
+ * ==================================================================================================================== */
+
+/** Settings of a print sheet. Fill them with luxfer_sheet_params_init; the same for printing and for aligning. */
+typedef struct luxfer_sheet_params {
+    /** sizeof(luxfer_sheet_params), set by luxfer_sheet_params_init. */
+    uint32_t struct_size;
+    /** 1: even out the light of the photo by the white of the marks, so that paper is 1; default 1. */
+    uint32_t even_light;
+    /** Width of the paper in millimetres, in [60, 2000]; default 297. */
+    double paper_width;
+    /** Height of the paper in millimetres, in [60, 2000]; default 210. */
+    double paper_height;
+    /** Dots per inch of the sheet, in [20, 1200]; default 300. */
+    double dpi;
+    /** Distance of the marks from the edge of the paper in millimetres, in [0, 50]; default 8. */
+    double margin;
+    /** Contrast of the printed picture, in [0, 1]; default 0.25; 1 prints it as it is. */
+    double contrast;
+} luxfer_sheet_params;
+
+/** How well a photo was aligned. Set struct_size before the call. */
+typedef struct luxfer_sheet_report {
+    /** sizeof(luxfer_sheet_report), set by the caller. */
+    uint32_t struct_size;
+    /** Marks found, of 10; 6 are enough. */
+    uint32_t marks;
+    /**
+     * Root mean square distance between marks and where the map puts them, in pixels of the photo; more than a pixel or two
+     * means paper that is not flat, or a lens that bends lines.
+     */
+    double residual;
+    /** Expected alignment error in pixels of the picture. */
+    double error;
+    /** From pixels of the picture to pixels of the photo, 3 x 3, row by row. */
+    double to_photo[9];
+} luxfer_sheet_report;
+
+/**
+ * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+ */
+luxfer_status luxfer_sheet_params_init(luxfer_sheet_params *params,
+                                       size_t size);
+
+/**
+ * Draws the sheet to print for a picture (linear, 1 is white; 1, 3 or 4 channels): as large as fits on the paper, pale, with
+ * ten marks around it. params may be NULL for the defaults. Save it as PNG and print it at params->dpi without scaling. The
+ * caller releases *sheet. Any thread.
+ * LUXFER_INVALID_ARGUMENT if a setting is out of range or the paper has no room; LUXFER_OUT_OF_MEMORY beyond the memory
+ * budget.
+ */
+luxfer_status luxfer_sheet_print(luxfer_image *picture,
+                                 const luxfer_sheet_params *params,
+                                 luxfer_image **sheet);
+
+/**
+ * Finds the marks in a photo or scan (linear RGB) of a sheet that was printed with the same params for a picture of
+ * width x height pixels, whichever way up and in perspective, and resamples it onto that picture: the artwork, linear
+ * RGB. params may be NULL for the defaults, report may be NULL. Takes up to some seconds. The caller releases *artwork. Any
+ * thread.
+ * LUXFER_DEGENERATE if fewer than six marks are found; LUXFER_INVALID_ARGUMENT if a setting is out of range.
+ */
+luxfer_status luxfer_sheet_align(luxfer_image *photo,
+                                 uint32_t width,
+                                 uint32_t height,
+                                 const luxfer_sheet_params *params,
+                                 luxfer_image **artwork,
+                                 luxfer_sheet_report *report);
+
+/* ====================================================================================================================
  * Demonstration
  *
  * Input that the library makes itself, for examples and tests: the same bits every time, nothing loaded from files.
@@ -2471,17 +3034,45 @@ luxfer_status luxfer_transfer_get_fixture(luxfer_transfer *transfer,
 /** A generated scene: a LUXFER_DEMO_ value. */
 typedef int32_t luxfer_demo;
 
+/** How an artwork is drawn: a LUXFER_ARTWORK_ value. */
+typedef int32_t luxfer_artwork;
+
 /** A furnished room without any light; its ceiling is the object "Ceiling". */
 #define LUXFER_DEMO_TARGET_ROOM 0
 
 /** An office under a grid of luminaires; camera 0 takes the photo. */
 #define LUXFER_DEMO_EXEMPLAR_ROOM 1
 
+/** A glossy red ball on a white table, for artists to paint: the exemplar of a stylisation. */
+#define LUXFER_DEMO_SPHERE_ON_TABLE 2
+
+/** A vase, a ring and two balls on the same table under the same lamp: a target for a stylisation. */
+#define LUXFER_DEMO_STILL_LIFE 3
+
+/** Hatching with a pen and two inks. */
+#define LUXFER_ARTWORK_PEN 0
+
+/** Dots of two inks. */
+#define LUXFER_ARTWORK_STIPPLE 1
+
+/** Oil on canvas. */
+#define LUXFER_ARTWORK_PAINT 2
+
 /**
  * Generates a scene; which is a LUXFER_DEMO_ value. The caller releases *scene. Any thread.
  * LUXFER_INVALID_ARGUMENT for another value; LUXFER_OUT_OF_MEMORY beyond the memory budget.
  */
 luxfer_status luxfer_demo_scene(luxfer_context *context, luxfer_demo which, luxfer_scene **scene);
+
+/**
+ * Draws an artwork of a scene in place of an artist, aligned with its guides and of their size: made for
+ * LUXFER_DEMO_SPHERE_ON_TABLE; style is a LUXFER_ARTWORK_ value. Takes up to some seconds. The caller releases *image. Any
+ * thread.
+ * LUXFER_INVALID_ARGUMENT for another value; LUXFER_NOT_READY before the guides are rendered.
+ */
+luxfer_status luxfer_demo_artwork(luxfer_guides *guides,
+                                  luxfer_artwork style,
+                                  luxfer_image **image);
 
 /* ====================================================================================================================
  * Demonstration photo

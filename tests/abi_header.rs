@@ -35,6 +35,11 @@ const GROUPS: &[&str] = &[
     "relight",
     "transfer",
     "transfer_results",
+    "guides",
+    "stylize_params",
+    "stylize",
+    "stylize_results",
+    "sheet",
     "demo",
     "demo_photo",
 ];
@@ -347,5 +352,15 @@ layouts! {
         emission relight render;
     luxfer_transfer_report: struct_size fixtures seconds view_error depth_confidence plane_error lights_error
         unwarp_error emission_error relight_error render_error texel_size target reserved;
+    luxfer_sheet_params: struct_size even_light paper_width paper_height dpi margin contrast;
+    luxfer_sheet_report: struct_size marks residual error to_photo;
+    luxfer_guides_params: struct_size width height samples camera smooth seed;
+    luxfer_stylize_params: struct_size mode search patch guide_weight levels iterations finest_iterations sweeps coverage
+        passes settle vote final_vote preview keep_for_update coherence match_appearance
+        seed;
+    luxfer_stylize_report: struct_size finished levels halvings patch most_used energy used entropy guide_error
+        broken_source broken_target;
+    luxfer_stylize_round: struct_size passes energy;
+    luxfer_stylize_pass: struct_size reserved knee coverage gained;
     luxfer_fixture: struct_size position normal axis radiance reserved size area flux;
 }

@@ -4,11 +4,14 @@
 
 use super::context::luxfer_context;
 use super::guard::enter;
+use super::guides::luxfer_guides;
 use super::handle::{self, Owned};
+use super::image::{Pixels, luxfer_image};
 use super::pointer::Out;
 use super::scene::{SceneObject, luxfer_scene};
 use super::status::luxfer_status;
 use crate::demo;
+use crate::demo::artwork::{self, Style};
 use crate::error::{Error, Result};
 use crate::scene::Scene;
 use std::sync::Arc;
@@ -19,6 +22,19 @@ pub type luxfer_demo = i32;
 pub const LUXFER_DEMO_TARGET_ROOM: luxfer_demo = 0;
 /// An office under a grid of luminaires; camera 0 takes the photo.
 pub const LUXFER_DEMO_EXEMPLAR_ROOM: luxfer_demo = 1;
+/// A glossy red ball on a white table, for artists to paint: the exemplar of a stylisation.
+pub const LUXFER_DEMO_SPHERE_ON_TABLE: luxfer_demo = 2;
+/// A vase, a ring and two balls on the same table under the same lamp: a target for a stylisation.
+pub const LUXFER_DEMO_STILL_LIFE: luxfer_demo = 3;
+
+/// How an artwork is drawn: a LUXFER_ARTWORK_ value.
+pub type luxfer_artwork = i32;
+/// Hatching with a pen and two inks.
+pub const LUXFER_ARTWORK_PEN: luxfer_artwork = 0;
+/// Dots of two inks.
+pub const LUXFER_ARTWORK_STIPPLE: luxfer_artwork = 1;
+/// Oil on canvas.
+pub const LUXFER_ARTWORK_PAINT: luxfer_artwork = 2;
 
 /// Generates a scene; which is a LUXFER_DEMO_ value. The caller releases *scene. Any thread.
 /// LUXFER_INVALID_ARGUMENT for another value; LUXFER_OUT_OF_MEMORY beyond the memory budget.
@@ -35,10 +51,38 @@ pub unsafe extern "C" fn luxfer_demo_scene(
     })
 }
 
+/// Draws an artwork of a scene in place of an artist, aligned with its guides and of their size: made for
+/// LUXFER_DEMO_SPHERE_ON_TABLE; style is a LUXFER_ARTWORK_ value. Takes up to some seconds. The caller releases *image. Any
+/// thread.
+/// LUXFER_INVALID_ARGUMENT for another value; LUXFER_NOT_READY before the guides are rendered.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_demo_artwork(
+    guides: *mut luxfer_guides,
+    style: luxfer_artwork,
+    image: *mut *mut luxfer_image,
+) -> luxfer_status {
+    enter(guides, |stage| {
+        let out = Out::new(image, "image")?;
+        let style = match style {
+            LUXFER_ARTWORK_PEN => Style::Pen,
+            LUXFER_ARTWORK_STIPPLE => Style::Stipple,
+            LUXFER_ARTWORK_PAINT => Style::Paint,
+            _ => return Err(Error::argument(format!("style is {style}; it must be a LUXFER_ARTWORK_ value"))),
+        };
+        let guides = stage.output()?;
+        let full = &guides.light[0];
+        let drawn = Pixels::counted(stage.context(), full.width, full.height, 3, || artwork::draw(style, &guides))?;
+        out.set(handle::give(drawn));
+        Ok(())
+    })
+}
+
 fn generate(which: luxfer_demo) -> Result<Scene> {
     match which {
         LUXFER_DEMO_TARGET_ROOM => demo::target_room(),
         LUXFER_DEMO_EXEMPLAR_ROOM => Ok(demo::exemplar_room()?.scene),
+        LUXFER_DEMO_SPHERE_ON_TABLE => demo::sphere_on_table(),
+        LUXFER_DEMO_STILL_LIFE => demo::still_life(),
         _ => Err(Error::argument(format!("which is {which}; it must be a LUXFER_DEMO_ value"))),
     }
 }

@@ -27,6 +27,7 @@ mod demo_photo;
 mod emission;
 mod features;
 mod geometry;
+mod guides;
 mod illuminance;
 mod image;
 mod job;
@@ -41,7 +42,16 @@ mod scene_lights;
 mod scene_parts;
 mod scene_read;
 mod segment;
+mod sheet;
 mod status;
+#[cfg(feature = "stylize")]
+mod stylize;
+#[cfg(not(feature = "stylize"))]
+mod stylize_absent;
+#[cfg(feature = "stylize")]
+mod stylize_params;
+#[cfg(feature = "stylize")]
+mod stylize_results;
 mod transfer;
 mod transfer_results;
 mod version;
@@ -52,6 +62,7 @@ pub use demo_photo::*;
 pub use emission::*;
 pub use features::*;
 pub use geometry::*;
+pub use guides::*;
 pub use illuminance::*;
 pub use image::*;
 pub use job::*;
@@ -66,7 +77,16 @@ pub use scene_lights::*;
 pub use scene_parts::*;
 pub use scene_read::*;
 pub use segment::*;
+pub use sheet::*;
 pub use status::*;
+#[cfg(feature = "stylize")]
+pub use stylize::*;
+#[cfg(not(feature = "stylize"))]
+pub use stylize_absent::*;
+#[cfg(feature = "stylize")]
+pub use stylize_params::*;
+#[cfg(feature = "stylize")]
+pub use stylize_results::*;
 pub use transfer::*;
 pub use transfer_results::*;
 pub use version::*;

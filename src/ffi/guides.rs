@@ -1,0 +1,215 @@
+//! Guides
+//!
+//! What the light does in a scene, as images for a stylisation: rendered once for the exemplar, once for the target. Guides
+//! from another renderer need none of this: see luxfer_stylize_add_guide.
+
+use super::context::luxfer_context;
+use super::guard::{enter, guard};
+use super::handle::{self, Handle, Owned, tag};
+use super::image::{Pixels, luxfer_image};
+use super::job::luxfer_job;
+use super::params::{self, Versioned};
+use super::pointer::Out;
+use super::scene::{SceneObject, luxfer_scene, missing};
+use super::stage::{Stage, need};
+use super::status::luxfer_status;
+use crate::error::Error;
+use crate::guides::{self, Guides};
+use crate::image::Image;
+use std::sync::Arc;
+
+/// The guides of a scene. See luxfer_guides_create.
+pub struct luxfer_guides {
+    _opaque: [u8; 0],
+}
+
+/// An image of guides: a LUXFER_GUIDES_ value. Light is linear RGB in cd/m².
+pub type luxfer_guides_image = i32;
+/// All light.
+pub const LUXFER_GUIDES_FULL: luxfer_guides_image = 0;
+/// Light reflected once, by something matt (LDE).
+pub const LUXFER_GUIDES_DIRECT: luxfer_guides_image = 1;
+/// Light reflected once, by something glossy (LSE).
+pub const LUXFER_GUIDES_SPECULAR: luxfer_guides_image = 2;
+/// Light whose last two reflections were matt (L.*DDE): where colours bleed.
+pub const LUXFER_GUIDES_INDIRECT: luxfer_guides_image = 3;
+/// Light reflected once or twice, by matt things (LD{1,2}E): what is in the shadow.
+pub const LUXFER_GUIDES_TWO_BOUNCES: luxfer_guides_image = 4;
+/// Normals as the camera has them: x right, y up, z towards it; 3 channels.
+pub const LUXFER_GUIDES_NORMALS: luxfer_guides_image = 5;
+/// Edges of shapes, in [0, 1]; 1 channel.
+pub const LUXFER_GUIDES_EDGES: luxfer_guides_image = 6;
+/// A colour for each material, made from its name; 3 channels.
+pub const LUXFER_GUIDES_MATERIALS: luxfer_guides_image = 7;
+
+/// Settings of guides. Fill them with luxfer_guides_params_init.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_guides_params {
+    /// sizeof(luxfer_guides_params), set by luxfer_guides_params_init.
+    pub struct_size: u32,
+    /// Width of the images in pixels, in [1, 32768]; default 800.
+    pub width: u32,
+    /// Height of the images in pixels, in [1, 32768]; default 608.
+    pub height: u32,
+    /// Paths per pixel, in [1, 1048576]; default 64.
+    pub samples: u32,
+    /// Index of the scene's camera; default 0.
+    pub camera: u32,
+    /// 1: smooth the light along surfaces, so that noise is not matched; default 1.
+    pub smooth: u32,
+    /// Seed of the paths; default 1.
+    pub seed: u64,
+}
+
+// SAFETY: plain numbers.
+unsafe impl Versioned for luxfer_guides_params {
+    const NAME: &'static str = "luxfer_guides_params";
+    const SIZES: &'static [usize] = &[32];
+    fn defaults() -> Self {
+        let d = guides::Params::default();
+        Self {
+            struct_size: 32,
+            width: d.width as u32,
+            height: d.height as u32,
+            samples: d.samples,
+            camera: 0,
+            smooth: u32::from(d.smooth),
+            seed: d.seed,
+        }
+    }
+}
+
+#[derive(Clone, Default)]
+pub(super) struct Inputs {
+    scene: Option<Arc<SceneObject>>,
+}
+
+impl Handle for luxfer_guides {
+    type Object = Stage<Inputs, Guides>;
+    const TAG: u64 = tag(b"lux.guid");
+    const NAME: &'static str = "luxfer_guides";
+}
+
+/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_guides_params_init(params: *mut luxfer_guides_params, size: usize) -> luxfer_status {
+    guard(|| params::init(params, size))
+}
+
+/// Creates the stage. The caller releases *guides. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_guides_create(
+    context: *mut luxfer_context,
+    guides: *mut *mut luxfer_guides,
+) -> luxfer_status {
+    enter(context, |object| {
+        Out::new(guides, "guides")?.set(handle::give(Stage::new(object.context(), Inputs::default())));
+        Ok(())
+    })
+}
+
+/// Sets the scene; each start renders it as it is then. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_guides_set_scene(
+    guides: *mut luxfer_guides,
+    scene: *mut luxfer_scene,
+) -> luxfer_status {
+    enter(guides, |stage| {
+        let scene = handle::borrow_in(stage.context(), scene, "scene")?;
+        stage.change(|inputs| {
+            inputs.scene = Some(scene);
+            Ok(())
+        })
+    })
+}
+
+/// Starts a job that renders the guides. params may be NULL for the defaults. The caller releases *job. Any thread.
+/// LUXFER_INVALID_OPERATION if the scene is missing or a job runs already; LUXFER_NOT_FOUND if the scene has no such
+/// camera. The job may end with LUXFER_INVALID_ARGUMENT if the scene is not valid or a setting is out of range.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_guides_start(
+    guides: *mut luxfer_guides,
+    params: *const luxfer_guides_params,
+    job: *mut *mut luxfer_job,
+) -> luxfer_status {
+    enter(guides, |stage| {
+        let p = params::read(params)?;
+        if p.smooth > 1 {
+            return Err(Error::argument(format!("smooth is {}; it must be 0 or 1", p.smooth)));
+        }
+        let params = guides::Params {
+            width: p.width as usize,
+            height: p.height as usize,
+            samples: p.samples,
+            seed: p.seed,
+            smooth: p.smooth == 1,
+        };
+        let object = need(&stage.inputs().scene, "luxfer_guides_set_scene")?.clone();
+        let scene = object.snapshot();
+        let camera = scene.cameras.get(p.camera as usize).cloned();
+        let camera = camera.ok_or_else(|| missing("camera", p.camera, scene.cameras.len()))?;
+        stage.start(job, move |_, _, job| {
+            let world = object.world(&scene, job.part(0.0, 0.05))?;
+            guides::run(&world, &camera, &params, job.part(0.05, 1.0))
+        })
+    })
+}
+
+/// Gets a guide; which is a LUXFER_GUIDES_ value. The caller releases *image. Any thread.
+/// LUXFER_NOT_READY before a job has succeeded.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_guides_get_image(
+    guides: *mut luxfer_guides,
+    which: luxfer_guides_image,
+    image: *mut *mut luxfer_image,
+) -> luxfer_status {
+    enter(guides, |stage| {
+        let out = Out::new(image, "image")?;
+        let pick: fn(&Guides) -> &Image = match which {
+            LUXFER_GUIDES_FULL => |g| &g.light[0],
+            LUXFER_GUIDES_DIRECT => |g| &g.light[1],
+            LUXFER_GUIDES_SPECULAR => |g| &g.light[2],
+            LUXFER_GUIDES_INDIRECT => |g| &g.light[3],
+            LUXFER_GUIDES_TWO_BOUNCES => |g| &g.light[4],
+            LUXFER_GUIDES_NORMALS => |g| &g.normals,
+            LUXFER_GUIDES_EDGES => |g| &g.edges,
+            LUXFER_GUIDES_MATERIALS => |g| &g.materials,
+            _ => return Err(Error::argument(format!("which is {which}; it must be a LUXFER_GUIDES_ value"))),
+        };
+        out.set(handle::give(Pixels::part(stage.context(), stage.output()?, pick)));
+        Ok(())
+    })
+}
+
+/// Makes the motion between two frames of one scene seen by a camera that moves, for luxfer_stylize_set_motion: where each
+/// pixel of this frame was in the frame before, relative to where it is, x and y in pixels, NaN where it was not to be seen. The
+/// caller releases *motion. Any thread.
+/// LUXFER_NOT_READY before both are rendered; LUXFER_INVALID_ARGUMENT if their sizes differ.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_guides_motion(
+    guides: *mut luxfer_guides,
+    before: *mut luxfer_guides,
+    motion: *mut *mut luxfer_image,
+) -> luxfer_status {
+    enter(guides, |stage| {
+        let out = Out::new(motion, "motion")?;
+        let (now, before) = (stage.output()?, handle::borrow_in(stage.context(), before, "before")?.output()?);
+        let (width, height) = (now.depth.width, now.depth.height);
+        let image = Pixels::counted(stage.context(), width, height, 2, || guides::motion(&now, &before))?;
+        out.set(handle::give(image));
+        Ok(())
+    })
+}
+
+/// Adds a reference. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_guides_retain(guides: *mut luxfer_guides) -> luxfer_status {
+    handle::retain(guides)
+}
+
+/// Gives a reference back; a job that runs goes on. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_guides_release(guides: *mut luxfer_guides) -> luxfer_status {
+    handle::release(guides)
+}

@@ -1,0 +1,164 @@
+//! Print sheets
+//!
+//! For artists who paint on paper: the exemplar printed pale between alignment marks, and a photo or scan of the painted sheet
+//! brought back onto the exemplar by its marks. These calls return when they are done.
+
+use super::guard::{enter, guard};
+use super::handle::{self, Owned};
+use super::image::{Pixels, luxfer_image};
+use super::params::{self, Report, Versioned};
+use super::pointer::Out;
+use super::status::luxfer_status;
+use crate::error::{Error, check_range};
+use crate::image::MAX_SIDE;
+use crate::job::Monitor;
+use crate::sheet;
+use glam::DVec2;
+
+/// Settings of a print sheet. Fill them with luxfer_sheet_params_init; the same for printing and for aligning.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_sheet_params {
+    /// sizeof(luxfer_sheet_params), set by luxfer_sheet_params_init.
+    pub struct_size: u32,
+    /// 1: even out the light of the photo by the white of the marks, so that paper is 1; default 1.
+    pub even_light: u32,
+    /// Width of the paper in millimetres, in [60, 2000]; default 297.
+    pub paper_width: f64,
+    /// Height of the paper in millimetres, in [60, 2000]; default 210.
+    pub paper_height: f64,
+    /// Dots per inch of the sheet, in [20, 1200]; default 300.
+    pub dpi: f64,
+    /// Distance of the marks from the edge of the paper in millimetres, in [0, 50]; default 8.
+    pub margin: f64,
+    /// Contrast of the printed picture, in [0, 1]; default 0.25; 1 prints it as it is.
+    pub contrast: f64,
+}
+
+// SAFETY: plain numbers.
+unsafe impl Versioned for luxfer_sheet_params {
+    const NAME: &'static str = "luxfer_sheet_params";
+    const SIZES: &'static [usize] = &[48];
+    fn defaults() -> Self {
+        let d = sheet::Params::default();
+        Self {
+            struct_size: 48,
+            even_light: u32::from(d.even_light),
+            paper_width: d.paper.x,
+            paper_height: d.paper.y,
+            dpi: d.dpi,
+            margin: d.margin,
+            contrast: f64::from(d.contrast),
+        }
+    }
+}
+
+impl luxfer_sheet_params {
+    fn params(&self) -> crate::error::Result<sheet::Params> {
+        if self.even_light > 1 {
+            return Err(Error::argument(format!("even_light is {}; it must be 0 or 1", self.even_light)));
+        }
+        Ok(sheet::Params {
+            paper: DVec2::new(self.paper_width, self.paper_height),
+            dpi: self.dpi,
+            contrast: self.contrast as f32,
+            margin: self.margin,
+            even_light: self.even_light == 1,
+        })
+    }
+}
+
+/// How well a photo was aligned. Set struct_size before the call.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_sheet_report {
+    /// sizeof(luxfer_sheet_report), set by the caller.
+    pub struct_size: u32,
+    /// Marks found, of 10; 6 are enough.
+    pub marks: u32,
+    /// Root mean square distance between marks and where the map puts them, in pixels of the photo; more than a pixel or two
+    /// means paper that is not flat, or a lens that bends lines.
+    pub residual: f64,
+    /// Expected alignment error in pixels of the picture.
+    pub error: f64,
+    /// From pixels of the picture to pixels of the photo, 3 x 3, row by row.
+    pub to_photo: [f64; 9],
+}
+
+// SAFETY: plain numbers.
+unsafe impl Versioned for luxfer_sheet_report {
+    const NAME: &'static str = "luxfer_sheet_report";
+    const SIZES: &'static [usize] = &[96];
+    fn defaults() -> Self {
+        Self { struct_size: 96, marks: 0, residual: 0.0, error: 0.0, to_photo: [0.0; 9] }
+    }
+}
+
+/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_sheet_params_init(params: *mut luxfer_sheet_params, size: usize) -> luxfer_status {
+    guard(|| params::init(params, size))
+}
+
+/// Draws the sheet to print for a picture (linear, 1 is white; 1, 3 or 4 channels): as large as fits on the paper, pale, with
+/// ten marks around it. params may be NULL for the defaults. Save it as PNG and print it at params->dpi without scaling. The
+/// caller releases *sheet. Any thread.
+/// LUXFER_INVALID_ARGUMENT if a setting is out of range or the paper has no room; LUXFER_OUT_OF_MEMORY beyond the memory
+/// budget.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_sheet_print(
+    picture: *mut luxfer_image,
+    params: *const luxfer_sheet_params,
+    sheet: *mut *mut luxfer_image,
+) -> luxfer_status {
+    enter(picture, |object| {
+        let out = Out::new(sheet, "sheet")?;
+        let params = params::read(params)?.params()?;
+        let (context, picture) = (object.context(), object.image());
+        let (width, height) = sheet::size(&params)?;
+        let image = Pixels::counted(context, width, height, 3, || {
+            context.pool.run(|| sheet::print(picture, &params, Monitor::default().job()))
+        })?;
+        out.set(handle::give(image));
+        Ok(())
+    })
+}
+
+/// Finds the marks in a photo or scan (linear RGB) of a sheet that was printed with the same params for a picture of
+/// width x height pixels, whichever way up and in perspective, and resamples it onto that picture: the artwork, linear
+/// RGB. params may be NULL for the defaults, report may be NULL. Takes up to some seconds. The caller releases *artwork. Any
+/// thread.
+/// LUXFER_DEGENERATE if fewer than six marks are found; LUXFER_INVALID_ARGUMENT if a setting is out of range.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_sheet_align(
+    photo: *mut luxfer_image,
+    width: u32,
+    height: u32,
+    params: *const luxfer_sheet_params,
+    artwork: *mut *mut luxfer_image,
+    report: *mut luxfer_sheet_report,
+) -> luxfer_status {
+    enter(photo, |object| {
+        let out = Out::new(artwork, "artwork")?;
+        let report = if report.is_null() { None } else { Some(Report::new(report)?) };
+        let params = params::read(params)?.params()?;
+        let (width, height) = (width as usize, height as usize);
+        check_range("width", width, 1, MAX_SIDE)?;
+        check_range("height", height, 1, MAX_SIDE)?;
+        let (context, photo) = (object.context(), object.image());
+        let mut numbers = luxfer_sheet_report::defaults();
+        let image = Pixels::counted(context, width, height, 3, || {
+            let job = Monitor::default();
+            let aligned = context.pool.run(|| sheet::align(photo, width, height, &params, job.job()))?;
+            numbers.marks = aligned.marks as u32;
+            (numbers.residual, numbers.error) = (aligned.residual, aligned.error);
+            numbers.to_photo = aligned.to_photo.0.transpose().to_cols_array();
+            Ok(aligned.image)
+        })?;
+        out.set(handle::give(image));
+        if let Some(report) = report {
+            report.set(numbers);
+        }
+        Ok(())
+    })
+}

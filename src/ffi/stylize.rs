@@ -1,0 +1,381 @@
+//! Stylisation
+//!
+//! Paints a target scene as an artist has painted an exemplar scene (StyLit). Give the artwork, pairs of images that show
+//! what the light does in the exemplar and in the target (the guides), and start; or give a half-painted picture and have
+//! the rest painted. While its job runs, and after a cancel, the picture of the finest level done can be read.
+//!
+//! Some of its methods are covered by patents in some countries, so a build of the library may leave it out: its
+//! functions are there all the same, and luxfer_stylize_create then returns LUXFER_UNSUPPORTED.
+
+use super::context::luxfer_context;
+use super::guard::enter;
+use super::guides::luxfer_guides;
+use super::handle::{self, Handle, Owned, tag};
+use super::image::{Pixels, luxfer_image};
+use super::job::luxfer_job;
+use super::params;
+use super::pointer::{Out, text};
+use super::stage::{Stage, need};
+use super::status::luxfer_status;
+use super::stylize_params::{choice, flag, luxfer_stylize_params};
+use super::stylize_results::Stylised;
+use crate::error::{Error, ErrorKind, Result, check_range};
+use crate::guides;
+use crate::image::Image;
+use crate::stylize::{self, Guide, MAX_CHANNELS, Range};
+use std::ffi::c_char;
+use std::sync::{Arc, Mutex};
+
+/// A stylisation. See luxfer_stylize_create.
+pub struct luxfer_stylize {
+    _opaque: [u8; 0],
+}
+
+/// What the numbers of a guide mean: a LUXFER_GUIDE_ value.
+pub type luxfer_guide_range = i32;
+/// Linear light >= 0, such as renderings; compared as it would look on a screen.
+pub const LUXFER_GUIDE_LIGHT: luxfer_guide_range = 0;
+/// Numbers without a curve, such as normals, object codes and edges; the range of both images together becomes [0, 1].
+pub const LUXFER_GUIDE_DATA: luxfer_guide_range = 1;
+
+/// Flag of luxfer_stylize_add_guides: normals too.
+pub const LUXFER_GUIDES_WITH_NORMALS: u32 = 1;
+/// Flag: edges too, for shapes finer than the strokes.
+pub const LUXFER_GUIDES_WITH_EDGES: u32 = 2;
+/// Flag: the colour code of materials too, so that things of one material are painted from things of the same.
+pub const LUXFER_GUIDES_WITH_MATERIALS: u32 = 4;
+
+#[derive(Clone, Default)]
+pub(super) struct Inputs {
+    artwork: Option<Arc<Pixels>>,
+    guides: Vec<Pair>,
+    source_mask: Option<Arc<Pixels>>,
+    target: Target,
+    motion: Option<Arc<Pixels>>,
+}
+
+#[derive(Clone)]
+struct Pair {
+    name: String,
+    source: Arc<Pixels>,
+    target: Arc<Pixels>,
+    weight: f32,
+    range: Range,
+}
+
+impl Pair {
+    fn guide(&self) -> Guide<'_> {
+        let (source, target) = (self.source.image(), self.target.image());
+        Guide { name: &self.name, source, target, weight: self.weight, range: self.range }
+    }
+}
+
+/// What is to be made of the target.
+#[derive(Clone, Default)]
+enum Target {
+    #[default]
+    All,
+    Within(Arc<Pixels>, Option<Arc<Pixels>>),
+}
+
+/// Adds a guide, or replaces the one of its name.
+fn add(guides: &mut Vec<Pair>, pair: Pair) -> Result<()> {
+    let others = guides.iter().filter(|g| g.name != pair.name);
+    let channels = others.map(|g| g.source.image().channels).sum::<usize>() + pair.source.image().channels;
+    if channels > MAX_CHANNELS {
+        return Err(Error::argument(format!(
+            "with guide {:?} there are {channels} channels; there may be {MAX_CHANNELS} in all",
+            pair.name
+        )));
+    }
+    match guides.iter_mut().find(|g| g.name == pair.name) {
+        Some(same) => *same = pair,
+        None => guides.push(pair),
+    }
+    Ok(())
+}
+
+impl Handle for luxfer_stylize {
+    type Object = Stage<Inputs, Stylised>;
+    const TAG: u64 = tag(b"lux.styl");
+    const NAME: &'static str = "luxfer_stylize";
+}
+
+/// Creates the stage. The caller releases *stylize. Any thread.
+/// LUXFER_UNSUPPORTED if stylisation was left out of this build.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_stylize_create(
+    context: *mut luxfer_context,
+    stylize: *mut *mut luxfer_stylize,
+) -> luxfer_status {
+    enter(context, |object| {
+        Out::new(stylize, "stylize")?.set(handle::give(Stage::new(object.context(), Inputs::default())));
+        Ok(())
+    })
+}
+
+/// Sets the artwork: the exemplar scene as the artist has painted it, linear colour, 1, 3 or 4 channels, aligned with the
+/// sources of the guides and of their size. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_stylize_set_artwork(
+    stylize: *mut luxfer_stylize,
+    artwork: *mut luxfer_image,
+) -> luxfer_status {
+    enter(stylize, |stage| {
+        let artwork = handle::borrow_in(stage.context(), artwork, "artwork")?;
+        stage.change(|inputs| {
+            inputs.artwork = Some(artwork);
+            Ok(())
+        })
+    })
+}
+
+/// Adds a guide, or replaces the one of the same name: source shows the exemplar and target what is to be painted, with as
+/// many channels (60 at most in all guides). target may be NULL: the same image as source, for a picture that is
+/// half painted (luxfer_stylize_set_painted). weight, in [0, 1e6], is relative to the other guides'; range is a
+/// LUXFER_GUIDE_ value. All sources have one size, and all targets. Samples that are no numbers count as 0 in the target; the
+/// exemplar's pixels that have any are not used. Any thread.
+/// LUXFER_INVALID_ARGUMENT if the channels differ, are too many, or a value is out of range.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_stylize_add_guide(
+    stylize: *mut luxfer_stylize,
+    name: *const c_char,
+    source: *mut luxfer_image,
+    target: *mut luxfer_image,
+    weight: f32,
+    range: luxfer_guide_range,
+) -> luxfer_status {
+    enter(stylize, |stage| {
+        let range = choice(&[Range::Light, Range::Data], range, "range", "LUXFER_GUIDE_")?;
+        let source = handle::borrow_in(stage.context(), source, "source")?;
+        let target = Pixels::optional(stage.context(), target, "target")?.unwrap_or_else(|| source.clone());
+        let pair = Pair { name: text(name, "name")?.to_string(), source, target, weight, range };
+        pair.guide().check_alone()?;
+        stage.change(|inputs| add(&mut inputs.guides, pair))
+    })
+}
+
+/// Adds the guides of two scenes, both rendered: the five of light at a common exposure, named after LUXFER_GUIDES_FULL to
+/// LUXFER_GUIDES_TWO_BOUNCES "full", "direct", "specular", "indirect" and "two bounces", each with weight 1; and for each of
+/// the LUXFER_GUIDES_WITH_ flags in extras the one it names, with weight extra_weight. Any thread.
+/// LUXFER_NOT_READY before both are rendered; LUXFER_INVALID_ARGUMENT if an argument is out of range.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_stylize_add_guides(
+    stylize: *mut luxfer_stylize,
+    source: *mut luxfer_guides,
+    target: *mut luxfer_guides,
+    extras: u32,
+    extra_weight: f32,
+) -> luxfer_status {
+    enter(stylize, |stage| {
+        let context = stage.context();
+        let source = handle::borrow_in(context, source, "source")?.output()?;
+        let target = handle::borrow_in(context, target, "target")?.output()?;
+        let known = LUXFER_GUIDES_WITH_NORMALS | LUXFER_GUIDES_WITH_EDGES | LUXFER_GUIDES_WITH_MATERIALS;
+        if extras & !known != 0 {
+            return Err(Error::argument(format!("extras is {extras:#x}; only LUXFER_GUIDES_WITH_ flags may be set")));
+        }
+        check_range("extra_weight", extra_weight, 0.0, 1e6)?;
+        let extras = guides::Extras {
+            normals: extras & LUXFER_GUIDES_WITH_NORMALS != 0,
+            edges: extras & LUXFER_GUIDES_WITH_EDGES != 0,
+            materials: extras & LUXFER_GUIDES_WITH_MATERIALS != 0,
+        };
+        let own = |image: Image| Pixels::counted(context, image.width, image.height, image.channels, || Ok(image));
+        let mut added = Vec::new();
+        for pair in guides::pairs(&source, &target, extras)? {
+            added.push(Pair {
+                name: pair.name.to_string(),
+                source: own(pair.source)?,
+                target: own(pair.target)?,
+                weight: if pair.is_light { 1.0 } else { extra_weight },
+                range: if pair.is_light { Range::Light } else { Range::Data },
+            });
+        }
+        stage.change(|inputs| {
+            let mut all = inputs.guides.clone();
+            added.into_iter().try_for_each(|pair| add(&mut all, pair))?;
+            inputs.guides = all;
+            Ok(())
+        })
+    })
+}
+
+/// Removes all guides. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_stylize_clear_guides(stylize: *mut luxfer_stylize) -> luxfer_status {
+    enter(stylize, |stage| {
+        stage.change(|inputs| {
+            inputs.guides.clear();
+            Ok(())
+        })
+    })
+}
+
+/// Sets where the artwork may be copied from: above 0.5; 1 channel, the artwork's size. mask may be NULL: everywhere. Any
+/// thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_stylize_set_source_mask(
+    stylize: *mut luxfer_stylize,
+    mask: *mut luxfer_image,
+) -> luxfer_status {
+    enter(stylize, |stage| {
+        let mask = Pixels::optional(stage.context(), mask, "mask")?;
+        stage.change(|inputs| {
+            inputs.source_mask = mask;
+            Ok(())
+        })
+    })
+}
+
+/// Sets which pixels of the target to paint: above 0.5; 1 channel, the size of the guides' targets. The others are those of
+/// known (linear, as many channels as the artwork), to which what is painted is joined, or black if known is NULL. mask
+/// may be NULL: everything is painted. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_stylize_set_target_mask(
+    stylize: *mut luxfer_stylize,
+    mask: *mut luxfer_image,
+    known: *mut luxfer_image,
+) -> luxfer_status {
+    enter(stylize, |stage| {
+        let mask = Pixels::optional(stage.context(), mask, "mask")?;
+        let known = Pixels::optional(stage.context(), known, "known")?;
+        stage.change(|inputs| {
+            inputs.target = mask.map_or(Target::All, |mask| Target::Within(mask, known));
+            Ok(())
+        })
+    })
+}
+
+/// Makes each start go on from the result before, the last frame of a sequence: motion (2 channels, the size of the guides'
+/// targets) tells where each pixel was in that frame, relative to where it is now, x and y in pixels, NaN where it was not
+/// to be seen. What was painted there moves along and stays where it fits; see luxfer_stylize_params.coherence. motion may
+/// be NULL: each start begins anew. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_stylize_set_motion(
+    stylize: *mut luxfer_stylize,
+    motion: *mut luxfer_image,
+) -> luxfer_status {
+    enter(stylize, |stage| {
+        let motion = Pixels::optional(stage.context(), motion, "motion")?;
+        stage.change(|inputs| {
+            inputs.motion = motion;
+            Ok(())
+        })
+    })
+}
+
+/// Starts a job that stylises. params may be NULL for the defaults. The caller releases *job. Any thread.
+/// LUXFER_INVALID_OPERATION if artwork or guides are missing or a job runs already; LUXFER_INVALID_ARGUMENT if a setting is
+/// out of range; LUXFER_NOT_READY if motion is set and there is no result before. The job may end with LUXFER_INVALID_ARGUMENT if sizes differ or a side is above 32768 pixels,
+/// LUXFER_DEGENERATE if a mask is empty or leaves no exemplar patch.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_stylize_start(
+    stylize: *mut luxfer_stylize,
+    params: *const luxfer_stylize_params,
+    job: *mut *mut luxfer_job,
+) -> luxfer_status {
+    enter(stylize, |stage| {
+        let settings = params::read(params)?;
+        let (params, keep) = (settings.params()?, flag(settings.keep_for_update, "keep_for_update")?);
+        need(&stage.inputs().artwork, "luxfer_stylize_set_artwork")?;
+        need(&stage.inputs().guides.first(), "luxfer_stylize_add_guide")?;
+        let previous = match stage.inputs().motion {
+            Some(motion) => Some((stage.output()?.field()?, motion)),
+            None => None,
+        };
+        stage.start(job, move |inputs, stage, job| {
+            let guides: Vec<Guide> = inputs.guides.iter().map(Pair::guide).collect();
+            let (target_mask, known) = match &inputs.target {
+                Target::All => (None, None),
+                Target::Within(mask, known) => (Some(mask.image()), known.as_ref().map(|k| k.image())),
+            };
+            let input = stylize::Input {
+                artwork: need(&inputs.artwork, "luxfer_stylize_set_artwork")?.image(),
+                guides: &guides,
+                source_mask: inputs.source_mask.as_ref().map(|m| m.image()),
+                target_mask,
+                known,
+                previous: previous.as_ref().map(|p| &*p.0),
+                motion: previous.as_ref().map(|p| p.1.image()),
+            };
+            let publish = |glimpse: stylize::Glimpse| stage.publish(Stylised::unfinished(glimpse));
+            if keep {
+                let (study, output) = stylize::Study::new(&input, &params, &publish, job)?;
+                Ok(Stylised::finished(output, Some(study)))
+            } else {
+                Ok(Stylised::finished(stylize::run_and_publish(&input, &params, &publish, job)?, None))
+            }
+        })
+    })
+}
+
+/// Starts a job that follows a change of the artwork: where the 1-channel image changed is above 0.5, artwork (of the first
+/// one's size and channels) has new paint, and what was painted from there is painted anew. Takes a fraction of the time
+/// of luxfer_stylize_start. The caller releases *job. Any thread.
+/// LUXFER_INVALID_OPERATION unless a job was started with keep_for_update = 1 and has succeeded, or if one runs. The job may
+/// end with LUXFER_INVALID_ARGUMENT if sizes differ; after a cancel the next update makes up for what was left.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_stylize_update(
+    stylize: *mut luxfer_stylize,
+    artwork: *mut luxfer_image,
+    changed: *mut luxfer_image,
+    job: *mut *mut luxfer_job,
+) -> luxfer_status {
+    enter(stylize, |stage| {
+        let artwork = handle::borrow_in(stage.context(), artwork, "artwork")?;
+        let changed = handle::borrow_in(stage.context(), changed, "changed")?;
+        let before = stage.output().ok();
+        let study: Option<Arc<Mutex<stylize::Study>>> = before.as_ref().and_then(|b| b.study());
+        let (Some(before), Some(study)) = (before, study) else {
+            return Err(Error::new(
+                ErrorKind::InvalidOperation,
+                "there is nothing to update; start with keep_for_update = 1 and wait for the job to succeed",
+            ));
+        };
+        stage.start(job, move |_, _, job| {
+            let study = &mut *super::guard::lock(&study);
+            let picture = study.repaint(artwork.image(), changed.image(), job.part(0.0, 0.95))?;
+            Ok(before.updated(picture, study.sources(job.part(0.95, 1.0))?))
+        })
+    })
+}
+
+/// Has the rest of a half-painted picture painted: the artwork is the picture, painted (1 channel, its size) is above 0.5
+/// where it is done, and the guides' sources show its scene, with NULL as target. Same as painted as the source mask, its
+/// opposite as the target mask and the artwork as known. Any thread.
+/// LUXFER_INVALID_OPERATION before the artwork is set; LUXFER_INVALID_ARGUMENT if painted has not its size or not 1 channel.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_stylize_set_painted(
+    stylize: *mut luxfer_stylize,
+    painted: *mut luxfer_image,
+) -> luxfer_status {
+    enter(stylize, |stage| {
+        let painted = handle::borrow_in(stage.context(), painted, "painted")?;
+        stage.change(|inputs| {
+            let artwork = need(&inputs.artwork, "luxfer_stylize_set_artwork")?;
+            let mask = painted.image();
+            mask.check_same_size("painted", artwork.image(), "the artwork")?;
+            let unpainted = Pixels::counted(stage.context(), mask.width, mask.height, mask.channels, || {
+                let mut opposite = mask.clone();
+                opposite.data.iter_mut().for_each(|v| *v = if *v > 0.5 { 0.0 } else { 1.0 });
+                Ok(opposite)
+            })?;
+            inputs.target = Target::Within(unpainted, Some(artwork.clone()));
+            inputs.source_mask = Some(painted);
+            Ok(())
+        })
+    })
+}
+
+/// Adds a reference. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_stylize_retain(stylize: *mut luxfer_stylize) -> luxfer_status {
+    handle::retain(stylize)
+}
+
+/// Gives a reference back; a job that runs goes on. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_stylize_release(stylize: *mut luxfer_stylize) -> luxfer_status {
+    handle::release(stylize)
+}

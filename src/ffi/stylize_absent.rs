@@ -1,0 +1,44 @@
+//! Stylisation left out of the build (the Cargo feature `stylize`): the same symbols, so that a program made for the whole
+//! library still starts and asks. No stylisation can be created, so no other call can be about one; releasing NULL is
+//! fine as ever.
+
+use super::context::luxfer_context;
+use super::guard::{enter, guard};
+use super::status::luxfer_status;
+use crate::error::{Error, ErrorKind, Result};
+use std::ffi::c_void;
+
+fn left_out() -> Result<()> {
+    Err(Error::new(
+        ErrorKind::Unsupported,
+        "stylisation was left out of this build of luxfer; build it with the Cargo feature stylize",
+    ))
+}
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_stylize_create(context: *mut luxfer_context, _: *mut *mut c_void) -> luxfer_status {
+    enter(context, |_| left_out())
+}
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_stylize_release(stylize: *mut c_void) -> luxfer_status {
+    guard(|| if stylize.is_null() { Ok(()) } else { left_out() })
+}
+
+/// Functions whose arguments do not matter: with the C calling convention the caller removes them.
+macro_rules! absent {
+    ($($name:ident)*) => {$(
+        #[unsafe(no_mangle)]
+        pub extern "C" fn $name() -> luxfer_status {
+            guard(left_out)
+        }
+    )*};
+}
+
+absent! {
+    luxfer_stylize_params_init luxfer_stylize_params_preset luxfer_stylize_set_artwork luxfer_stylize_add_guide
+    luxfer_stylize_add_guides luxfer_stylize_clear_guides luxfer_stylize_set_source_mask luxfer_stylize_set_target_mask luxfer_stylize_set_painted
+    luxfer_stylize_set_motion
+    luxfer_stylize_start luxfer_stylize_update luxfer_stylize_get_image luxfer_stylize_get_report luxfer_stylize_get_level
+    luxfer_stylize_get_round luxfer_stylize_get_pass luxfer_stylize_retain
+}

@@ -1,0 +1,199 @@
+//! Settings of a stylisation
+//!
+//! Presets, and every knob. The defaults are chosen on the curves of quality against time that benches/stylit.rs draws.
+
+use super::guard::guard;
+use super::params::{self, Versioned};
+use super::status::luxfer_status;
+use crate::error::{Error, Result};
+use crate::patch::Vote;
+use crate::stylize::{self, Finder, Mode};
+
+/// How good and how fast: a LUXFER_STYLIZE_ preset.
+pub type luxfer_stylize_preset = i32;
+/// Full quality, the default.
+pub const LUXFER_STYLIZE_FULL: luxfer_stylize_preset = 0;
+/// Nearly as good in half the time.
+pub const LUXFER_STYLIZE_FAST: luxfer_stylize_preset = 1;
+/// Half resolution, guides compressed: for watching while painting.
+pub const LUXFER_STYLIZE_PREVIEW: luxfer_stylize_preset = 2;
+/// The settings of the paper, for comparison.
+pub const LUXFER_STYLIZE_PAPER: luxfer_stylize_preset = 3;
+
+/// How matches between exemplar and target are made: a LUXFER_STYLIZE_MODE_ value.
+pub type luxfer_stylize_mode = i32;
+/// Exemplar patches look for their places under an error budget (Fiser et al. 2016), the default.
+pub const LUXFER_STYLIZE_MODE_BUDGET: luxfer_stylize_mode = 0;
+/// Every exemplar patch is used equally often (Jamriska et al. 2015).
+pub const LUXFER_STYLIZE_MODE_UNIFORM: luxfer_stylize_mode = 1;
+/// Each place takes its nearest exemplar patch (Wexler et al. 2007).
+pub const LUXFER_STYLIZE_MODE_NEAREST: luxfer_stylize_mode = 2;
+/// One pass in scan order (Hertzmann et al. 2001); on one thread.
+pub const LUXFER_STYLIZE_MODE_GREEDY: luxfer_stylize_mode = 3;
+/// Each pixel takes the exemplar pixel whose guides are nearest; with normals as guides the Lit Sphere (Sloan et al. 2001).
+pub const LUXFER_STYLIZE_MODE_LIT_SPHERE: luxfer_stylize_mode = 4;
+
+/// How nearest patches are searched for: a LUXFER_STYLIZE_SEARCH_ value.
+pub type luxfer_stylize_search = i32;
+/// PatchMatch, the default.
+pub const LUXFER_STYLIZE_SEARCH_PATCHMATCH: luxfer_stylize_search = 0;
+/// A k-d tree over the means of patches: not PatchMatch.
+pub const LUXFER_STYLIZE_SEARCH_TABLE: luxfer_stylize_search = 1;
+
+/// How patches that overlap make a pixel: a LUXFER_STYLIZE_VOTE_ value.
+pub type luxfer_stylize_vote = i32;
+/// Their mean.
+pub const LUXFER_STYLIZE_VOTE_PLAIN: luxfer_stylize_vote = 0;
+/// Their mean, closer matches counting more.
+pub const LUXFER_STYLIZE_VOTE_WEIGHTED: luxfer_stylize_vote = 1;
+/// The one nearest to their mean, so that no colour is made that is not in the artwork.
+pub const LUXFER_STYLIZE_VOTE_NEAREST: luxfer_stylize_vote = 2;
+
+/// Settings of a stylisation. Fill them with luxfer_stylize_params_init or luxfer_stylize_params_preset; the defaults given
+/// here are those of LUXFER_STYLIZE_FULL.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_stylize_params {
+    /// sizeof(luxfer_stylize_params), set by luxfer_stylize_params_init.
+    pub struct_size: u32,
+    /// LUXFER_STYLIZE_MODE_ value; default LUXFER_STYLIZE_MODE_BUDGET.
+    pub mode: luxfer_stylize_mode,
+    /// LUXFER_STYLIZE_SEARCH_ value; default LUXFER_STYLIZE_SEARCH_PATCHMATCH.
+    pub search: luxfer_stylize_search,
+    /// Width of a patch in pixels, odd, in [1, 33]; default 5.
+    pub patch: u32,
+    /// Weight of all guides together against the artwork's colours together, in [0, 1e6]; default 2.
+    pub guide_weight: f32,
+    /// Most resolution levels, each half of the next, in [1, 16]; default 6.
+    pub levels: u32,
+    /// Rounds of matching and painting on each level but the finest, in [1, 100]; default 6.
+    pub iterations: u32,
+    /// Rounds on the finest level, in [1, 100]; default 2.
+    pub finest_iterations: u32,
+    /// Sweeps of a search, in [1, 100]; default 1.
+    pub sweeps: u32,
+    /// Share of the target that is matched under the budget before the rest is matched without, in [0, 1]; default 0.95.
+    pub coverage: f32,
+    /// Most passes of matching under the budget in a round, in [1, 1000]; default 12.
+    pub passes: u32,
+    /// Sweeps in which places may continue their neighbours' matches, in [0, 100]; default 2; 0 is the paper's.
+    pub settle: u32,
+    /// LUXFER_STYLIZE_VOTE_ value; default LUXFER_STYLIZE_VOTE_WEIGHTED.
+    pub vote: luxfer_stylize_vote,
+    /// LUXFER_STYLIZE_VOTE_ value for the final picture; default LUXFER_STYLIZE_VOTE_NEAREST.
+    pub final_vote: luxfer_stylize_vote,
+    /// 1: work at half resolution with compressed guides, so the picture is half as wide and high; default 0.
+    pub preview: u32,
+    /// 1: keep what luxfer_stylize_update needs, about as much memory as all guides take; default 0.
+    pub keep_for_update: u32,
+    /// Share of the paint of the frame before that is kept where it fits, in [0, 1]; default 1. Below 1 it boils, as
+    /// hand-painted frames do, if each frame has its own seed. Without luxfer_stylize_set_motion it has no effect.
+    pub coherence: f32,
+    /// How far the exemplar's light is changed to the brightness and contrast of the target's, in [0, 1]; default 0.
+    pub match_appearance: f32,
+    /// Seed of the search; default 1.
+    pub seed: u64,
+}
+
+// SAFETY: plain numbers.
+unsafe impl Versioned for luxfer_stylize_params {
+    const NAME: &'static str = "luxfer_stylize_params";
+    const SIZES: &'static [usize] = &[80];
+    fn defaults() -> Self {
+        Self::of(&stylize::Params::default())
+    }
+}
+
+const MODES: [Mode; 5] = [Mode::Budget, Mode::Uniform, Mode::Nearest, Mode::Greedy, Mode::LitSphere];
+const SEARCHES: [Finder; 2] = [Finder::PatchMatch, Finder::Table];
+const VOTES: [Vote; 3] = [Vote::Plain, Vote::Weighted, Vote::Nearest];
+
+/// The value that an integer from outside stands for.
+pub(super) fn choice<T: Copy>(values: &[T], index: i32, name: &str, prefix: &str) -> Result<T> {
+    let value = usize::try_from(index).ok().and_then(|i| values.get(i));
+    value.copied().ok_or_else(|| Error::argument(format!("{name} is {index}; it must be a {prefix} value")))
+}
+
+pub(super) fn flag(value: u32, name: &str) -> Result<bool> {
+    match value {
+        0 | 1 => Ok(value == 1),
+        _ => Err(Error::argument(format!("{name} is {value}; it must be 0 or 1"))),
+    }
+}
+
+impl luxfer_stylize_params {
+    fn of(p: &stylize::Params) -> Self {
+        Self {
+            struct_size: 80,
+            mode: p.mode as i32,
+            search: p.finder as i32,
+            patch: p.patch as u32,
+            guide_weight: p.guide_weight,
+            levels: p.levels as u32,
+            iterations: p.iterations as u32,
+            finest_iterations: p.finest_iterations as u32,
+            sweeps: p.sweeps as u32,
+            coverage: p.coverage,
+            passes: p.passes as u32,
+            settle: p.settle as u32,
+            vote: p.vote as i32,
+            final_vote: p.final_vote as i32,
+            preview: u32::from(p.preview),
+            keep_for_update: 0,
+            coherence: p.coherence,
+            match_appearance: p.match_appearance,
+            seed: p.seed,
+        }
+    }
+
+    pub(super) fn params(&self) -> Result<stylize::Params> {
+        let params = stylize::Params {
+            mode: choice(&MODES, self.mode, "mode", "LUXFER_STYLIZE_MODE_")?,
+            finder: choice(&SEARCHES, self.search, "search", "LUXFER_STYLIZE_SEARCH_")?,
+            patch: self.patch as usize,
+            guide_weight: self.guide_weight,
+            levels: self.levels as usize,
+            iterations: self.iterations as usize,
+            finest_iterations: self.finest_iterations as usize,
+            sweeps: self.sweeps as usize,
+            coverage: self.coverage,
+            passes: self.passes as usize,
+            settle: self.settle as usize,
+            vote: choice(&VOTES, self.vote, "vote", "LUXFER_STYLIZE_VOTE_")?,
+            final_vote: choice(&VOTES, self.final_vote, "final_vote", "LUXFER_STYLIZE_VOTE_")?,
+            preview: flag(self.preview, "preview")?,
+            coherence: self.coherence,
+            match_appearance: self.match_appearance,
+            seed: self.seed,
+        };
+        params.check()?;
+        Ok(params)
+    }
+}
+
+/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_stylize_params_init(params: *mut luxfer_stylize_params, size: usize) -> luxfer_status {
+    guard(|| params::init(params, size))
+}
+
+/// Sets *params, filled before by luxfer_stylize_params_init, to a preset: LUXFER_STYLIZE_FULL, _FAST, _PREVIEW or _PAPER.
+/// LUXFER_INVALID_ARGUMENT for another value.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_stylize_params_preset(
+    params: *mut luxfer_stylize_params,
+    preset: luxfer_stylize_preset,
+) -> luxfer_status {
+    guard(|| {
+        let place = params::Report::new(params)?;
+        let preset = match preset {
+            LUXFER_STYLIZE_FULL => stylize::Params::default(),
+            LUXFER_STYLIZE_FAST => stylize::Params::fast(),
+            LUXFER_STYLIZE_PREVIEW => stylize::Params::preview(),
+            LUXFER_STYLIZE_PAPER => stylize::Params::paper(),
+            _ => return Err(Error::argument(format!("preset is {preset}; it must be a LUXFER_STYLIZE_ preset"))),
+        };
+        place.set(luxfer_stylize_params::of(&preset));
+        Ok(())
+    })
+}

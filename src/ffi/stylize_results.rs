@@ -1,0 +1,321 @@
+//! Results of a stylisation
+//!
+//! The picture, where it was copied from, how well it follows the guides, and what the run did level by level.
+
+use super::guard::enter;
+use super::handle::{self, Owned};
+use super::image::{Pixels, luxfer_image};
+use super::params::{Report, Versioned};
+use super::pointer::Out;
+use super::scene::missing;
+use super::status::luxfer_status;
+use super::stylize::luxfer_stylize;
+use crate::error::{Error, ErrorKind, Result};
+use crate::image::Image;
+use crate::patch::Field;
+use crate::stylize::{Glimpse, LevelReport, Output, Study};
+use std::sync::{Arc, Mutex};
+
+/// An image of a stylisation: a LUXFER_STYLIZE_IMAGE_ value.
+pub type luxfer_stylize_image = i32;
+/// The stylised target, linear, with the artwork's channels. Before the last level, in preview and after a cancel its sides
+/// are those of the target halved luxfer_stylize_report.halvings times, rounded down.
+pub const LUXFER_STYLIZE_IMAGE_PICTURE: luxfer_stylize_image = 0;
+/// How far the guides at each pixel are from those where its paint was taken, in [0, 1]; 1 channel. High where the exemplar
+/// has nothing that fits.
+pub const LUXFER_STYLIZE_IMAGE_GUIDE_ERROR: luxfer_stylize_image = 1;
+/// Where in the artwork the paint of each pixel was taken, x and y in pixels, -1 where nothing was painted; 2 channels.
+pub const LUXFER_STYLIZE_IMAGE_SOURCES: luxfer_stylize_image = 2;
+
+/// How good a stylisation is. Set struct_size before the call.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_stylize_report {
+    /// sizeof(luxfer_stylize_report), set by the caller.
+    pub struct_size: u32,
+    /// 1 if the run ended, 0 if only `levels` levels are done: then the fields from `used` on are 0.
+    pub finished: u32,
+    /// Number of levels done; see luxfer_stylize_get_level.
+    pub levels: u32,
+    /// How often the sides of the picture are half those of the target.
+    pub halvings: u32,
+    /// Width of patches that was used.
+    pub patch: u32,
+    /// Most uses of one exemplar patch.
+    pub most_used: u32,
+    /// Mean squared difference of the channels in [0, 1] of matched patches (Eq. 3), last round; the artwork's channels
+    /// count 1 together, the guides guide_weight.
+    pub energy: f64,
+    /// Share of the exemplar's patches that were used.
+    pub used: f64,
+    /// Entropy of their usage in bits.
+    pub entropy: f64,
+    /// Root mean square of LUXFER_STYLIZE_IMAGE_GUIDE_ERROR.
+    pub guide_error: f64,
+    /// Exemplar pixels left out because they are no numbers.
+    pub broken_source: u64,
+    /// Pixels of the target's guides taken as 0 for it.
+    pub broken_target: u64,
+}
+
+// SAFETY: plain numbers.
+unsafe impl Versioned for luxfer_stylize_report {
+    const NAME: &'static str = "luxfer_stylize_report";
+    const SIZES: &'static [usize] = &[72];
+    fn defaults() -> Self {
+        Self {
+            struct_size: 72,
+            finished: 0,
+            levels: 0,
+            halvings: 0,
+            patch: 0,
+            most_used: 0,
+            energy: 0.0,
+            used: 0.0,
+            entropy: 0.0,
+            guide_error: 0.0,
+            broken_source: 0,
+            broken_target: 0,
+        }
+    }
+}
+
+/// One round of matching and painting. Set struct_size before the call.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_stylize_round {
+    /// sizeof(luxfer_stylize_round), set by the caller.
+    pub struct_size: u32,
+    /// Passes of matching under the budget; see luxfer_stylize_get_pass.
+    pub passes: u32,
+    /// As luxfer_stylize_report.energy, after this round.
+    pub energy: f64,
+}
+
+// SAFETY: plain numbers.
+unsafe impl Versioned for luxfer_stylize_round {
+    const NAME: &'static str = "luxfer_stylize_round";
+    const SIZES: &'static [usize] = &[16];
+    fn defaults() -> Self {
+        Self { struct_size: 16, passes: 0, energy: 0.0 }
+    }
+}
+
+/// One pass of matching under the budget. Set struct_size before the call.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_stylize_pass {
+    /// sizeof(luxfer_stylize_pass), set by the caller.
+    pub struct_size: u32,
+    /// 0.
+    pub reserved: u32,
+    /// Share of the exemplar's patches that fitted well enough, in [0, 1].
+    pub knee: f64,
+    /// Share of the target with a match after this pass, in [0, 1].
+    pub coverage: f64,
+    /// Target patches that were given a match in this pass.
+    pub gained: u64,
+}
+
+// SAFETY: plain numbers.
+unsafe impl Versioned for luxfer_stylize_pass {
+    const NAME: &'static str = "luxfer_stylize_pass";
+    const SIZES: &'static [usize] = &[32];
+    fn defaults() -> Self {
+        Self { struct_size: 32, reserved: 0, knee: 0.0, coverage: 0.0, gained: 0 }
+    }
+}
+
+/// What is known of a run, finished or not.
+#[derive(Clone)]
+pub(super) struct Stylised {
+    picture: Arc<Image>,
+    halvings: usize,
+    levels: Arc<Vec<LevelReport>>,
+    finished: Option<Finished>,
+}
+
+/// What only a finished run has.
+#[derive(Clone)]
+struct Finished {
+    guide_error: Arc<Image>,
+    sources: Arc<Image>,
+    report: luxfer_stylize_report,
+    field: Arc<Field>,
+    study: Option<Arc<Mutex<Study>>>,
+}
+
+impl Stylised {
+    pub(super) fn unfinished(glimpse: Glimpse) -> Self {
+        Self {
+            picture: Arc::new(glimpse.picture),
+            halvings: glimpse.halvings,
+            levels: Arc::new(glimpse.levels.to_vec()),
+            finished: None,
+        }
+    }
+
+    pub(super) fn finished(output: Output, study: Option<Study>) -> Self {
+        let report = output.report;
+        let squares = report.guide_error.data.iter().map(|&v| f64::from(v).powi(2));
+        let numbers = luxfer_stylize_report {
+            finished: 1,
+            patch: report.patch as u32,
+            most_used: report.usage.most,
+            used: report.usage.used,
+            entropy: report.usage.entropy,
+            guide_error: (squares.sum::<f64>() / report.guide_error.data.len() as f64).sqrt(),
+            broken_source: report.broken_source as u64,
+            broken_target: report.broken_target as u64,
+            ..luxfer_stylize_report::defaults()
+        };
+        Self {
+            picture: Arc::new(output.image),
+            halvings: report.halvings,
+            levels: Arc::new(report.levels),
+            finished: Some(Finished {
+                guide_error: Arc::new(report.guide_error),
+                sources: Arc::new(report.sources),
+                report: numbers,
+                field: Arc::new(output.field),
+                study: study.map(|s| Arc::new(Mutex::new(s))),
+            }),
+        }
+    }
+
+    /// The same run with the picture of an update.
+    pub(super) fn updated(&self, picture: Image, sources: Image) -> Self {
+        let finished = self.finished.clone().map(|f| Finished { sources: Arc::new(sources), ..f });
+        Self { picture: Arc::new(picture), finished, ..self.clone() }
+    }
+
+    /// The matches of a finished run.
+    pub(super) fn field(&self) -> Result<Arc<Field>> {
+        Ok(self.need_finished()?.field.clone())
+    }
+
+    pub(super) fn study(&self) -> Option<Arc<Mutex<Study>>> {
+        self.finished.as_ref().and_then(|f| f.study.clone())
+    }
+
+    fn need_finished(&self) -> Result<&Finished> {
+        self.finished.as_ref().ok_or_else(|| {
+            Error::new(ErrorKind::NotReady, "only the picture is there before the last level is done; wait for the job")
+        })
+    }
+
+    fn level(&self, index: u32) -> Result<&LevelReport> {
+        self.levels.get(index as usize).ok_or_else(|| missing("level", index, self.levels.len()))
+    }
+}
+
+/// Gets an image of the result; which is a LUXFER_STYLIZE_IMAGE_ value. After an update (luxfer_stylize_update) picture and
+/// sources are its; the rest is that of the last full run. The caller releases *image. Any thread.
+/// LUXFER_NOT_READY before the first level of a job is done, and, but for the picture, before the last one is.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_stylize_get_image(
+    stylize: *mut luxfer_stylize,
+    which: luxfer_stylize_image,
+    image: *mut *mut luxfer_image,
+) -> luxfer_status {
+    enter(stylize, |stage| {
+        let out = Out::new(image, "image")?;
+        let pick: fn(&Stylised) -> Result<&Arc<Image>> = match which {
+            LUXFER_STYLIZE_IMAGE_PICTURE => |s| Ok(&s.picture),
+            LUXFER_STYLIZE_IMAGE_GUIDE_ERROR => |s| Ok(&s.need_finished()?.guide_error),
+            LUXFER_STYLIZE_IMAGE_SOURCES => |s| Ok(&s.need_finished()?.sources),
+            _ => return Err(Error::argument(format!("which is {which}; it must be a LUXFER_STYLIZE_IMAGE_ value"))),
+        };
+        let image = pick(&*stage.output()?)?.clone();
+        out.set(handle::give(Pixels::part(stage.context(), image, |i| i)));
+        Ok(())
+    })
+}
+
+/// Tells how good the result is so far. Any thread.
+/// LUXFER_NOT_READY before the first level of a job is done.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_stylize_get_report(
+    stylize: *mut luxfer_stylize,
+    report: *mut luxfer_stylize_report,
+) -> luxfer_status {
+    enter(stylize, |stage| {
+        let out = Report::new(report)?;
+        let output = stage.output()?;
+        let finished = output.finished.as_ref().map_or_else(luxfer_stylize_report::defaults, |f| f.report);
+        out.set(luxfer_stylize_report {
+            levels: output.levels.len() as u32,
+            halvings: output.halvings as u32,
+            energy: output.levels.last().and_then(|l| l.energy.last().copied()).unwrap_or(0.0),
+            ..finished
+        });
+        Ok(())
+    })
+}
+
+/// Tells the size of a level, the coarsest being level 0, and the number of its rounds; any of the three may be NULL. Any
+/// thread.
+/// LUXFER_NOT_READY before the first level of a job is done; LUXFER_NOT_FOUND if there is no such level.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_stylize_get_level(
+    stylize: *mut luxfer_stylize,
+    level: u32,
+    width: *mut u32,
+    height: *mut u32,
+    rounds: *mut u32,
+) -> luxfer_status {
+    enter(stylize, |stage| {
+        let output = stage.output()?;
+        let found = output.level(level)?;
+        super::pointer::set_optional(width, found.width as u32);
+        super::pointer::set_optional(height, found.height as u32);
+        super::pointer::set_optional(rounds, found.energy.len() as u32);
+        Ok(())
+    })
+}
+
+/// Describes a round of a level. Any thread.
+/// LUXFER_NOT_READY before the first level of a job is done; LUXFER_NOT_FOUND if there is no such level or round.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_stylize_get_round(
+    stylize: *mut luxfer_stylize,
+    level: u32,
+    index: u32,
+    round: *mut luxfer_stylize_round,
+) -> luxfer_status {
+    enter(stylize, |stage| {
+        let out = Report::new(round)?;
+        let output = stage.output()?;
+        let level = output.level(level)?;
+        let energy = level.energy.get(index as usize).ok_or_else(|| missing("round", index, level.energy.len()))?;
+        let passes = level.passes.get(index as usize).map_or(0, Vec::len) as u32;
+        out.set(luxfer_stylize_round { passes, energy: *energy, ..luxfer_stylize_round::defaults() });
+        Ok(())
+    })
+}
+
+/// Describes a pass of a round. Any thread.
+/// LUXFER_NOT_READY before the first level of a job is done; LUXFER_NOT_FOUND if there is no such level, round or pass.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_stylize_get_pass(
+    stylize: *mut luxfer_stylize,
+    level: u32,
+    round: u32,
+    index: u32,
+    pass: *mut luxfer_stylize_pass,
+) -> luxfer_status {
+    enter(stylize, |stage| {
+        let out = Report::new(pass)?;
+        let output = stage.output()?;
+        let level = output.level(level)?;
+        let passes = level.passes.get(round as usize).ok_or_else(|| missing("round", round, level.passes.len()))?;
+        let found = passes.get(index as usize).ok_or_else(|| missing("pass", index, passes.len()))?;
+        out.set(luxfer_stylize_pass {
+            knee: found.knee,
+            coverage: found.coverage,
+            gained: found.gained as u64,
+            ..luxfer_stylize_pass::defaults()
+        });
+        Ok(())
+    })
+}
