@@ -1,4 +1,4 @@
-# make demo   builds the library and a C program, and runs the lighting transfer on generated input, into out/
+# make demo   builds the library and two C programs, and runs a lighting transfer and a stylisation, into out/
 # make test   sets up what is missing (Debian packages) and runs every test
 # make bench  runs the benches and prints the headline figures; make bench ONLY=rays runs one; plots go to out/bench/
 # make clean  removes what was built
@@ -21,13 +21,14 @@ lib:
 	$(CARGO) build --release --lib
 	@ln -sf libluxfer.so $(SONAME)
 
-out/lighting_transfer: examples_c/lighting_transfer.c include/luxfer.h lib
+out/%: examples_c/%.c examples_c/common.h examples_c/panels.h include/luxfer.h lib
 	@mkdir -p out
 	$(CC) -std=c99 -O2 -Wall -Wextra -Wpedantic -Iinclude $< -o $@ -L$(PROFILE) -lluxfer -lm -Wl,-rpath,'$$ORIGIN/../$(PROFILE)'
 
-demo: out/lighting_transfer
+demo: out/lighting_transfer out/stylize
 	./out/lighting_transfer --out out
-	@echo "look at out/overview.png"
+	./out/stylize --out out
+	@echo "look at out/overview.png and out/stylize.png"
 
 # Installs Debian packages only when one is missing.
 setup:

@@ -7,49 +7,18 @@
  * Writes overview.png, emission.exr, render.exr, render.png, lit.glb, luminaires.csv and report.json into DIR.
  */
 #include "luxfer.h"
+#include "common.h"
 #include "overview.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#ifdef _WIN32
-#include <io.h>
-#define isatty _isatty
-#else
-int isatty(int file);
-#endif
 
 typedef struct options {
     const char *photo, *scene, *surface, *strokes, *out;
     double distance;
     unsigned width, height, samples;
 } options;
-
-static luxfer_context *context;
-
-/* Ends the program with the library's own words if a call has failed. */
-static void check(luxfer_status status, const char *what) {
-    char message[1024] = "";
-    if (status == LUXFER_OK) return;
-    if (context) luxfer_context_last_error(context, message, sizeof message, NULL);
-    fprintf(stderr, "\n%s: %s (%s)\n", what, message, luxfer_status_name(status));
-    exit(1);
-}
-
-static int show_progress(void *title, double fraction) {
-    char bar[41];
-    int i, filled = (int)(fraction * 40);
-    for (i = 0; i < 40; i++) bar[i] = i < filled ? '#' : '.';
-    bar[40] = 0;
-    fprintf(stderr, "\r%-24s [%s] %3d %%%s", (const char *)title, bar, (int)(fraction * 100), fraction == 1 ? "\n" : "");
-    return 0;
-}
-
-/* Waits for a job, with a progress bar where somebody looks, and lets go of it. */
-static void finish(luxfer_job *job, const char *title) {
-    check(luxfer_job_wait(job, -1, isatty(2) ? show_progress : NULL, (void *)title), title);
-    check(luxfer_job_release(job), title);
-}
 
 static const char *path(const options *o, const char *name) {
     static char buffer[4096];
