@@ -13,7 +13,7 @@ PACKAGES := cmake g++ binutils libopencv-dev libembree-dev
 BENCHES  := $(patsubst benches/%.rs,%,$(wildcard benches/*.rs))
 ONLY     ?= $(BENCHES)
 
-.PHONY: all lib demo test bench setup clean
+.PHONY: all lib demo test bench peers setup clean
 
 all: lib
 
@@ -48,8 +48,11 @@ test: setup lib
 	ctest --test-dir build --output-on-failure
 
 # One after the other: they would measure each other.
-bench:
+bench: peers
 	@for bench in $(ONLY); do $(CARGO) bench --quiet --bench $$bench || exit 1; done
+
+peers:
+	@benches/peers/install.sh
 
 clean:
 	$(CARGO) clean

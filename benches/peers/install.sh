@@ -1,0 +1,24 @@
+#!/bin/sh
+# Installs what the benches are measured beside, each in a virtual environment under target/peers. What cannot be
+# installed is left out; the benches then say so.
+cd "$(dirname "$0")/../.." || exit 1
+
+install() { # name, packages...
+  name=$1
+  shift
+  [ -x "target/peers/$name/bin/python" ] && return
+  echo "installing $name for the benches"
+  python3 -m venv "target/peers/$name" && "target/peers/$name/bin/pip" install --quiet "$@" ||
+    { echo "$name could not be installed" >&2; rm -rf "target/peers/$name"; }
+}
+
+install mitsuba mitsuba numpy
+# Cycles; its wheels fit one version of Python each.
+install bpy 'bpy==5.0.*' 'numpy<2'
+
+# Mitsuba's vectorised back end needs a shared LLVM that knows this processor.
+if ! ls /usr/lib/*/libLLVM*19* >/dev/null 2>&1 && [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null; then
+  apt-get install -y -qq --no-install-recommends libllvm19 </dev/null >/dev/null 2>&1 ||
+    echo "libllvm19 could not be installed: Mitsuba runs without its vectorised back end" >&2
+fi
+exit 0

@@ -1,0 +1,287 @@
+//! Error against time of path tracing, beside Mitsuba 3 (`llvm_ad_rgb`, `scalar_rgb`) and Cycles.
+//!
+//! Every renderer gets the same GLB, the same size of image and the same two threads, and they render in turns. The error
+//! is measured without a reference: several images that differ in the seed alone scatter about their mean, and the
+//! relative error is the root of the mean over the pixels of that variance divided by the square of the pixel's value
+//! (that of the mean of all images, plus 1 % of the mean pixel, for pixels near black). That all renderers converge to
+//! the same picture is printed beside it: mean values, and how far the means of blocks of pixels differ.
+//!
+//! Loading the scene, building trees and compiling kernels are not counted.
+
+mod harness;
+
+use glam::Vec3;
+use harness::plot::{Plot, Series};
+use harness::scenes::{self, Absent, Setting};
+use harness::{Table, absent, figure};
+use luxfer::exec::Pool;
+use luxfer::job::Monitor;
+use luxfer::render::{self, World};
+use luxfer::scene::gltf;
+use std::io::{BufRead, BufReader, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use std::sync::Arc;
+use std::time::Instant;
+
+/// Paths per pixel of the points of a curve.
+const LADDER: [u32; 4] = [16, 64, 256, 1024];
+/// Images per point.
+const SEEDS: u32 = 4;
+/// Time after which a renderer is not asked for more paths per pixel.
+const ENOUGH: f64 = 8.0;
+
+fn main() {
+    let names = ["mitsuba_llvm", "mitsuba_scalar", "cycles"];
+    for (scene, key) in [(small(scenes::cornell(), 128), "cornell"), (small(scenes::kitchen(), 160), "kitchen")] {
+        match scene {
+            Ok(setting) => compare(&setting, key, &names),
+            Err(reason) => {
+                names.iter().for_each(|name| absent(&format!("render.time_to_1pct.{key}.vs_{name}"), &reason));
+            }
+        }
+    }
+}
+
+/// The same scene in a smaller image, so that 1 % is reached within minutes.
+fn small(setting: Result<Setting, Absent>, width: usize) -> Result<Setting, Absent> {
+    setting.map(|s| Setting { size: [width, width * s.size[1] / s.size[0]], ..s })
+}
+
+fn compare(setting: &Setting, key: &str, names: &[&str]) {
+    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("out/bench");
+    let path = folder.join(format!("{key}.glb"));
+    let mut scene = setting.scene.clone();
+    scene.cameras = vec![setting.camera.clone()];
+    std::fs::create_dir_all(&folder).expect("out/bench can be made");
+    let bytes = gltf::export(&scene).expect("the scene is written");
+    std::fs::write(&path, bytes).expect("out/bench can be written to");
+    let mut renderers: Vec<Renderer> = vec![ours(setting)];
+    for name in names {
+        match peer(name, &path, setting.size) {
+            Ok(renderer) => renderers.push(renderer),
+            Err(reason) => absent(&format!("render.time_to_1pct.{key}.vs_{name}"), &reason),
+        }
+    }
+    // In turns: each renderer makes one image before the next seed.
+    let mut curves: Vec<Curve> = renderers.iter().map(|_| Curve::default()).collect();
+    for spp in LADDER {
+        for curve in &mut curves {
+            curve.done |= curve.points.last().is_some_and(|p| p.seconds > ENOUGH);
+            if !curve.done {
+                curve.points.push(Point { spp, ..Point::default() });
+            }
+        }
+        for seed in 1..=SEEDS {
+            for (renderer, curve) in renderers.iter_mut().zip(&mut curves) {
+                if curve.done {
+                    continue;
+                }
+                let (seconds, image) = (renderer.render)(spp, seed);
+                let point = curve.points.last_mut().expect("a point was begun");
+                point.seconds += seconds / f64::from(SEEDS);
+                point.images.push(image);
+            }
+        }
+    }
+    report(setting, key, &renderers, &mut curves);
+}
+
+/// Makes an image of so many paths per pixel with a seed; gives the seconds it took and its pixels.
+type Render = Box<dyn FnMut(u32, u32) -> (f64, Vec<Vec3>)>;
+
+struct Renderer {
+    name: String,
+    render: Render,
+}
+
+#[derive(Default)]
+struct Curve {
+    points: Vec<Point>,
+    done: bool,
+}
+
+#[derive(Default)]
+struct Point {
+    spp: u32,
+    seconds: f64,
+    images: Vec<Vec<Vec3>>,
+    error: f64,
+}
+
+fn ours(setting: &Setting) -> Renderer {
+    let pool = Pool::new(2).expect("two threads");
+    let monitor = Monitor::default();
+    let world = pool.run(|| World::build(Arc::new(setting.scene.clone()), monitor.job())).expect("the scene is valid");
+    let (camera, [width, height]) = (setting.camera.clone(), setting.size);
+    let render = move |spp, seed: u32| {
+        let params = render::Params { width, height, samples: spp, seed: u64::from(seed), ..Default::default() };
+        let start = Instant::now();
+        let film = pool.run(|| render::run(&world, &camera, &params, monitor.job(), &mut |_| {}));
+        let film = film.expect("the parameters are valid");
+        (start.elapsed().as_secs_f64(), film.beauty.data.chunks_exact(3).map(Vec3::from_slice).collect())
+    };
+    Renderer { name: "luxfer".into(), render: Box::new(render) }
+}
+
+/// Another renderer, in a process of its own that takes jobs line by line.
+struct Peer {
+    process: Child,
+    jobs: Option<ChildStdin>,
+    answers: BufReader<ChildStdout>,
+    out: PathBuf,
+}
+
+impl Drop for Peer {
+    fn drop(&mut self) {
+        self.jobs.take();
+        let _ = self.process.wait();
+    }
+}
+
+/// Starts a peer if `make peers` has installed it.
+fn peer(name: &str, scene: &Path, [width, height]: [usize; 2]) -> Result<Renderer, Absent> {
+    let root = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
+    let (package, script, variant) = match name {
+        "mitsuba_llvm" => ("mitsuba", "mitsuba_render.py", Some("llvm_ad_rgb")),
+        "mitsuba_scalar" => ("mitsuba", "mitsuba_render.py", Some("scalar_rgb")),
+        _ => ("bpy", "cycles_render.py", None),
+    };
+    let python = root.join(format!("target/peers/{package}/bin/python"));
+    if !python.exists() {
+        return Err(format!("{package} is not installed; `make peers` installs it"));
+    }
+    let out = scene.with_extension(name);
+    let mut command = Command::new(python);
+    command.arg(root.join("benches/peers").join(script)).args(variant).arg(scene);
+    command.args([width.to_string(), height.to_string()]).arg(&out);
+    command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null());
+    let mut process = command.spawn().map_err(|e| e.to_string())?;
+    let jobs = process.stdin.take();
+    let answers = BufReader::new(process.stdout.take().ok_or("no standard output")?);
+    let mut peer = Peer { process, jobs, answers, out };
+    peer.answer().map_err(|e| format!("{package} did not start: {e}"))?;
+    let render = move |spp, seed| peer.render(spp, seed).expect("the peer renders");
+    Ok(Renderer { name: name.into(), render: Box::new(render) })
+}
+
+impl Peer {
+    /// The next line of JSON; other lines are what libraries print.
+    fn answer(&mut self) -> Result<serde_json::Value, Absent> {
+        let mut line = String::new();
+        loop {
+            line.clear();
+            if self.answers.read_line(&mut line).map_err(|e| e.to_string())? == 0 {
+                return Err("it ended".into());
+            }
+            if line.starts_with('{') {
+                return serde_json::from_str(&line).map_err(|e| e.to_string());
+            }
+        }
+    }
+
+    fn render(&mut self, spp: u32, seed: u32) -> Result<(f64, Vec<Vec3>), Absent> {
+        let jobs = self.jobs.as_mut().ok_or("it has ended")?;
+        writeln!(jobs, "{spp} {seed}").and_then(|()| jobs.flush()).map_err(|e| e.to_string())?;
+        let answer = self.answer()?;
+        let bytes = std::fs::read(&self.out).map_err(|e| e.to_string())?;
+        let values: Vec<f32> = bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect();
+        let seconds = answer["seconds"].as_f64().ok_or("no seconds in the answer")?;
+        Ok((seconds, values.chunks_exact(3).map(Vec3::from_slice).collect()))
+    }
+}
+
+fn report(setting: &Setting, key: &str, renderers: &[Renderer], curves: &mut [Curve]) {
+    let [width, height] = setting.size;
+    let mut plot = Plot::new(&format!("{key}: error against time"), "seconds", "relative error");
+    let mut table = Table::new(["renderer", "paths/pixel", "seconds", "error %", "Mpaths/s"]);
+    for (renderer, curve) in renderers.iter().zip(curves.iter_mut()) {
+        let mean = mean_image(curve);
+        for point in &mut curve.points {
+            point.error = relative_error(&point.images, &mean);
+            let paths = f64::from(point.spp) * (width * height) as f64 / 1e6;
+            let cells = [f64::from(point.spp), point.seconds, 100.0 * point.error, paths / point.seconds];
+            let cells = cells.map(|v| format!("{v:.3}"));
+            table.row([renderer.name.clone()].into_iter().chain(cells));
+        }
+        let points = curve.points.iter().map(|p| [p.seconds, p.error]).collect();
+        plot.series.push(Series { name: renderer.name.clone(), points });
+    }
+    table.print(&format!("{key}, {width} x {height}, 2 threads"));
+    plot.write(&format!("render_{key}")).expect("out/bench can be written to");
+    // Do they agree?
+    let reference = mean_image(&curves[0]);
+    for (renderer, curve) in renderers.iter().zip(curves.iter()) {
+        let image = mean_image(curve);
+        let [ours, theirs] = [&reference, &image].map(|i| i.iter().sum::<Vec3>() / i.len() as f32);
+        let blocks = block_difference(&reference, &image, setting.size);
+        println!("  {}: mean {theirs:.4} ({ours:.4}), blocks differ by {:.2} % (median)", renderer.name, 100.0 * blocks);
+    }
+    // Time to an error.
+    for percent in [5, 1] {
+        let error = f64::from(percent) / 100.0;
+        let times: Vec<(f64, bool)> = curves.iter().map(|c| time_to(&c.points, error)).collect();
+        for (renderer, &(time, measured)) in renderers.iter().zip(&times) {
+            let how = if measured { "measured" } else { "extrapolated" };
+            println!("  {} to {percent} %: {time:.2} s ({how})", renderer.name);
+        }
+        for (renderer, &(time, _)) in renderers.iter().zip(&times).skip(1) {
+            figure(&format!("render.time_to_{percent}pct.{key}.vs_{}", renderer.name), time / times[0].0, "x");
+        }
+    }
+}
+
+/// The mean of all images of a curve, by paths.
+fn mean_image(curve: &Curve) -> Vec<Vec3> {
+    let images = || curve.points.iter().flat_map(|p| p.images.iter().map(|i| (p.spp as f32, i)));
+    let total: f32 = images().map(|(weight, _)| weight).sum();
+    let mut mean = vec![Vec3::ZERO; images().next().map_or(0, |(_, i)| i.len())];
+    for (weight, image) in images() {
+        mean.iter_mut().zip(image).for_each(|(m, v)| *m += *v * (weight / total));
+    }
+    mean
+}
+
+fn relative_error(images: &[Vec<Vec3>], mean: &[Vec3]) -> f64 {
+    let floor = mean.iter().map(|v| v.element_sum() / 3.0).sum::<f32>() / mean.len() as f32 * 0.01;
+    let n = images.len() as f32;
+    let of_pixel = |i: usize| {
+        let centre = images.iter().map(|image| image[i]).sum::<Vec3>() / n;
+        let variance = images.iter().map(|image| (image[i] - centre).powf(2.0)).sum::<Vec3>() / (n - 1.0);
+        f64::from((variance / (mean[i] + floor).powf(2.0)).element_sum()) / 3.0
+    };
+    ((0..mean.len()).map(of_pixel).sum::<f64>() / mean.len() as f64).sqrt()
+}
+
+/// Median over blocks of 16 × 16 pixels of the relative difference of their means.
+fn block_difference(a: &[Vec3], b: &[Vec3], [width, height]: [usize; 2]) -> f64 {
+    const SIDE: usize = 16;
+    let mut differences = Vec::new();
+    for top in (0..height).step_by(SIDE) {
+        for left in (0..width).step_by(SIDE) {
+            let sum = |image: &[Vec3]| -> f32 {
+                let rows = top..(top + SIDE).min(height);
+                rows.flat_map(|y| &image[y * width + left..y * width + (left + SIDE).min(width)])
+                    .map(|v| v.element_sum())
+                    .sum()
+            };
+            let (p, q) = (sum(a), sum(b));
+            differences.push(f64::from((p - q).abs() / p.abs().max(1e-9)));
+        }
+    }
+    harness::median(&differences)
+}
+
+/// When a curve comes down to an error, and whether it was seen to: on straight lines of the logarithms, the last one
+/// prolonged.
+fn time_to(points: &[Point], error: f64) -> (f64, bool) {
+    let logs: Vec<[f64; 2]> = points.iter().map(|p| [p.seconds.ln(), p.error.ln()]).collect();
+    let target = error.ln();
+    let end = logs.iter().position(|p| p[1] <= target);
+    let measured = end.is_some();
+    let end = end.unwrap_or(logs.len() - 1).max(1);
+    let Some([[t0, e0], [t1, e1]]) = logs.get(end - 1..=end).and_then(|p| p.try_into().ok()) else {
+        return (f64::NAN, false);
+    };
+    ((t0 + (target - e0) * (t1 - t0) / (e1 - e0)).exp(), measured)
+}
