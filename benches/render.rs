@@ -215,7 +215,11 @@ fn report(setting: &Setting, key: &str, renderers: &[Renderer], curves: &mut [Cu
         let image = mean_image(curve);
         let [ours, theirs] = [&reference, &image].map(|i| i.iter().sum::<Vec3>() / i.len() as f32);
         let blocks = block_difference(&reference, &image, setting.size);
-        println!("  {}: mean {theirs:.4} ({ours:.4}), blocks differ by {:.2} % (median)", renderer.name, 100.0 * blocks);
+        println!(
+            "  {}: mean {theirs:.4} ({ours:.4}), blocks differ by {:.2} % (median)",
+            renderer.name,
+            100.0 * blocks
+        );
     }
     // Time to an error.
     for percent in [5, 1] {
