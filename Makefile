@@ -47,9 +47,13 @@ test: setup lib
 	cmake --build build -j 2
 	ctest --test-dir build --output-on-failure
 
-# One after the other: they would measure each other.
+# One after the other: they would measure each other. The figures printed go into the table of README.md.
+bench: SHELL := /bin/bash -o pipefail
 bench: peers
-	@for bench in $(ONLY); do $(CARGO) bench --quiet --bench $$bench || exit 1; done
+	@mkdir -p out/bench
+	@for bench in $(ONLY); do $(CARGO) bench --quiet --bench $$bench | tee out/bench/$$bench.log || exit 1; done
+	@grep -h '^figure ' out/bench/*.log >out/bench/figures.txt
+	@python3 benches/table.py
 
 peers:
 	@benches/peers/install.sh
