@@ -87,7 +87,7 @@ impl Aov {
         }
     }
 
-    /// The value of a pixel from the numbers kept, the samples that met a surface, and all samples.
+    /// The value of a pixel (positions relative to the world's centre) from the numbers kept, the samples that met a surface, and all samples.
     pub fn value(self, kept: &[f32], hits: f64, samples: f64, out: &mut [f32]) {
         let vector = || DVec3::from_array(std::array::from_fn(|i| f64::from(kept[i])));
         match self {
@@ -126,7 +126,7 @@ impl Surfaces {
         self.hits += 1;
         self.depth += f64::from(depth);
         self.distance += f64::from(distance);
-        self.position += world.in_scene(vertex.position).as_dvec3();
+        self.position += vertex.position.as_dvec3();
         self.normal += bsdf.normal().as_dvec3();
         self.geometric += bsdf.geometric_normal().as_dvec3();
         self.albedo += bsdf.colour().min(Vec3::ONE).as_dvec3();

@@ -117,8 +117,12 @@ impl<'a> Bsdf<'a> {
         let geometric = geometric * side;
         let normal = face_viewer(shading * side, wo);
         let diffuse = substance.diffuse;
-        let layers = layered.then(|| Layers::new(substance, normal, geometric.dot(wo), wo, table));
-        Self { diffuse, normal, geometric, layers }
+        // Returned from two places, so that matt surfaces do not move the room for layers about.
+        if !layered {
+            return Self { diffuse, normal, geometric, layers: None };
+        }
+        let layers = Layers::new(substance, normal, geometric.dot(wo), wo, table);
+        Self { diffuse, normal, geometric, layers: Some(layers) }
     }
 
     /// What receives light from all of a hemisphere alike: its response to radiance is irradiance.

@@ -71,6 +71,7 @@ pub struct Layer {
 
 /// The sums of all layers so far, tile by tile as those of the main image.
 pub struct Layers<'a> {
+    world: &'a World,
     outputs: &'a Outputs,
     /// The camera's place in the world's coordinates, and its unit viewing direction.
     eye: Vec3,
@@ -85,7 +86,7 @@ pub struct Layers<'a> {
 impl<'a> Layers<'a> {
     /// None where there is nothing to render but the main image.
     pub fn new(
-        world: &World,
+        world: &'a World,
         camera: &Camera,
         outputs: &'a Outputs,
         tiles: usize,
@@ -100,7 +101,7 @@ impl<'a> Layers<'a> {
         let width = 3 * expressions.len() + if outputs.aovs.is_empty() { 0 } else { surfaces };
         let tiles = (0..tiles).map(|_| Ok(Mutex::new(try_vec(width * tile_pixels, 0.0)?))).collect::<Result<_>>()?;
         let (eye, forward) = (world.from_scene(camera.position), camera.forward.normalize_or_zero());
-        Ok(Some(Self { outputs, eye, forward, table, width, tiles }))
+        Ok(Some(Self { world, outputs, eye, forward, table, width, tiles }))
     }
 
     pub fn recorder<'b>(&'b self, world: &'b World) -> Recorder<'b> {
@@ -168,7 +169,12 @@ impl<'a> Layers<'a> {
         for &aov in &self.outputs.aovs {
             let image = make(aov.channels().len(), &|sums, samples, [x, y], out| match aov {
                 Aov::Luminance => out[0] = colour::luminance(beauty.rgb(x, y)),
-                _ => aov.value(&sums[first..][..aov.kept()], f64::from(sums[hits]), samples, out),
+                _ => {
+                    aov.value(&sums[first..][..aov.kept()], f64::from(sums[hits]), samples, out);
+                    if aov == Aov::Position && sums[hits] > 0.0 {
+                        self.world.in_scene(Vec3::from_slice(out)).write_to_slice(out);
+                    }
+                }
             })?;
             layers.push(Layer { name: aov.name().into(), channels: aov.channels(), expression: None, image });
             first += aov.kept();

@@ -36,17 +36,25 @@ fn room(at: Vec3) -> (Scene, Camera) {
 
 #[test]
 fn a_room_a_million_metres_away_looks_as_it_does_at_home() {
-    let params = Params { width: 32, height: 24, samples: 16, ..Params::default() };
-    let image = |at: Vec3| {
+    let outputs = Outputs { aovs: vec![Aov::Depth, Aov::Position], ..Outputs::default() };
+    let params = Params { width: 32, height: 24, samples: 16, outputs, ..Params::default() };
+    let film = |at: Vec3| {
         let (scene, camera) = room(at);
-        render(&world(scene), &camera, &params).beauty
+        render(&world(scene), &camera, &params)
     };
-    let home = image(Vec3::ZERO);
-    let mean = home.data.iter().sum::<f32>() / home.data.len() as f32;
+    let home = film(Vec3::ZERO);
+    let mean = home.beauty.data.iter().sum::<f32>() / home.beauty.data.len() as f32;
+    let largest = |a: &Image, b: &Image| a.data.iter().zip(&b.data).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
     for at in [Vec3::X * 1_048_576.0, Vec3::new(-1_048_576.0, 1_048_576.0, 524_288.0)] {
-        let away = image(at);
-        let largest = home.data.iter().zip(&away.data).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
-        assert!(largest <= 1e-5 * mean, "{at}: {largest} of {mean}");
+        let away = film(at);
+        let off = largest(&home.beauty, &away.beauty);
+        assert!(off <= 1e-5 * mean, "{at}: {off} of {mean}");
+        assert!(largest(&home.layers[0].image, &away.layers[0].image) <= 1e-5, "depths");
+        for (p, q) in home.layers[1].image.data.chunks(3).zip(away.layers[1].image.data.chunks(3)) {
+            // To the steps of f32 at that distance.
+            let off = (Vec3::from_slice(q) - (Vec3::from_slice(p) + at)).abs().max_element();
+            assert!(off <= 0.125, "{at}: positions off by {off}");
+        }
     }
 }
 
