@@ -82,7 +82,7 @@ fn main() {
             ]);
             points.push([count as f64, error]);
             if count == 10_000 || count == 100_000 {
-                figure(&format!("lights.{kind}.{count}_over_1"), error, "ratio-of-error-at-equal-time");
+                figure(&format!("lights.{kind}.{count}_over_1"), error, "ratio");
             }
         }
         table.print(&format!("lamps as {kind}"));
