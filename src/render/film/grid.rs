@@ -25,10 +25,15 @@ impl Grid {
         self.across() * self.down()
     }
 
+    /// Column and row of the first pixel of a tile.
+    pub fn corner(&self, tile: usize) -> (usize, usize) {
+        (tile % self.across() * TILE, tile / self.across() * TILE)
+    }
+
     /// Column and row of a pixel of a tile, if the image has it.
     pub fn place(&self, tile: usize, pixel: usize) -> Option<(usize, usize)> {
-        let x = tile % self.across() * TILE + pixel % TILE;
-        let y = tile / self.across() * TILE + pixel / TILE;
+        let (left, top) = self.corner(tile);
+        let (x, y) = (left + pixel % TILE, top + pixel / TILE);
         (x < self.width && y < self.height).then_some((x, y))
     }
 

@@ -64,6 +64,10 @@ impl<'a> Canvas<'a> {
         let layers = layers.as_ref();
         let is_over = || job.is_cancelled() || deadline.is_some_and(|d| Instant::now() >= d);
         exec::for_rows(pixels, AREA, job, |tile, pixels| {
+            // Coarse passes leave most tiles alone.
+            if pass.passes_over(grid.corner(tile)) {
+                return;
+            }
             let mut recorder = layers.map(|l| l.recorder(world));
             for (i, pixel) in pixels.iter_mut().enumerate() {
                 let Some((x, y)) = grid.place(tile, i) else { continue };

@@ -47,8 +47,11 @@ impl Pixel {
 
     /// Unbiased estimate of the variance of the mean; infinite below two paths, which have no scatter.
     pub fn variance(&self) -> DVec3 {
+        if self.count < 2 {
+            return DVec3::INFINITY;
+        }
         let mean = self.mean();
-        let (mut squares, mut used) = (DVec3::ZERO, 0);
+        let (mut squares, mut used) = (DVec3::ZERO, 0u32);
         for (replication, sum) in (0..REPLICATIONS).zip(&self.sums) {
             let paths = share(self.count, replication);
             if paths > 0 {
@@ -58,7 +61,7 @@ impl Pixel {
                 used += 1;
             }
         }
-        if used < 2 { DVec3::INFINITY } else { squares / f64::from(used - 1) / f64::from(self.count) }
+        squares / f64::from(used - 1) / f64::from(self.count)
     }
 }
 

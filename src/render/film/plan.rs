@@ -10,7 +10,7 @@
 //! automatic stopping condition for Monte Carlo global illumination"). What bias remains is measured in the tests and by
 //! `benches/error_control.rs`.
 
-use super::grid::AREA;
+use super::grid::{AREA, TILE};
 use super::interval::{NORMAL_95, pooled};
 use super::{Canvas, Clock};
 use crate::error::Result;
@@ -39,6 +39,11 @@ pub struct Pass {
 impl Pass {
     pub fn count(&self, tile: usize, x: usize, y: usize) -> u32 {
         if (x | y) & (self.stride - 1) == 0 { self.counts[tile] } else { 0 }
+    }
+
+    /// Whether no pixel of the tile with this corner is meant: those of a coarse pass are the first of theirs.
+    pub fn passes_over(&self, (left, top): (usize, usize)) -> bool {
+        self.stride >= TILE && (left | top) & (self.stride - 1) != 0
     }
 
     /// Paths per pixel of a tile, on the average.
