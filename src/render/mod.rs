@@ -9,6 +9,8 @@
 //! hit; `bsdf` how it scatters, by way of `ggx`) → a [`PathSink`] → `film` means, errors, and which pixels get more paths.
 //! Beside the image, `layers` makes images of light by the way it came (`lpe`) and of surfaces (`aov`) from the same paths;
 //! [`illuminance`] calculates grids and maps of meshes in lux.
+//! Beside the image, `layers` makes images of light by the way it came (`lpe`) and of surfaces (`aov`) from the same paths;
+//! [`illuminance`] calculates grids and maps of meshes in lux.
 //!
 //! Not modelled: volumes, refraction in solids, frosted glass, polarisation, wavelengths, depth of field, motion blur.
 
