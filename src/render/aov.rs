@@ -6,8 +6,7 @@
 //! it is that of the surface most samples met, if any met more than half of them, else of one of those met (the majority
 //! vote of Boyer and Moore 1981, which takes one pass and one counter).
 
-use super::bsdf::Bsdf;
-use super::vertex::Vertex;
+use super::path::Seen;
 use super::world::World;
 use glam::{DVec3, Vec3};
 
@@ -121,16 +120,16 @@ pub struct Surfaces {
 
 impl Surfaces {
     /// `depth` is along the camera's viewing direction.
-    pub fn meet(&mut self, world: &World, vertex: &Vertex, bsdf: &Bsdf, distance: f32, depth: f32) {
-        let material = world.scene().meshes[vertex.mesh as usize].material;
+    pub fn meet(&mut self, world: &World, seen: &Seen, depth: f32) {
+        let material = world.scene().meshes[seen.mesh as usize].material;
         self.hits += 1;
         self.depth += f64::from(depth);
-        self.distance += f64::from(distance);
-        self.position += vertex.position.as_dvec3();
-        self.normal += bsdf.normal().as_dvec3();
-        self.geometric += bsdf.geometric_normal().as_dvec3();
-        self.albedo += bsdf.colour().min(Vec3::ONE).as_dvec3();
-        self.object.cast(vertex.mesh + 1);
+        self.distance += f64::from(seen.distance);
+        self.position += seen.position.as_dvec3();
+        self.normal += seen.normal.as_dvec3();
+        self.geometric += seen.geometric_normal.as_dvec3();
+        self.albedo += seen.colour.min(Vec3::ONE).as_dvec3();
+        self.object.cast(seen.mesh + 1);
         self.material.cast(material as u32 + 1);
     }
 

@@ -5,10 +5,9 @@
 
 use super::LightSource;
 use super::aov::{Aov, Surfaces};
-use super::bsdf::{Bsdf, Kind, Lobes};
+use super::bsdf::{Kind, Lobes};
 use super::lpe::{EmitterAs, Expression, Table, Trail};
-use super::path::{Found, Observer};
-use super::vertex::Vertex;
+use super::path::{Found, Observer, Seen};
 use super::world::{Pane, World};
 use crate::error::{Error, Result};
 use crate::exec;
@@ -222,12 +221,12 @@ impl Observer for Recorder<'_> {
         self.trail.add(self.world, contribution, source, found, &mut self.path);
     }
 
-    fn meet(&mut self, vertex: &Vertex, bsdf: &Bsdf, distance: f32) {
+    fn meet(&mut self, seen: Seen) {
         if self.layers.outputs.aovs.is_empty() {
             return;
         }
-        let depth = (vertex.position - self.layers.eye).dot(self.layers.forward);
-        self.surfaces.meet(self.world, vertex, bsdf, distance, depth);
+        let depth = (seen.position - self.layers.eye).dot(self.layers.forward);
+        self.surfaces.meet(self.world, &seen, depth);
     }
 
     #[inline]

@@ -25,8 +25,8 @@ pub trait Observer {
     /// A contribution, as [`PathSink::add`] has it, and how its light was found.
     fn add(&mut self, source: LightSource, importance: Vec3, emission: Vec3, found: Found);
 
-    /// The first surface a path from the eye meets, `distance` away.
-    fn meet(&mut self, _vertex: &Vertex, _bsdf: &Bsdf, _distance: f32) {}
+    /// The first surface a path from the eye meets.
+    fn meet(&mut self, _seen: Seen) {}
 
     /// The path goes on from a vertex of a mesh.
     fn scatter(&mut self, _mesh: u32, _kind: Kind, _lobes: Lobes) {}
@@ -35,6 +35,19 @@ pub trait Observer {
     fn panes(&mut self) -> Option<&mut Vec<Pane>> {
         None
     }
+}
+
+/// A surface as the eye meets it.
+#[derive(Clone, Copy)]
+pub struct Seen {
+    pub mesh: u32,
+    pub position: Vec3,
+    /// Shading normal and geometric normal on the side of the eye.
+    pub normal: Vec3,
+    pub geometric_normal: Vec3,
+    /// Colour at normal incidence.
+    pub colour: Vec3,
+    pub distance: f32,
 }
 
 /// How a light was found.
@@ -106,7 +119,15 @@ fn walk<O: Observer>(world: &World, mut leg: Leg, scale: f32, sampler: &mut Samp
         }
         let bsdf = vertex.bsdf(world, -leg.ray.direction);
         if bounce == 0 && leg.from == NONE {
-            observer.meet(&vertex, &bsdf, hit.t);
+            // By value: a reference would keep vertex and BSDF of every bounce in memory.
+            observer.meet(Seen {
+                mesh: vertex.mesh,
+                position: vertex.position,
+                normal: bsdf.normal(),
+                geometric_normal: bsdf.geometric_normal(),
+                colour: bsdf.colour(),
+                distance: hit.t,
+            });
         }
         let Some(next) = scatter(world, &vertex, &bsdf, throughput, leg.rival, sampler, observer) else { return };
         leg = next;
