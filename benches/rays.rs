@@ -7,7 +7,7 @@
 
 mod harness;
 
-use glam::Vec3;
+use glam::{Vec3, Vec3A};
 use harness::embree::{self, Embree};
 use harness::scenes::{self, Setting};
 use harness::{Clock, Table, absent, figure, interleaved, peak_memory, time};
@@ -140,7 +140,7 @@ fn ties(pool: &Pool) {
 
 fn enlarged(shape: Aabb, index: usize, amount: f32) -> Aabb {
     let share = (rng::mix(index as u64 + 1) >> 40) as f32 / (1 << 24) as f32;
-    let grow = Vec3::splat(shape.diagonal().max_element() * share * amount).into();
+    let grow = Vec3A::splat(shape.diagonal().max_element() * share * amount);
     Aabb::new(shape.min - grow, shape.max + grow)
 }
 

@@ -284,7 +284,7 @@ fn time_to(points: &[Point], error: f64) -> (f64, bool) {
     let end = logs.iter().position(|p| p[1] <= target);
     let measured = end.is_some();
     let end = end.unwrap_or(logs.len() - 1).max(1);
-    let Some([[t0, e0], [t1, e1]]) = logs.get(end - 1..=end).and_then(|p| p.try_into().ok()) else {
+    let Some(&[[t0, e0], [t1, e1]]) = logs.get(end - 1..=end).and_then(|p| <&[[f64; 2]; 2]>::try_from(p).ok()) else {
         return (f64::NAN, false);
     };
     ((t0 + (target - e0) * (t1 - t0) / (e1 - e0)).exp(), measured)
