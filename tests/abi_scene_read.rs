@@ -132,7 +132,7 @@ fn generated_scenes_and_warps_refuse_what_makes_no_sense() {
     let context = context(1);
     unsafe {
         let mut scene = null_mut();
-        for which in [-1, 2] {
+        for which in [-1, 4, i32::MAX] {
             assert_eq!(luxfer_demo_scene(context, which, &mut scene), LUXFER_INVALID_ARGUMENT);
         }
         let source = image(context, 4, 4, 0.5);
