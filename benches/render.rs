@@ -33,7 +33,12 @@ const ENOUGH: f64 = 8.0;
 
 fn main() {
     let names = ["mitsuba_llvm", "mitsuba_scalar", "cycles"];
+    // `cargo bench --bench render -- kitchen` runs on the kitchen only.
+    let chosen: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with('-')).collect();
     for (scene, key) in [(small(scenes::cornell(), 128), "cornell"), (small(scenes::kitchen(), 160), "kitchen")] {
+        if !chosen.is_empty() && !chosen.iter().any(|c| c == key) {
+            continue;
+        }
         match scene {
             Ok(setting) => compare(&setting, key, &names),
             Err(reason) => {
