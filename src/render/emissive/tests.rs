@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::image::Image;
+use crate::render::tests::chi_squared_quantile;
 use crate::rng::Rng;
 use crate::scene::{Material, Mesh, Texture, TextureRef, Wrap};
 use glam::Vec3;
@@ -81,12 +82,6 @@ fn points_are_as_dense_as_the_light_they_emit() {
             assert!(disagreed <= 5, "{disagreed} of 5000, {wrap:?}, {uvs:?}");
         }
     }
-}
-
-/// Upper quantile of chi-squared for a standard normal deviate `z` (Wilson and Hilferty 1931).
-fn chi_squared_quantile(degrees: f64, z: f64) -> f64 {
-    let a = 2.0 / (9.0 * degrees);
-    degrees * (1.0 - a + z * a.sqrt()).powi(3)
 }
 
 #[test]

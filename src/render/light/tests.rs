@@ -5,6 +5,7 @@ use crate::exec::Pool;
 use crate::image::Image;
 use crate::job::Monitor;
 use crate::render::sampler::Sampler;
+use crate::render::tests::{chi_squared_quantile, quad};
 use crate::render::{PathSink, SurfacePoint, World, irradiance};
 use crate::rng::Rng;
 use crate::scene::{Environment, Material, Mesh, PunctualLight, Texture, TextureRef};
@@ -48,12 +49,6 @@ fn receivers(count: usize, offset: Vec3, rng: &mut Rng) -> Vec<Receiver> {
 
 fn tree(lights: &[(Bounds, [Vec3; 3])]) -> LightTree {
     LightTree::build(&lights.iter().map(|l| l.0).collect::<Vec<_>>()).unwrap()
-}
-
-/// Upper quantile of chi-squared for a standard normal deviate `z` (Wilson and Hilferty 1931).
-fn chi_squared_quantile(degrees: f64, z: f64) -> f64 {
-    let a = 2.0 / (9.0 * degrees);
-    degrees * (1.0 - a + z * a.sqrt()).powi(3)
 }
 
 #[test]
@@ -180,16 +175,6 @@ fn lights_all_in_one_place_or_of_all_sizes_make_a_tree() {
 
 fn matt(albedo: f32, emission: f32) -> Material {
     Material { emission: Vec3::splat(emission), double_sided: false, ..Material::diffuse("", Vec3::splat(albedo)) }
-}
-
-fn quad(corner: Vec3, u: Vec3, v: Vec3, material: usize) -> Mesh {
-    Mesh {
-        material,
-        positions: vec![corner, corner + u, corner + u + v, corner + v],
-        uvs: [vec![Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y], Vec::new()],
-        triangles: vec![[0, 1, 2], [0, 2, 3]],
-        ..Mesh::default()
-    }
 }
 
 /// A black floor of 2 × 2 mm around the origin, facing up, and others.

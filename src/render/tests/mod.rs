@@ -23,7 +23,7 @@ fn matt(albedo: f32, emission: f32) -> Material {
 }
 
 /// A parallelogram with texture coordinates from 0 to 1, facing `u × v`.
-fn quad(corner: Vec3, u: Vec3, v: Vec3, material: usize) -> Mesh {
+pub(super) fn quad(corner: Vec3, u: Vec3, v: Vec3, material: usize) -> Mesh {
     Mesh {
         material,
         positions: vec![corner, corner + u, corner + u + v, corner + v],
@@ -31,6 +31,12 @@ fn quad(corner: Vec3, u: Vec3, v: Vec3, material: usize) -> Mesh {
         triangles: vec![[0, 1, 2], [0, 2, 3]],
         ..Mesh::default()
     }
+}
+
+/// Upper quantile of chi-squared for a standard normal deviate `z` (Wilson and Hilferty 1931).
+pub(super) fn chi_squared_quantile(degrees: f64, z: f64) -> f64 {
+    let a = 2.0 / (9.0 * degrees);
+    degrees * (1.0 - a + z * a.sqrt()).powi(3)
 }
 
 /// A closed sphere of triangles that faces its centre.
