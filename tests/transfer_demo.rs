@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 use luxfer::demo::{self, photo};
+use luxfer::emission::Continuation;
 use luxfer::error::ErrorKind;
 use luxfer::exec::Pool;
 use luxfer::image::Image;
@@ -12,10 +13,10 @@ use luxfer::transfer::{Input, Params, Stage, Transfer};
 use std::sync::Arc;
 
 /// A transfer with all its input, small enough for a test; and the room the photo shows.
-fn prepared(pool: &Pool) -> (Transfer, demo::Exemplar) {
+fn prepared(pool: &Pool, samples: u32, seed: u64) -> (Transfer, demo::Exemplar) {
     let room = demo::exemplar_room().unwrap();
     let camera = room.scene.cameras[room.camera].clone();
-    let size = photo::Params { width: 540, height: 360, samples: 16, seed: 3 };
+    let size = photo::Params { width: 540, height: 360, samples, seed };
     let monitor = Monitor::default();
     let scene = Arc::new(room.scene.clone());
     let (picture, _) = pool.run(|| photo::photograph(scene, &camera, &size, monitor.job())).unwrap();
@@ -39,7 +40,7 @@ fn prepared(pool: &Pool) -> (Transfer, demo::Exemplar) {
 #[test]
 fn lamps_keep_their_size_and_spacing_and_the_ceiling_gets_its_colour() {
     let pool = Pool::new(0).unwrap();
-    let (mut transfer, room) = prepared(&pool);
+    let (mut transfer, room) = prepared(&pool, 16, 3);
     let monitor = Monitor::default();
     pool.run(|| transfer.run(Stage::View, Stage::Render, monitor.job(), |_| {})).unwrap();
     assert_eq!(monitor.progress(), 1.0);
@@ -96,13 +97,31 @@ fn lamps_keep_their_size_and_spacing_and_the_ceiling_gets_its_colour() {
 }
 
 #[test]
+fn noise_in_the_photo_does_not_change_the_design() {
+    let pool = Pool::new(0).unwrap();
+    for (samples, seed) in [(8, 3), (16, 4)] {
+        let (mut transfer, room) = prepared(&pool, samples, seed);
+        let monitor = Monitor::default();
+        pool.run(|| transfer.run(Stage::View, Stage::Emission, monitor.job(), |_| {})).unwrap();
+        let emission = transfer.results.emission.as_ref().unwrap();
+        assert!(matches!(emission.continuation, Continuation::Lattice(_)), "{seed}: {:?}", emission.continuation);
+        // As many lamps as the ceiling has room for, and no other pieces of light.
+        let ceiling = transfer.results.unsolved.as_ref().unwrap().surface.size.as_dvec2();
+        let periods = ceiling / room.grid.period.as_dvec2();
+        let (fewest, most) = (periods.floor().element_product(), (periods.floor() + 1.0).element_product());
+        let count = emission.luminaires.len() as f64;
+        assert!(count >= fewest && count <= most, "{seed}: {count} lamps, {fewest} to {most} fit");
+    }
+}
+
+#[test]
 fn what_is_missing_is_named_and_a_cancelled_run_keeps_what_it_has() {
     let pool = Pool::new(0).unwrap();
     let monitor = Monitor::default();
     let empty = pool.run(|| Transfer::default().run(Stage::View, Stage::Render, monitor.job(), |_| {})).unwrap_err();
     assert_eq!((empty.kind, empty.message.contains("set the photo")), (ErrorKind::NotReady, true), "{empty}");
 
-    let (mut transfer, _) = prepared(&pool);
+    let (mut transfer, _) = prepared(&pool, 16, 3);
     let late = pool.run(|| transfer.run(Stage::Emission, Stage::Render, monitor.job(), |_| {})).unwrap_err();
     assert_eq!((late.kind, late.message.contains("run stage Lights")), (ErrorKind::NotReady, true), "{late}");
     let backwards = pool.run(|| transfer.run(Stage::Render, Stage::View, monitor.job(), |_| {})).unwrap_err();

@@ -1,13 +1,18 @@
 //! The exemplar: what of the unwarped image may be used, its lamps, and its reduced size for the synthesis.
 
+use super::Input;
 use super::components::{self, Component, Components};
 use crate::error::{Error, Result};
+use crate::geometry::Homography;
 use crate::image::{Image, pyramid, try_vec};
 use crate::job::Job;
 use glam::DVec2;
 
 /// Confidence from which a pixel is light.
 pub const LIT: f32 = 0.5;
+
+/// Pixels of the photo that a lamp covers at least, unless no light covers more.
+const LEAST_LAMP: f64 = 4.0;
 
 /// A lamp cut off by the border is one of the whole lamps if it is at most this much longer than the longest of them.
 const CUT_LAMP_SLACK: f64 = 1.1;
@@ -21,6 +26,8 @@ pub struct Exemplar<'a> {
     pub components: Components,
     /// Which components are lamps that end inside the shown region: these move as one piece.
     pub whole: Vec<bool>,
+    /// Pixels of the photo that show each component.
+    pub photo_area: Vec<f64>,
     /// Share of the shown pixels that is lit.
     pub lit_share: f64,
     pub working: Working,
@@ -40,10 +47,14 @@ pub struct Working {
     pub lit: Vec<bool>,
     /// May be used: shown, and not part of a lamp that the border cuts off while whole ones are there to take its place.
     pub usable: Vec<bool>,
+    /// Shown, cut lamps and all, and whether half of it is light: what the pattern is read from.
+    pub shown: Vec<bool>,
+    pub shown_lit: Vec<bool>,
 }
 
 impl<'a> Exemplar<'a> {
-    pub fn new(image: &'a Image, light: &Image, valid: &Image, working_side: f64, job: Job) -> Result<Self> {
+    pub fn new(input: &Input<'a>, working_side: f64, job: Job) -> Result<Self> {
+        let Input { unwarped: image, light, valid, photo } = *input;
         let (width, height) = (image.width, image.height);
 
         // What is shown, and what of it is light.
@@ -58,7 +69,16 @@ impl<'a> Exemplar<'a> {
                 "no pixel of the unwarped image is valid and finite: unwarp a part of the plane that the photo shows",
             ));
         }
-        let components = components::find(width, height, |i| shown[i] && light.data[i] >= LIT)?;
+        let mut components = components::find(width, height, |i| shown[i] && light.data[i] >= LIT)?;
+        let mut photo_area = photo_areas(&components, photo.map(|p| p.1));
+        if photo.is_some() {
+            // What covers less of the photo than a lamp must: crumbs of the edges of others, or noise.
+            let least = photo_area.iter().copied().fold(0.0, f64::max).min(LEAST_LAMP);
+            components = components::find(width, height, |i| {
+                components.labels[i].checked_sub(1).is_some_and(|k| photo_area[k as usize] >= least)
+            })?;
+            photo_area.retain(|&a| a >= least);
+        }
         if components.list.is_empty() {
             return Err(Error::degenerate(
                 "no light is marked: no valid pixel of `light` reaches 0.5; paint more of the lamps as light",
@@ -68,13 +88,26 @@ impl<'a> Exemplar<'a> {
 
         let whole = find_whole(&components, &shown, width, height);
         let usable = find_usable(&components, &whole, &shown);
-        let working = Working::new(image, light, &components, &usable, working_side, job)?;
-        Ok(Self { image, width, height, shown, components, whole, lit_share: lit as f64 / total as f64, working })
+        let sources = Sources { image, light, components: &components, usable: &usable, shown: &shown };
+        let working = Working::new(&sources, working_side, job)?;
+        let lit_share = lit as f64 / total as f64;
+        Ok(Self { image, width, height, shown, components, whole, photo_area, lit_share, working })
     }
 
     pub fn lamps(&self) -> impl Iterator<Item = &Component> {
         self.components.list.iter().zip(&self.whole).filter(|(_, whole)| **whole).map(|(c, _)| c)
     }
+}
+
+/// The area of each component in the photo, to first order; without a photo, that in the unwarped image.
+fn photo_areas(components: &Components, to_photo: Option<Homography>) -> Vec<f64> {
+    let magnification = |at: DVec2| {
+        to_photo.map_or(1.0, |h| {
+            let p = |dx: f64, dy: f64| h.apply(at + DVec2::new(dx, dy));
+            (p(0.5, 0.0) - p(-0.5, 0.0)).perp_dot(p(0.0, 0.5) - p(0.0, -0.5)).abs()
+        })
+    };
+    components.list.iter().map(|c| c.area as f64 * magnification(c.centre)).collect()
 }
 
 /// A component is whole if none of its pixels lies at the border of the image or of the shown region.
@@ -100,24 +133,33 @@ fn find_usable(components: &Components, whole: &[bool], shown: &[bool]) -> Vec<b
     shown.iter().zip(&components.labels).map(keep).collect()
 }
 
+/// What the working size is made from.
+struct Sources<'a> {
+    image: &'a Image,
+    light: &'a Image,
+    components: &'a Components,
+    usable: &'a [bool],
+    shown: &'a [bool],
+}
+
 impl Working {
-    fn new(
-        image: &Image,
-        light: &Image,
-        components: &Components,
-        usable: &[bool],
-        side: f64,
-        job: Job,
-    ) -> Result<Self> {
+    fn new(sources: &Sources, side: f64, job: Job) -> Result<Self> {
+        let &Sources { image, light, components, usable, shown } = sources;
         let longest = image.width.max(image.height) as f64;
         let reduce = |n: usize| ((n as f64 * (side / longest).min(1.0)).round() as usize).max(1);
         let (width, height) = (reduce(image.width), reduce(image.height));
         let pitch = DVec2::new(image.width as f64 / width as f64, image.height as f64 / height as f64);
 
         // Average colour, confidence, light and validity together; what is not usable counts for nothing.
-        let mut full = Image::new(image.width, image.height, 6)?;
+        const CHANNELS: usize = 8;
+        let mut full = Image::new(image.width, image.height, CHANNELS)?;
         let mut brightest = 0f32;
-        for (i, pixel) in full.data.chunks_exact_mut(6).enumerate().filter(|(i, _)| usable[*i]) {
+        for (i, pixel) in full.data.chunks_exact_mut(CHANNELS).enumerate().filter(|(i, _)| shown[*i]) {
+            pixel[6] = 1.0;
+            pixel[7] = f32::from(components.labels[i] != 0);
+            if !usable[i] {
+                continue;
+            }
             let colour = image.rgb(i % image.width, i / image.width);
             if components.labels[i] != 0 {
                 pixel[..3].copy_from_slice(&colour.to_array());
@@ -130,19 +172,21 @@ impl Working {
         let reduced = pyramid::resize(&full, width, height, job)?;
         let scale = if brightest > 0.0 { 1.0 / brightest } else { 0.0 };
         let mut colour = Image::new(width, height, 3)?;
-        for (out, pixel) in colour.data.chunks_exact_mut(3).zip(reduced.data.chunks_exact(6)) {
+        for (out, pixel) in colour.data.chunks_exact_mut(3).zip(reduced.data.chunks_exact(CHANNELS)) {
             out.iter_mut().zip(pixel).for_each(|(o, p)| *o = p * scale);
         }
-        let channel = |c: usize| reduced.data.iter().skip(c).step_by(6);
+        let channel = |c: usize| reduced.data.iter().skip(c).step_by(CHANNELS);
         let confidence = channel(3).copied().collect();
         let lit = channel(4).map(|&v| v >= 0.5).collect();
 
         // A working pixel is usable if all of it is. If that leaves none, only full size can show what there is.
-        let whole: Vec<bool> = channel(5).map(|&v| v > 1.0 - 1e-4).collect();
-        if !whole.contains(&true) && side < longest {
-            return Self::new(image, light, components, usable, longest, job);
+        let all = |c: usize| channel(c).map(|&v| v > 1.0 - 1e-4).collect::<Vec<bool>>();
+        let usable = all(5);
+        if !usable.contains(&true) && side < longest {
+            return Self::new(sources, longest, job);
         }
-        Ok(Self { width, height, pitch, colour, confidence, lit, usable: whole })
+        let shown_lit = channel(7).map(|&v| v >= 0.5).collect();
+        Ok(Self { width, height, pitch, colour, confidence, lit, usable, shown: all(6), shown_lit })
     }
 
     /// The smallest box `[x0, y0, x1, y1)` that holds every usable pixel.

@@ -9,6 +9,7 @@ use super::patches::Layout;
 use crate::error::Result;
 use crate::image::try_vec;
 use crate::job::Job;
+use crate::rng::Rng;
 use glam::DVec2;
 use std::collections::BTreeMap;
 
@@ -16,6 +17,11 @@ use std::collections::BTreeMap;
 const LEAST_SHARE: f64 = 0.3;
 /// Share of a lamp's pixels that others may hold on a lattice, where rounding is all that can make them meet.
 const LATTICE_SLACK: f64 = 0.2;
+
+/// By how much, relatively, lamps of a kind may differ in area and in both sides.
+const LIKE: f64 = 0.25;
+/// A lamp is shown sharply if it covers this share of the photo pixels that the largest of its kind does.
+const SHARP: f64 = 0.4;
 
 /// A lamp of the exemplar in the texture.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,8 +32,8 @@ pub struct Instance {
     pub shift: DVec2,
 }
 
-/// The lamps shown by a layout, best supported first.
-pub fn resolve(exemplar: &Exemplar, layout: &Layout, is_lattice: bool, job: Job) -> Result<Vec<Instance>> {
+/// The lamps shown by a layout, best supported first, each as the photo shows it or one like it best.
+pub fn resolve(exemplar: &Exemplar, layout: &Layout, is_lattice: bool, seed: u64, job: Job) -> Result<Vec<Instance>> {
     let footprints = footprints(exemplar);
     let working = &exemplar.working;
     let mut lamp_at = try_vec(working.width * working.height, u32::MAX)?;
@@ -76,7 +82,33 @@ pub fn resolve(exemplar: &Exemplar, layout: &Layout, is_lattice: bool, job: Job)
             instances.push(Instance { component: k as usize, shift: layout.shifts[label as usize].exact });
         }
     }
+    show_sharply(exemplar, &mut instances, seed);
     Ok(instances)
+}
+
+/// Puts in the place of a lamp that the photo shows small one like it that it shows large. Which of several is drawn, so
+/// that they keep their variety.
+fn show_sharply(exemplar: &Exemplar, instances: &mut [Instance], seed: u64) {
+    let lamps = &exemplar.components.list;
+    let sharp = |k: usize| -> Vec<usize> {
+        let is_like = |j: &usize| {
+            let close = |a: usize, b: usize| (a as f64 - b as f64).abs() <= LIKE * a.max(b) as f64;
+            let (a, b) = (&lamps[k], &lamps[*j]);
+            exemplar.whole[*j] && close(a.area, b.area) && (0..2).all(|i| close(a.size()[i], b.size()[i]))
+        };
+        let like: Vec<usize> = (0..lamps.len()).filter(is_like).collect();
+        let most = like.iter().map(|&j| exemplar.photo_area[j]).fold(0.0, f64::max);
+        like.into_iter().filter(|&j| exemplar.photo_area[j] >= SHARP * most).collect()
+    };
+    let mut choices: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    for (n, instance) in instances.iter_mut().enumerate() {
+        let k = instance.component;
+        let choice = choices.entry(k).or_insert_with(|| sharp(k));
+        if !choice.is_empty() && !choice.contains(&k) {
+            let j = choice[Rng::new(seed, &[0x6c61, n as u64]).below(choice.len())];
+            *instance = Instance { component: j, shift: instance.shift + lamps[k].centre - lamps[j].centre };
+        }
+    }
 }
 
 /// The working pixels of each whole lamp: those whose centre it covers, or at least that of its own centre.

@@ -11,6 +11,21 @@ use glam::{DVec2, DVec3, Vec3};
 /// Largest distance in texels between an outline and the corners of its texels: a staircase becomes one line.
 const OUTLINE_TOLERANCE: f64 = 1.0;
 
+/// Takes out every connected piece of light smaller than `least` texels.
+pub fn sweep(texture: &mut Image, mask: &mut Image, least: f64) -> Result<()> {
+    let found = components::find(mask.width, mask.height, |i| mask.data[i] > 0.5)?;
+    if found.list.iter().all(|piece| piece.area as f64 >= least) {
+        return Ok(());
+    }
+    for (i, _) in
+        found.labels.iter().enumerate().filter(|(_, l)| **l != 0 && (found.list[**l as usize - 1].area as f64) < least)
+    {
+        texture.data[3 * i..3 * i + 3].fill(0.0);
+        mask.data[i] = 0.0;
+    }
+    Ok(())
+}
+
 /// One luminaire for each connected component of the mask, in the order of their first texel.
 pub fn find(texture: &Image, mask: &Image, job: Job) -> Result<Vec<Luminaire>> {
     let (width, height) = (mask.width, mask.height);

@@ -41,6 +41,9 @@ use patches::{Guide, Layout, Shift};
 /// Most working pixels of a result; larger ones are synthesised at a coarser size.
 const MOST_WORKING_PIXELS: f64 = (1 << 26) as f64;
 
+/// Share of the smallest lamp's area up to which a piece of light is none: a crumb of an edge that resampling broke off.
+const CRUMB: f64 = 0.02;
+
 #[derive(Clone, Copy)]
 pub struct Input<'a> {
     /// Unwarped photo, linear RGB.
@@ -175,8 +178,7 @@ fn check_input(input: &Input) -> Result<()> {
 pub fn run(input: &Input, params: &Params, job: Job) -> Result<Emission> {
     params.check()?;
     check_input(input)?;
-    let exemplar =
-        Exemplar::new(input.unwarped, input.light, input.valid, working_side(input, params), job.part(0.0, 0.1))?;
+    let exemplar = Exemplar::new(input, working_side(input, params), job.part(0.0, 0.1))?;
     let working = &exemplar.working;
 
     // How the pattern goes on, the size of a patch, and the metadata at that scale.
@@ -210,7 +212,7 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Emission> {
         Some(_) => (Vec::new(), vec![true; exemplar.whole.len()]),
         None => {
             let is_lattice = continuation.lattice().is_some();
-            let instances = lamps::resolve(&exemplar, &layout, is_lattice, job.part(0.8, 0.85))?;
+            let instances = lamps::resolve(&exemplar, &layout, is_lattice, params.seed, job.part(0.8, 0.85))?;
             (instances, exemplar.whole.iter().map(|w| !w).collect())
         }
     };
@@ -222,7 +224,11 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Emission> {
         photo: input.photo,
         scale: params.scale,
     };
-    let (texture, mask) = recover::run(&source, params.width, params.height, job.part(0.85, 0.95))?;
+    let (mut texture, mut mask) = recover::run(&source, params.width, params.height, job.part(0.85, 0.94))?;
+    if !instances.is_empty() {
+        let smallest = exemplar.lamps().map(|l| l.area as f64).fold(f64::INFINITY, f64::min);
+        luminaires::sweep(&mut texture, &mut mask, CRUMB * smallest / params.scale.powi(2))?;
+    }
     let luminaires = luminaires::find(&texture, &mask, job.part(0.95, 1.0))?;
 
     let lit = mask.data.iter().filter(|&&m| m > 0.5).count() as f64 / mask.data.len() as f64;

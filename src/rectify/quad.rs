@@ -8,6 +8,9 @@ use glam::DVec2;
 
 /// Cells along each side of the grid on which the rectangle is sought.
 const GRID: usize = 96;
+/// What a cell that does not show the plane costs, in cells that do. Little: a hole is left out by what comes later, but
+/// a lamp at the rim is lost with the rim.
+const HOLE: f64 = 0.25;
 
 /// A rectangle in plane coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,7 +39,7 @@ pub fn largest(plane: &Plane, mask: &Image, pixels: &[DVec2], max_magnification:
         seen.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), (_, q)| (low.min(*q), high.max(*q)));
     let (low, high) = (low - rim, high + rim);
 
-    // Gain 1 for each cell that shows the plane, lose 1 for each that does not, and never reach behind the camera.
+    // Gain 1 for each cell that shows the plane, lose for each that does not, and never reach behind the camera.
     let cell = (high - low) / GRID as f64;
     let to_photo = plane.to_photo();
     let mut gain = vec![[0.0f64; GRID]; GRID];
@@ -51,7 +54,7 @@ pub fn largest(plane: &Plane, mask: &Image, pixels: &[DVec2], max_magnification:
             *gain = if shows {
                 1.0
             } else if in_front {
-                -1.0
+                -HOLE
             } else {
                 -1e9
             };
