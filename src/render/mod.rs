@@ -9,8 +9,6 @@
 //! hit; `bsdf` how it scatters, by way of `ggx`) → a [`PathSink`] → `film` means, errors, and which pixels get more paths.
 //! Beside the image, `layers` makes images of light by the way it came (`lpe`) and of surfaces (`aov`) from the same paths;
 //! [`illuminance`] calculates grids and maps of meshes in lux.
-//! Beside the image, `layers` makes images of light by the way it came (`lpe`) and of surfaces (`aov`) from the same paths;
-//! [`illuminance`] calculates grids and maps of meshes in lux.
 //!
 //! Not modelled: volumes, refraction in solids, frosted glass, polarisation, wavelengths, depth of field, motion blur.
 
@@ -109,6 +107,9 @@ pub struct Params {
     pub pixel_error: f32,
     /// Stop after this many milliseconds; 0 = never.
     pub time_budget_ms: u32,
+    /// End every path where what is left is at most this share of all light that surfaces scatter, in `[0, 1)`
+    /// ([`Requirements::bounces`]): the image is too dark by up to that share. 0 = never: paths end by chance alone.
+    pub bounce_error: f32,
     pub seed: u64,
     /// What to render beside the main image.
     pub outputs: Outputs,
@@ -123,6 +124,7 @@ impl Default for Params {
             target_error: 0.0,
             pixel_error: 0.0,
             time_budget_ms: 0,
+            bounce_error: 0.0,
             seed: 1,
             outputs: Outputs::default(),
         }
@@ -197,6 +199,7 @@ fn check(camera: &Camera, params: &Params) -> Result<()> {
     check_range("samples", params.samples, 1, 1 << 20)?;
     check_range("target_error", params.target_error, 0.0, f32::MAX)?;
     check_range("pixel_error", params.pixel_error, 0.0, f32::MAX)?;
+    check_range("bounce_error", params.bounce_error, 0.0, 1.0f32.next_down())?;
     let vectors = [camera.position, camera.forward, camera.up];
     let sees = camera.forward.cross(camera.up).length_squared() > 0.0;
     if vectors.iter().any(|v| !v.is_finite()) || !sees || !(camera.fov_y > 0.0 && camera.fov_y < std::f32::consts::PI) {

@@ -19,6 +19,9 @@ const ROULETTE_FROM: u32 = 3;
 /// The surest a path can be to go on: in a room of white walls it must end some time.
 const SUREST: f32 = 0.98;
 
+/// How often a path scatters at most: a guard against those that never end between perfect mirrors.
+pub const MOST_SCATTERINGS: u32 = 1024;
+
 /// Takes what a path brings. All but [`Observer::add`] is for those that tell light apart by the way it came; the others
 /// leave these steps empty, and pay nothing for them.
 pub trait Observer {
@@ -82,9 +85,9 @@ struct Leg {
     fate: f32,
 }
 
-/// Makes one estimate of the radiance that arrives along a ray (of unit direction).
-pub fn trace<O: Observer>(world: &World, ray: Ray, sampler: &mut Sampler, observer: &mut O) {
-    walk(world, Leg { ray, from: NONE, throughput: Vec3::ONE, rival: None, fate: 0.0 }, 1.0, sampler, observer);
+/// Makes one estimate of the radiance that arrives along a ray (of unit direction) after `most` scatterings at most.
+pub fn trace<O: Observer>(world: &World, ray: Ray, most: u32, sampler: &mut Sampler, observer: &mut O) {
+    walk(world, Leg { ray, from: NONE, throughput: Vec3::ONE, rival: None, fate: 0.0 }, 1.0, most, sampler, observer);
 }
 
 /// Makes one estimate of the irradiance at a point.
@@ -93,19 +96,19 @@ pub fn gather<O: Observer>(world: &World, vertex: &Vertex, front: bool, sampler:
     let receiver = Bsdf::receiver(normal);
     if let Some(leg) = scatter(world, vertex, &receiver, Vec3::ONE, None, sampler, observer) {
         let scale = leg.throughput.max_element();
-        walk(world, leg, scale, sampler, observer);
+        walk(world, leg, scale, MOST_SCATTERINGS, sampler, observer);
     }
 }
 
 /// Follows a path to its end. `scale` is what counts as full throughput.
-fn walk<O: Observer>(world: &World, mut leg: Leg, scale: f32, sampler: &mut Sampler, observer: &mut O) {
+fn walk<O: Observer>(world: &World, mut leg: Leg, scale: f32, most: u32, sampler: &mut Sampler, observer: &mut O) {
     for bounce in 0.. {
         let Some(hit) = world.closest(&leg.ray, leg.from, || sampler.ray_seed()) else {
             return add_environment(world, &leg, observer);
         };
         let vertex = Vertex::of_hit(world, &hit);
         add_emission(world, &leg, &vertex, observer);
-        if bounce == world.most_scatterings() {
+        if bounce == most {
             return;
         }
         // End by chance what can no longer add much.

@@ -2,8 +2,8 @@
 //! lights there are, and how much light a bounce can leave.
 //!
 //! Ranges are those of the factors and of the texels they multiply; only materials of meshes with triangles count. What
-//! cannot occur is not asked for while tracing: this changes no estimate. How many bounces matter is told, not applied:
-//! paths end by chance alone, unless a limit is asked for (see [`Requirements::bounces`]).
+//! cannot occur is not asked for while tracing: this changes no estimate. How many bounces matter is told, and applied only
+//! to renders that ask for it (`bounce_error`): otherwise paths end by chance alone.
 
 use super::bsdf::{MIRROR_ROUGHNESS, Substance};
 use super::finish::{self, Finish};

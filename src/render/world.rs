@@ -31,7 +31,6 @@ pub struct World {
     requirements: Requirements,
     /// Whether light passes through any material: only then do rays ask what they hit.
     any_see_through: bool,
-    most_scatterings: u32,
 }
 
 /// A surface that lets light through in a straight line.
@@ -45,9 +44,6 @@ pub struct Pane {
     /// Share that passes through what is there, per channel.
     pub through: Vec3,
 }
-
-/// How often a path scatters at most: a guard against those that never end between perfect mirrors.
-const MOST_SCATTERINGS: u32 = 1024;
 
 /// No triangle, no emitter.
 pub const NONE: u32 = u32::MAX;
@@ -92,7 +88,6 @@ impl World {
         let albedo_table = scene.materials.iter().any(has_top).then(AlbedoTable::new);
         let (requirements, finishes) = requirements::analyse(&scene, albedo_table.as_ref());
         let any_see_through = requirements.glass || requirements.alpha;
-        let most_scatterings = MOST_SCATTERINGS;
         job.report(1.0);
         Ok(Self {
             scene,
@@ -105,21 +100,12 @@ impl World {
             albedo_table,
             requirements,
             any_see_through,
-            most_scatterings,
         })
     }
 
     /// What the scene requires, and what tracing leaves out.
     pub fn requirements(&self) -> &Requirements {
         &self.requirements
-    }
-
-    /// Ends every path where what is left is at most the share `error` of all light that surfaces scatter; returns after
-    /// how many bounces ([`Requirements::bounces`]). Estimates are then too dark by up to that share.
-    pub fn truncate(&mut self, error: f32) -> Option<u32> {
-        let bounces = self.requirements.bounces(error);
-        self.most_scatterings = bounces.unwrap_or(MOST_SCATTERINGS).min(MOST_SCATTERINGS);
-        bounces
     }
 
     /// Forgets what the scene does not require: every hit then asks every question. Estimates stay the same but for
@@ -190,12 +176,6 @@ impl World {
     #[inline]
     pub(super) fn environment(&self) -> Option<&Environment> {
         self.scene.environment.as_ref().filter(|_| self.requirements.environment)
-    }
-
-    /// How often a path scatters at most.
-    #[inline]
-    pub(super) fn most_scatterings(&self) -> u32 {
-        self.most_scatterings
     }
 
     #[inline]

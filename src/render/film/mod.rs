@@ -16,7 +16,7 @@ pub use interval::pooled;
 pub use plan::{Pass, Plan};
 
 use super::layers::{Layers, Recorder};
-use super::path::{self, Contributions};
+use super::path::{self, Contributions, MOST_SCATTERINGS};
 use super::sampler::Sampler;
 use super::world::World;
 use super::{Film, LightSource, Params, PathSink};
@@ -54,7 +54,8 @@ impl<'a> Canvas<'a> {
         let grid = Grid { width: params.width, height: params.height };
         let pixels = try_vec(grid.tiles() * AREA, Pixel::default())?;
         let layers = Layers::new(world, camera, &params.outputs, grid.tiles(), AREA)?;
-        let eye = Eye::new(camera, &grid);
+        let most = world.requirements().bounces(params.bounce_error).unwrap_or(MOST_SCATTERINGS).min(MOST_SCATTERINGS);
+        let eye = Eye::new(camera, &grid, most);
         Ok(Self { world, eye, seed: params.seed, grid, pixels, layers, discarded: AtomicU64::new(0) })
     }
 
@@ -187,12 +188,12 @@ fn radiance(world: &World, eye: &Eye, at: [usize; 2], mut sampler: Sampler, reco
     match recorder {
         None => {
             let mut sum = Sum(Vec3::ZERO);
-            path::trace(world, ray, &mut sampler, &mut Contributions(&mut sum));
+            path::trace(world, ray, eye.most, &mut sampler, &mut Contributions(&mut sum));
             sum.0
         }
         Some(recorder) => {
             recorder.start();
-            path::trace(world, ray, &mut sampler, recorder);
+            path::trace(world, ray, eye.most, &mut sampler, recorder);
             recorder.finish()
         }
     }
@@ -204,16 +205,18 @@ struct Eye {
     corner: Vec3,
     right: Vec3,
     down: Vec3,
+    /// How often the light it sees has scattered at most.
+    most: u32,
 }
 
 impl Eye {
-    fn new(camera: &Camera, grid: &Grid) -> Self {
+    fn new(camera: &Camera, grid: &Grid, most: u32) -> Self {
         let aspect = grid.width as f32 / grid.height as f32;
         let at = |x: f32, y: f32| camera.direction(x, y, aspect);
         let corner = at(0.0, 0.0);
         let right = (at(1.0, 0.0) - corner) / grid.width as f32;
         let down = (at(0.0, 1.0) - corner) / grid.height as f32;
-        Self { position: camera.position, corner, right, down }
+        Self { position: camera.position, corner, right, down, most }
     }
 
     /// The direction through a point of the image, in pixels.

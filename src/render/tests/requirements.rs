@@ -102,11 +102,12 @@ fn bounces_follow_from_the_albedo() {
 #[test]
 fn truncation_takes_no_more_than_it_says() {
     let scene = Scene { meshes: vec![inward_sphere(2.0, 0)], materials: vec![matt(0.5, 3.0)], ..Scene::default() };
-    let mut world = world(scene);
+    let world = world(scene);
     let camera = Camera::look_at(Vec3::new(0.3, 0.1, 0.2), Vec3::X, 1.0);
-    for (asked, bounces, expected) in [(0.1, Some(4), 6.0 * (1.0 - 0.5f64.powi(5))), (0.0, None, 6.0)] {
-        assert_eq!(world.truncate(asked), bounces);
-        let film = render(&world, &camera, &Params { width: 16, height: 16, samples: 64, ..Params::default() });
+    for (bounce_error, bounces, expected) in [(0.1, Some(4), 6.0 * (1.0 - 0.5f64.powi(5))), (0.0, None, 6.0)] {
+        assert_eq!(world.requirements().bounces(bounce_error), bounces);
+        let params = Params { width: 16, height: 16, samples: 64, bounce_error, ..Params::default() };
+        let film = render(&world, &camera, &params);
         let mean = film.beauty.data.iter().map(|&v| f64::from(v)).sum::<f64>() / film.beauty.data.len() as f64;
         let error = film.variance.data.iter().step_by(3).map(|&v| f64::from(v)).sum::<f64>().sqrt() / 256.0;
         assert!((mean - expected).abs() < 4.0 * error + 1e-4 * expected, "{mean} ± {error}, expected {expected}");
