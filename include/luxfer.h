@@ -468,6 +468,19 @@ luxfer_status luxfer_scene_set_environment(luxfer_scene *scene,
                                            float blue);
 
 /**
+ * Surrounds a scene with the light of an equirectangular image, linear, times (red, green, blue), each finite and >= 0:
+ * radiance in cd/m², chosen in proportion to its brightness while tracing. The image's centre lies towards -z, its top
+ * towards +y, its right quarter towards +x; it is copied, and replaces any environment there was. Any thread.
+ * LUXFER_INVALID_ARGUMENT if the image has values that are negative or not finite; LUXFER_OUT_OF_MEMORY beyond the memory
+ * budget.
+ */
+luxfer_status luxfer_scene_set_environment_image(luxfer_scene *scene,
+                                                 luxfer_image *image,
+                                                 float red,
+                                                 float green,
+                                                 float blue);
+
+/**
  * Sets the emission of a material, which multiplies its emission texture if it has one: red, green and blue in cd/m², each
  * finite and >= 0. Any thread.
  * LUXFER_NOT_FOUND if there is no such material.
@@ -508,11 +521,14 @@ luxfer_status luxfer_scene_retain(luxfer_scene *scene);
 luxfer_status luxfer_scene_release(luxfer_scene *scene);
 
 /* ====================================================================================================================
- * Scene description
+ * Materials
  *
- * Scenes can be described by the host's own arrays: materials first, then the meshes that use them, then cameras. Arrays
- * are copied during the call, from any alignment and with any stride.
+ * What surfaces are made of, as in glTF 2.0: metallic-roughness, with clear glass, cut-outs, emission, and textures that
+ * multiply these. All can be read back and replaced; textures stay with the material when its numbers change.
  * ==================================================================================================================== */
+
+/** What the alpha of a surface means: a LUXFER_ALPHA_ value. */
+typedef int32_t luxfer_alpha_mode;
 
 /** A material: metallic-roughness, as in glTF 2.0. Fill it with luxfer_material_params_init. */
 typedef struct luxfer_material_params {
@@ -534,7 +550,146 @@ typedef struct luxfer_material_params {
     float transmission;
     /** Index of refraction in [1, 4]; default 1.5. */
     float ior;
+    /** In [0, 1], multiplies the alpha of the base colour's texture; default 1. */
+    float alpha;
+    /** LUXFER_ALPHA_ value; default LUXFER_ALPHA_OPAQUE. */
+    luxfer_alpha_mode alpha_mode;
+    /** For LUXFER_ALPHA_MASK, >= 0; default 0.5. */
+    float alpha_cutoff;
+    /** How far the normal texture bends: multiplies its x and y; finite; default 1. */
+    float normal_scale;
 } luxfer_material_params;
+
+/** How a texture continues beyond its edges: a LUXFER_WRAP_ value. */
+typedef int32_t luxfer_wrap;
+
+/** What a material uses a texture for: a LUXFER_TEXTURE_ value. */
+typedef int32_t luxfer_texture_role;
+
+/** A texture as a material uses it. Set struct_size before the call. */
+typedef struct luxfer_texture_use {
+    /** sizeof(luxfer_texture_use), set by the caller. */
+    uint32_t struct_size;
+    /** Index of the texture; LUXFER_NONE if there is none, and what follows is 0. */
+    uint32_t texture;
+    /** Which of the mesh's sets of texture coordinates it is looked up with, 0 or 1. */
+    uint32_t uv_set;
+    /** LUXFER_WRAP_ value, along u. */
+    luxfer_wrap wrap_u;
+    /** LUXFER_WRAP_ value, along v. */
+    luxfer_wrap wrap_v;
+    /** Two rows of three, applied to (u, v, 1) before the look-up. */
+    float transform[6];
+} luxfer_texture_use;
+
+/** Nothing: it is there everywhere. */
+#define LUXFER_ALPHA_OPAQUE 0
+
+/** It is there where alpha is at least alpha_cutoff. */
+#define LUXFER_ALPHA_MASK 1
+
+/** That share of light meets it, the rest finds nothing in its way. */
+#define LUXFER_ALPHA_BLEND 2
+
+/** Multiplies the base colour; its alpha multiplies the material's. */
+#define LUXFER_TEXTURE_BASE_COLOR 0
+
+/** Green multiplies the roughness, blue the metallic share. */
+#define LUXFER_TEXTURE_METALLIC_ROUGHNESS 1
+
+/** Normals in tangent space. */
+#define LUXFER_TEXTURE_NORMAL 2
+
+/** Multiplies the emission; looked up without interpolation. */
+#define LUXFER_TEXTURE_EMISSION 3
+
+/** It repeats. */
+#define LUXFER_WRAP_REPEAT 0
+
+/** Its border goes on. */
+#define LUXFER_WRAP_CLAMP 1
+
+/** It repeats, every other one mirrored. */
+#define LUXFER_WRAP_MIRROR 2
+
+/**
+ * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+ */
+luxfer_status luxfer_material_params_init(luxfer_material_params *params,
+                                          size_t size);
+
+/**
+ * Adds a material; *index, unless NULL, becomes its index. params may be NULL for the defaults. Any thread.
+ * LUXFER_INVALID_ARGUMENT if a value is out of range.
+ */
+luxfer_status luxfer_scene_add_material(luxfer_scene *scene,
+                                        const luxfer_material_params *params,
+                                        uint32_t *index);
+
+/**
+ * Replaces the numbers of a material; its textures stay, and so does its name if params->name is NULL. params may be NULL
+ * for the defaults. To change some of them, read the material first. Any thread.
+ * LUXFER_NOT_FOUND if there is no such material; LUXFER_INVALID_ARGUMENT if a value is out of range.
+ */
+luxfer_status luxfer_scene_set_material(luxfer_scene *scene,
+                                        uint32_t index,
+                                        const luxfer_material_params *params);
+
+/**
+ * Reads a material; set params->struct_size before the call. Its name becomes NULL. Any thread.
+ * LUXFER_NOT_FOUND if there is no such material.
+ */
+luxfer_status luxfer_scene_get_material(luxfer_scene *scene,
+                                        uint32_t index,
+                                        luxfer_material_params *params);
+
+/**
+ * Adds a texture: an image in linear values of 1, 3 or 4 channels, the fourth alpha; wrap_u and wrap_v are LUXFER_WRAP_
+ * values. It is copied. *index, unless NULL, becomes its index. Any thread.
+ * LUXFER_INVALID_ARGUMENT if the image has 2 channels or values that are not finite; LUXFER_OUT_OF_MEMORY beyond the
+ * memory budget.
+ */
+luxfer_status luxfer_scene_add_texture(luxfer_scene *scene,
+                                       luxfer_image *image,
+                                       luxfer_wrap wrap_u,
+                                       luxfer_wrap wrap_v,
+                                       uint32_t *index);
+
+/**
+ * Makes a material use a texture for a purpose; role is a LUXFER_TEXTURE_ value, texture an index, or LUXFER_NONE for no
+ * texture. uv_set is 0 or 1: which of the mesh's sets of texture coordinates. transform is two rows of three, finite,
+ * applied to (u, v, 1) before the look-up; NULL changes nothing. Any thread.
+ * LUXFER_NOT_FOUND if there is no such material or texture; LUXFER_INVALID_ARGUMENT for another role or set, or if a
+ * texture of emission has negative values.
+ */
+luxfer_status luxfer_scene_set_material_texture(luxfer_scene *scene,
+                                                uint32_t material,
+                                                luxfer_texture_role role,
+                                                uint32_t texture,
+                                                uint32_t uv_set,
+                                                const float *transform);
+
+/**
+ * Tells which texture a material uses for a purpose, and how; role is a LUXFER_TEXTURE_ value. Any thread.
+ * LUXFER_NOT_FOUND if there is no such material; LUXFER_INVALID_ARGUMENT for another role.
+ */
+luxfer_status luxfer_scene_get_material_texture(luxfer_scene *scene,
+                                                uint32_t material_index,
+                                                luxfer_texture_role role,
+                                                luxfer_texture_use *texture_use);
+
+/**
+ * Gets a texture as an image, linear. The caller releases *image. Any thread.
+ * LUXFER_NOT_FOUND if there is no such texture.
+ */
+luxfer_status luxfer_scene_get_texture(luxfer_scene *scene, uint32_t index, luxfer_image **image);
+
+/* ====================================================================================================================
+ * Scene description
+ *
+ * Scenes can be described by the host's own arrays: materials first, then the meshes that use them, then cameras. Arrays
+ * are copied during the call, from any alignment and with any stride.
+ * ==================================================================================================================== */
 
 /** A triangle mesh in world space. Fill it with luxfer_mesh_params_init. */
 typedef struct luxfer_mesh_params {
@@ -585,12 +740,6 @@ typedef struct luxfer_camera_params {
 /**
  * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
  */
-luxfer_status luxfer_material_params_init(luxfer_material_params *params,
-                                          size_t size);
-
-/**
- * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
- */
 luxfer_status luxfer_mesh_params_init(luxfer_mesh_params *params,
                                       size_t size);
 
@@ -599,14 +748,6 @@ luxfer_status luxfer_mesh_params_init(luxfer_mesh_params *params,
  */
 luxfer_status luxfer_camera_params_init(luxfer_camera_params *params,
                                         size_t size);
-
-/**
- * Adds a material; *index, unless NULL, becomes its index. params may be NULL for the defaults. Any thread.
- * LUXFER_INVALID_ARGUMENT if a value is out of range.
- */
-luxfer_status luxfer_scene_add_material(luxfer_scene *scene,
-                                        const luxfer_material_params *params,
-                                        uint32_t *index);
 
 /**
  * Adds a mesh, copying its arrays; *index, unless NULL, becomes its index. Any thread.
@@ -794,8 +935,8 @@ typedef struct luxfer_requirements {
     uint32_t textures;
     /**
      * How many times light can scatter and still matter: light that was scattered more often is at most the share error,
-     * given in the call, of all light that surfaces scatter. 0 if albedos set no bound. Only told: rendering stays without
-     * bias.
+     * given in the call, of all light that surfaces scatter. 0 if albedos set no bound. Rendering ends paths there only if
+     * luxfer_render_params.bounce_error asks for it.
      */
     uint32_t bounces;
     /** Index of the material that sends on most of the light it receives; LUXFER_NONE if there are no surfaces. */
@@ -827,8 +968,8 @@ luxfer_status luxfer_scene_requirements_text(luxfer_scene *scene,
 /* ====================================================================================================================
  * Scene read-back
  *
- * What a scene holds, element by element: meshes, materials and the textures they use. Together with the counts of
- * luxfer_scene_get_counts a host can copy a whole scene.
+ * The meshes a scene holds, element by element. Together with the counts of luxfer_scene_get_counts, and with its
+ * materials, textures and cameras, a host can copy a whole scene.
  * ==================================================================================================================== */
 
 /** A mesh of a scene. Set struct_size before the call. */
@@ -846,49 +987,6 @@ typedef struct luxfer_mesh_info {
     /** Sum of 1 if it has the first set of texture coordinates and 2 if it has the second. */
     uint32_t uv_sets;
 } luxfer_mesh_info;
-
-/** What a material uses a texture for: a LUXFER_TEXTURE_ value. */
-typedef int32_t luxfer_texture_role;
-
-/** How a texture continues beyond its edges: a LUXFER_WRAP_ value. */
-typedef int32_t luxfer_wrap;
-
-/** A texture as a material uses it. Set struct_size before the call. */
-typedef struct luxfer_texture_use {
-    /** sizeof(luxfer_texture_use), set by the caller. */
-    uint32_t struct_size;
-    /** Index of the texture; LUXFER_NONE if there is none, and what follows is 0. */
-    uint32_t texture;
-    /** Which of the mesh's sets of texture coordinates it is looked up with, 0 or 1. */
-    uint32_t uv_set;
-    /** LUXFER_WRAP_ value, along u. */
-    luxfer_wrap wrap_u;
-    /** LUXFER_WRAP_ value, along v. */
-    luxfer_wrap wrap_v;
-    /** Two rows of three, applied to (u, v, 1) before the look-up. */
-    float transform[6];
-} luxfer_texture_use;
-
-/** Multiplies the base colour. */
-#define LUXFER_TEXTURE_BASE_COLOR 0
-
-/** Green multiplies the roughness, blue the metallic share. */
-#define LUXFER_TEXTURE_METALLIC_ROUGHNESS 1
-
-/** Normals in tangent space. */
-#define LUXFER_TEXTURE_NORMAL 2
-
-/** Multiplies the emission; looked up without interpolation. */
-#define LUXFER_TEXTURE_EMISSION 3
-
-/** It repeats. */
-#define LUXFER_WRAP_REPEAT 0
-
-/** Its border goes on. */
-#define LUXFER_WRAP_CLAMP 1
-
-/** It repeats, every other one mirrored. */
-#define LUXFER_WRAP_MIRROR 2
 
 /**
  * Tells what a mesh has. Any thread.
@@ -930,27 +1028,6 @@ luxfer_status luxfer_scene_read_mesh_uvs(luxfer_scene *scene,
                                          uint32_t uv_set,
                                          size_t capacity,
                                          float *uvs);
-
-/**
- * Reads a material; set params->struct_size before the call. Its name becomes NULL. Any thread.
- * LUXFER_NOT_FOUND if there is no such material.
- */
-luxfer_status luxfer_scene_get_material(luxfer_scene *scene, uint32_t index, luxfer_material_params *params);
-
-/**
- * Tells which texture a material uses for a purpose, and how; role is a LUXFER_TEXTURE_ value. Any thread.
- * LUXFER_NOT_FOUND if there is no such material; LUXFER_INVALID_ARGUMENT for another role.
- */
-luxfer_status luxfer_scene_get_material_texture(luxfer_scene *scene,
-                                                uint32_t material_index,
-                                                luxfer_texture_role role,
-                                                luxfer_texture_use *texture_use);
-
-/**
- * Gets a texture as an image, linear. The caller releases *image. Any thread.
- * LUXFER_NOT_FOUND if there is no such texture.
- */
-luxfer_status luxfer_scene_get_texture(luxfer_scene *scene, uint32_t index, luxfer_image **image);
 
 /* ====================================================================================================================
  * Plane geometry
@@ -1638,7 +1715,18 @@ typedef struct luxfer_render_params {
      * 0.1 means within 10 % of its value, 19 times out of 20. Default 0: never.
      */
     float pixel_error;
-    /** 0. */
+    /**
+     * End every path where what is left is at most this share of all light that surfaces scatter, in [0, 1): the image is
+     * too dark by up to that share. After how many bounces, luxfer_scene_requirements tells. Default 0: never; paths end by
+     * chance alone, and the image is right on the average.
+     */
+    float bounce_error;
+    /**
+     * Strength of the filter for LUXFER_RENDER_PREVIEW, in [0, 10]; 1 is usual, more blurs more. Default 0: no preview, as
+     * final images are made. The other images are the same with and without it.
+     */
+    float preview;
+    /** Must be 0. */
     uint32_t reserved;
 } luxfer_render_params;
 
@@ -1658,6 +1746,11 @@ typedef struct luxfer_render_report {
     double error;
     /** Paths that were left out because their radiance was no finite number. */
     uint64_t discarded;
+    /**
+     * How far the filter of the preview has moved the image beyond what noise explains: root mean square over squares of
+     * 8 x 8 pixels, relative to the image's mean. 0 without a preview.
+     */
+    double preview_bias;
 } luxfer_render_report;
 
 /** Mean radiance of each pixel, linear RGB in cd/m². */
@@ -1674,6 +1767,12 @@ typedef struct luxfer_render_report {
  * in cd/m²; 3 channels; infinite where a pixel has less than two paths.
  */
 #define LUXFER_RENDER_INTERVAL 3
+
+/**
+ * The beauty with its noise filtered out, guided by surfaces: what it does not see, such as soft shadows, it blurs. How
+ * far, the report tells as preview_bias. Only if luxfer_render_params.preview is not 0.
+ */
+#define LUXFER_RENDER_PREVIEW 4
 
 /**
  * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
@@ -1705,7 +1804,7 @@ luxfer_status luxfer_render_start(luxfer_render *render,
 /**
  * Gets an image of the rendering, as far as it is; which is a LUXFER_RENDER_ value. The caller releases *image. Any
  * thread.
- * LUXFER_NOT_READY before the first pass of a job.
+ * LUXFER_NOT_READY before the first pass of a job; LUXFER_NOT_FOUND for a preview that was not asked for.
  */
 luxfer_status luxfer_render_get_image(luxfer_render *render,
                                       luxfer_render_image which,

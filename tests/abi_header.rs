@@ -19,6 +19,7 @@ const GROUPS: &[&str] = &[
     "image",
     "job",
     "scene",
+    "scene_materials",
     "scene_parts",
     "scene_lights",
     "query",
@@ -319,7 +320,8 @@ layouts! {
         byte_size data;
     luxfer_scene_counts: struct_size meshes materials textures lights cameras triangles;
     luxfer_surface: struct_size triangles origin u_axis v_axis normal size area reserved;
-    luxfer_material_params: struct_size double_sided name base_color metallic roughness emission transmission ior;
+    luxfer_material_params: struct_size double_sided name base_color metallic roughness emission transmission ior
+        alpha alpha_mode alpha_cutoff normal_scale;
     luxfer_mesh_params: struct_size material name vertex_count positions position_stride normals normal_stride uvs
         uv_stride triangle_count indices index_stride;
     luxfer_camera_params: struct_size fov_y position target up reserved;
@@ -341,8 +343,9 @@ layouts! {
     luxfer_emission_report: struct_size luminaires error regularity;
     luxfer_luminaire: struct_size corners centre size orientation area flux_share colour reserved;
     luxfer_requirements: struct_size scattering lights textures bounces brightest_material albedo;
-    luxfer_render_params: struct_size width height samples target_error time_budget_ms seed pixel_error reserved;
-    luxfer_render_report: struct_size samples error discarded;
+    luxfer_render_params: struct_size width height samples target_error time_budget_ms seed pixel_error bounce_error
+        preview reserved;
+    luxfer_render_report: struct_size samples error discarded preview_bias;
     luxfer_illuminance_params: struct_size columns rows samples seed;
     luxfer_illuminance_grid: struct_size origin across down normal reserved;
     luxfer_illuminance_report: struct_size points least mean largest mean_error;

@@ -154,3 +154,112 @@ fn illuminance_comes_with_its_error() {
         assert_eq!(luxfer_context_release(context), LUXFER_OK);
     }
 }
+
+fn rendered(render: *mut luxfer_render, params: &luxfer_render_params) -> (Vec<f32>, luxfer_render_report) {
+    unsafe {
+        assert_eq!(finish(made(|out| luxfer_render_start(render, params, out))), LUXFER_OK);
+        let mut report = std::mem::zeroed::<luxfer_render_report>();
+        report.struct_size = size_of_val(&report) as u32;
+        assert_eq!(luxfer_render_get_report(render, &mut report), LUXFER_OK);
+        (pixels(made(|out| luxfer_render_get_image(render, LUXFER_RENDER_BEAUTY, out))).1, report)
+    }
+}
+
+fn mean(values: &[f32]) -> f64 {
+    values.iter().map(|&v| f64::from(v)).sum::<f64>() / values.len() as f64
+}
+
+#[test]
+fn previews_and_bounds_on_bounces_are_asked_for() {
+    let context = context(2);
+    let scene = scene(context);
+    let render = made(|out| unsafe { luxfer_render_create(context, out) });
+    let mut params = unsafe { std::mem::zeroed::<luxfer_render_params>() };
+    unsafe {
+        assert_eq!(luxfer_render_params_init(&mut params, size_of_val(&params)), LUXFER_OK);
+        assert_eq!((params.preview, params.bounce_error), (0.0, 0.0));
+        params = luxfer_render_params { width: 32, height: 24, samples: 16, ..params };
+        assert_eq!(luxfer_render_set_scene(render, scene), LUXFER_OK);
+        assert_eq!(luxfer_render_set_aovs(render, LUXFER_AOV_LUMINANCE), LUXFER_OK);
+        let (beauty, report) = rendered(render, &params);
+        let mut image = null_mut();
+        assert_eq!(report.preview_bias, 0.0);
+        assert_eq!(luxfer_render_get_image(render, LUXFER_RENDER_PREVIEW, &mut image), LUXFER_NOT_FOUND);
+        assert!(message(context).contains("luxfer_render_params.preview"));
+
+        let (again, report) = rendered(render, &luxfer_render_params { preview: 1.0, ..params });
+        assert_eq!(beauty, again, "the image does not change");
+        assert!((0.0..0.2).contains(&report.preview_bias), "{}", report.preview_bias);
+        let preview = pixels(made(|out| luxfer_render_get_image(render, LUXFER_RENDER_PREVIEW, out))).1;
+        assert!((mean(&preview) / mean(&beauty) - 1.0).abs() < 0.05 && preview != beauty);
+        let mut count = 0;
+        assert_eq!(luxfer_render_get_layer_count(render, &mut count), LUXFER_OK);
+        assert_eq!(count, 1, "only what was asked for");
+
+        // In a closed room of albedo up to 0.84, little is left after the bounces that matter; after one, much.
+        let mut needed =
+            luxfer_requirements { struct_size: size_of::<luxfer_requirements>() as u32, ..std::mem::zeroed() };
+        assert_eq!(luxfer_scene_requirements(scene, 0.01, &mut needed), LUXFER_OK);
+        assert!((10..40).contains(&needed.bounces), "{}", needed.bounces);
+        let (most, _) = rendered(render, &luxfer_render_params { bounce_error: 0.01, ..params });
+        let (least, _) = rendered(render, &luxfer_render_params { bounce_error: 0.99, ..params });
+        assert!((mean(&most) / mean(&beauty) - 1.0).abs() < 0.03, "{} of {}", mean(&most), mean(&beauty));
+        assert!(mean(&least) < 0.7 * mean(&beauty));
+        for wrong in [
+            luxfer_render_params { bounce_error: 1.0, ..params },
+            luxfer_render_params { preview: -1.0, ..params },
+            luxfer_render_params { reserved: 1, ..params },
+        ] {
+            let mut job = null_mut();
+            let status = match luxfer_render_start(render, &wrong, &mut job) {
+                LUXFER_OK => finish(job),
+                status => status,
+            };
+            assert_eq!(status, LUXFER_INVALID_ARGUMENT);
+        }
+        assert_eq!(luxfer_render_release(render), LUXFER_OK);
+        assert_eq!(luxfer_scene_release(scene), LUXFER_OK);
+        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+    }
+}
+
+#[test]
+fn an_environment_image_lights_a_scene_from_where_it_says() {
+    let context = context(2);
+    let scene = made(|out| unsafe { luxfer_scene_create(context, out) });
+    let stage = made(|out| unsafe { luxfer_illuminance_create(context, out) });
+    // Twice as bright above as below.
+    let (width, height) = (16u32, 8u32);
+    let mut sky: Vec<f32> =
+        (0..width * height * 3).map(|i| if i < width * height * 3 / 2 { 2.0 } else { 1.0 }).collect();
+    let sky = made(|out| unsafe { luxfer_image_create(context, &host::view(width, height, &mut sky), out) });
+    let below = host::image(context, 4, 2, -1.0);
+    let mut grid = unsafe { std::mem::zeroed::<luxfer_illuminance_grid>() };
+    unsafe {
+        assert_eq!(luxfer_scene_set_environment_image(scene, below, 1.0, 1.0, 1.0), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_scene_set_environment_image(scene, sky, 1.0, -1.0, 1.0), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_scene_set_environment_image(scene, sky, f32::MAX, 1.0, 1.0), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_scene_set_environment_image(scene, null_mut(), 1.0, 1.0, 1.0), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_scene_set_environment_image(scene, sky, 10.0, 10.0, 10.0), LUXFER_OK, "{}", message(context));
+        let mut needed =
+            luxfer_requirements { struct_size: size_of::<luxfer_requirements>() as u32, ..std::mem::zeroed() };
+        assert_eq!(luxfer_scene_requirements(scene, 0.0, &mut needed), LUXFER_OK);
+        assert_eq!(needed.lights, LUXFER_LIGHTS_ENVIRONMENT);
+        assert_eq!(luxfer_illuminance_grid_init(&mut grid, size_of_val(&grid)), LUXFER_OK);
+        assert_eq!(luxfer_illuminance_set_scene(stage, scene), LUXFER_OK);
+        for (up, luminance) in [(1.0f32, 20.0), (-1.0, 10.0)] {
+            let grid = luxfer_illuminance_grid { normal: [0.0, up, 0.0], ..grid };
+            assert_eq!(finish(made(|out| luxfer_illuminance_start_grid(stage, &grid, null(), out))), LUXFER_OK);
+            let lux = pixels(made(|out| luxfer_illuminance_get_image(stage, LUXFER_ILLUMINANCE_LUX, out))).1;
+            // The rows at the horizon are interpolated, where it counts little.
+            let expected = luminance * std::f64::consts::PI;
+            assert!((mean(&lux) / expected - 1.0).abs() < 0.02, "{} lx, expected {expected}", mean(&lux));
+        }
+        assert_eq!(luxfer_illuminance_release(stage), LUXFER_OK);
+        for image in [sky, below] {
+            assert_eq!(luxfer_image_release(image), LUXFER_OK);
+        }
+        assert_eq!(luxfer_scene_release(scene), LUXFER_OK);
+        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+    }
+}

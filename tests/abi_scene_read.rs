@@ -153,3 +153,84 @@ fn generated_scenes_and_warps_refuse_what_makes_no_sense() {
         assert_eq!(luxfer_context_release(context), LUXFER_OK);
     }
 }
+
+#[test]
+fn materials_are_replaced_and_keep_their_textures() {
+    let context = context(1);
+    let scene = scene(context);
+    let mut pixels = [0.5f32; 2 * 2 * 4];
+    let view = luxfer_image_view { channels: 4, ..host::view(2, 2, &mut pixels) };
+    let picture = made(|out| unsafe { luxfer_image_create(context, &view, out) });
+    let dark = image(context, 2, 2, -1.0);
+    unsafe {
+        let (mut texture, mut negative) = (9, 9);
+        let add = |image, wrap, index: *mut u32| luxfer_scene_add_texture(scene, image, wrap, LUXFER_WRAP_CLAMP, index);
+        assert_eq!(add(picture, 3, &mut texture), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(add(null_mut(), LUXFER_WRAP_MIRROR, &mut texture), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(add(picture, LUXFER_WRAP_MIRROR, &mut texture), LUXFER_OK, "{}", message(context));
+        assert_eq!(add(dark, LUXFER_WRAP_REPEAT, &mut negative), LUXFER_OK);
+        assert_eq!((texture, negative), (0, 1));
+        let set = |material, role, texture, uv_set, transform: *const f32| {
+            luxfer_scene_set_material_texture(scene, material, role, texture, uv_set, transform)
+        };
+        let transform = [2.0f32, 0.0, 0.25, 0.0, 3.0, 0.5];
+        assert_eq!(set(2, LUXFER_TEXTURE_BASE_COLOR, 0, 0, null()), LUXFER_NOT_FOUND);
+        assert_eq!(set(0, LUXFER_TEXTURE_BASE_COLOR, 2, 0, null()), LUXFER_NOT_FOUND);
+        assert_eq!(set(0, 4, 0, 0, null()), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(set(0, LUXFER_TEXTURE_BASE_COLOR, 0, 2, null()), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(set(0, LUXFER_TEXTURE_BASE_COLOR, 0, 0, [f32::NAN; 6].as_ptr()), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(set(0, LUXFER_TEXTURE_EMISSION, negative, 0, null()), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(set(0, LUXFER_TEXTURE_BASE_COLOR, texture, 1, transform.as_ptr()), LUXFER_OK);
+        assert_eq!(set(0, LUXFER_TEXTURE_NORMAL, texture, 0, null()), LUXFER_OK);
+        assert_eq!(set(0, LUXFER_TEXTURE_NORMAL, LUXFER_NONE, 0, null()), LUXFER_OK);
+
+        // All numbers go there and back; what is wrong changes nothing.
+        let mut given: luxfer_material_params = zeroed();
+        assert_eq!(luxfer_material_params_init(&mut given, size_of_val(&given)), LUXFER_OK);
+        given = luxfer_material_params {
+            base_color: [0.1, 0.2, 0.3],
+            metallic: 0.4,
+            roughness: 0.5,
+            emission: [6.0, 7.0, 8.0],
+            transmission: 0.9,
+            ior: 1.1,
+            alpha: 0.6,
+            alpha_mode: LUXFER_ALPHA_MASK,
+            alpha_cutoff: 0.7,
+            normal_scale: -2.0,
+            double_sided: 0,
+            ..given
+        };
+        assert_eq!(luxfer_scene_set_material(scene, 0, &given), LUXFER_OK);
+        for wrong in [
+            luxfer_material_params { alpha_mode: 3, ..given },
+            luxfer_material_params { alpha: 1.1, ..given },
+            luxfer_material_params { alpha_cutoff: f32::NAN, ..given },
+            luxfer_material_params { normal_scale: f32::INFINITY, ..given },
+        ] {
+            assert_eq!(luxfer_scene_set_material(scene, 0, &wrong), LUXFER_INVALID_ARGUMENT);
+        }
+        assert_eq!(luxfer_scene_set_material(scene, 2, &given), LUXFER_NOT_FOUND);
+        let mut back: luxfer_material_params = zeroed();
+        back.struct_size = size_of_val(&back) as u32;
+        assert_eq!(luxfer_scene_get_material(scene, 0, &mut back), LUXFER_OK);
+        let numbers = |m: &luxfer_material_params| {
+            let colours = [m.base_color, m.emission];
+            let rest = [m.metallic, m.roughness, m.transmission, m.ior, m.alpha, m.alpha_cutoff, m.normal_scale];
+            (colours, rest, m.alpha_mode, m.double_sided)
+        };
+        assert_eq!(numbers(&back), numbers(&given));
+        let mut used = luxfer_texture_use { struct_size: size_of::<luxfer_texture_use>() as u32, ..zeroed() };
+        let role = LUXFER_TEXTURE_BASE_COLOR;
+        assert_eq!(luxfer_scene_get_material_texture(scene, 0, role, &mut used), LUXFER_OK);
+        assert_eq!((used.texture, used.uv_set, used.transform), (0, 1, transform));
+        assert_eq!((used.wrap_u, used.wrap_v), (LUXFER_WRAP_MIRROR, LUXFER_WRAP_CLAMP));
+        assert_eq!(luxfer_scene_get_material_texture(scene, 0, LUXFER_TEXTURE_NORMAL, &mut used), LUXFER_OK);
+        assert_eq!(used.texture, LUXFER_NONE);
+        for image in [picture, dark] {
+            assert_eq!(luxfer_image_release(image), LUXFER_OK);
+        }
+        assert_eq!(luxfer_scene_release(scene), LUXFER_OK);
+        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+    }
+}

@@ -14,7 +14,7 @@ use super::scene::{SceneObject, luxfer_scene, missing};
 use super::scene_parts::luxfer_camera_params;
 use super::stage::{Stage, need};
 use super::status::luxfer_status;
-use crate::error::Error;
+use crate::error::{Error, ErrorKind, Result};
 use crate::image::Image;
 use crate::job::Monitor;
 use crate::render::{self, Film, Outputs};
@@ -37,6 +37,9 @@ pub const LUXFER_RENDER_PATHS: luxfer_render_image = 2;
 /// Half the width of the interval around each pixel of the beauty that holds the true radiance with a probability of 95 %,
 /// in cd/m²; 3 channels; infinite where a pixel has less than two paths.
 pub const LUXFER_RENDER_INTERVAL: luxfer_render_image = 3;
+/// The beauty with its noise filtered out, guided by surfaces: what it does not see, such as soft shadows, it blurs. How
+/// far, the report tells as preview_bias. Only if luxfer_render_params.preview is not 0.
+pub const LUXFER_RENDER_PREVIEW: luxfer_render_image = 4;
 
 /// Settings of a rendering. Fill them with luxfer_render_params_init.
 #[repr(C)]
@@ -60,18 +63,25 @@ pub struct luxfer_render_params {
     /// interval of a pixel's luminance, relative to that luminance or to a tenth of the image's mean, whichever is more.
     /// 0.1 means within 10 % of its value, 19 times out of 20. Default 0: never.
     pub pixel_error: f32,
-    /// 0.
+    /// End every path where what is left is at most this share of all light that surfaces scatter, in [0, 1): the image is
+    /// too dark by up to that share. After how many bounces, luxfer_scene_requirements tells. Default 0: never; paths end by
+    /// chance alone, and the image is right on the average.
+    pub bounce_error: f32,
+    /// Strength of the filter for LUXFER_RENDER_PREVIEW, in [0, 10]; 1 is usual, more blurs more. Default 0: no preview, as
+    /// final images are made. The other images are the same with and without it.
+    pub preview: f32,
+    /// Must be 0.
     pub reserved: u32,
 }
 
 // SAFETY: plain numbers.
 unsafe impl Versioned for luxfer_render_params {
     const NAME: &'static str = "luxfer_render_params";
-    const SIZES: &'static [usize] = &[40];
+    const SIZES: &'static [usize] = &[48];
     fn defaults() -> Self {
         let d = render::Params::default();
         Self {
-            struct_size: 40,
+            struct_size: 48,
             width: d.width as u32,
             height: d.height as u32,
             samples: d.samples,
@@ -79,23 +89,30 @@ unsafe impl Versioned for luxfer_render_params {
             time_budget_ms: d.time_budget_ms,
             seed: d.seed,
             pixel_error: d.pixel_error,
+            bounce_error: d.bounce_error,
+            preview: d.preview,
             reserved: 0,
         }
     }
 }
 
 impl luxfer_render_params {
-    pub(super) fn params(&self) -> render::Params {
-        render::Params {
+    pub(super) fn params(&self) -> Result<render::Params> {
+        if self.reserved != 0 {
+            return Err(Error::argument(format!("render.reserved is {}; it must be 0", self.reserved)));
+        }
+        Ok(render::Params {
             width: self.width as usize,
             height: self.height as usize,
             samples: self.samples,
             target_error: self.target_error,
             pixel_error: self.pixel_error,
             time_budget_ms: self.time_budget_ms,
+            bounce_error: self.bounce_error,
+            preview: self.preview,
             seed: self.seed,
             ..render::Params::default()
-        }
+        })
     }
 }
 
@@ -112,14 +129,17 @@ pub struct luxfer_render_report {
     pub error: f64,
     /// Paths that were left out because their radiance was no finite number.
     pub discarded: u64,
+    /// How far the filter of the preview has moved the image beyond what noise explains: root mean square over squares of
+    /// 8 x 8 pixels, relative to the image's mean. 0 without a preview.
+    pub preview_bias: f64,
 }
 
 // SAFETY: plain numbers.
 unsafe impl Versioned for luxfer_render_report {
     const NAME: &'static str = "luxfer_render_report";
-    const SIZES: &'static [usize] = &[24];
+    const SIZES: &'static [usize] = &[32];
     fn defaults() -> Self {
-        Self { struct_size: 24, samples: 0, error: 0.0, discarded: 0 }
+        Self { struct_size: 32, samples: 0, error: 0.0, discarded: 0, preview_bias: 0.0 }
     }
 }
 
@@ -218,7 +238,7 @@ pub unsafe extern "C" fn luxfer_render_start(
 ) -> luxfer_status {
     enter(render, |stage| {
         let inputs = stage.inputs();
-        let params = render::Params { outputs: inputs.outputs, ..params::read(params)?.params() };
+        let params = render::Params { outputs: inputs.outputs, ..params::read(params)?.params()? };
         let object = need(&inputs.scene, "luxfer_render_set_scene")?.clone();
         let scene = object.snapshot();
         let camera = match inputs.camera {
@@ -237,7 +257,7 @@ pub unsafe extern "C" fn luxfer_render_start(
 
 /// Gets an image of the rendering, as far as it is; which is a LUXFER_RENDER_ value. The caller releases *image. Any
 /// thread.
-/// LUXFER_NOT_READY before the first pass of a job.
+/// LUXFER_NOT_READY before the first pass of a job; LUXFER_NOT_FOUND for a preview that was not asked for.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_get_image(
     render: *mut luxfer_render,
@@ -250,6 +270,15 @@ pub unsafe extern "C" fn luxfer_render_get_image(
             LUXFER_RENDER_BEAUTY => |f| &f.beauty,
             LUXFER_RENDER_VARIANCE => |f| &f.variance,
             LUXFER_RENDER_PATHS => |f| &f.paths,
+            LUXFER_RENDER_PREVIEW => {
+                if stage.output()?.preview.is_none() {
+                    return Err(Error::new(
+                        ErrorKind::NotFound,
+                        "the rendering has no preview: start it with luxfer_render_params.preview above 0",
+                    ));
+                }
+                |f| f.preview.as_ref().map_or(&f.beauty, |p| &p.image)
+            }
             LUXFER_RENDER_INTERVAL => {
                 let (context, film) = (stage.context(), stage.output()?);
                 let (width, height) = (film.beauty.width, film.beauty.height);
@@ -278,6 +307,7 @@ pub unsafe extern "C" fn luxfer_render_get_report(
             samples: output.samples,
             error: output.error,
             discarded: output.discarded,
+            preview_bias: output.preview.as_ref().map_or(0.0, |p| p.bias),
             ..luxfer_render_report::defaults()
         });
         Ok(())

@@ -54,8 +54,8 @@ pub struct luxfer_requirements {
     /// Textures that vary what surfaces scatter, emit, or how they are bent.
     pub textures: u32,
     /// How many times light can scatter and still matter: light that was scattered more often is at most the share error,
-    /// given in the call, of all light that surfaces scatter. 0 if albedos set no bound. Only told: rendering stays without
-    /// bias.
+    /// given in the call, of all light that surfaces scatter. 0 if albedos set no bound. Rendering ends paths there only if
+    /// luxfer_render_params.bounce_error asks for it.
     pub bounces: u32,
     /// Index of the material that sends on most of the light it receives; LUXFER_NONE if there are no surfaces.
     pub brightest_material: u32,

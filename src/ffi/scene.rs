@@ -304,6 +304,40 @@ pub unsafe extern "C" fn luxfer_scene_set_environment(
     })
 }
 
+/// Surrounds a scene with the light of an equirectangular image, linear, times (red, green, blue), each finite and >= 0:
+/// radiance in cd/m², chosen in proportion to its brightness while tracing. The image's centre lies towards -z, its top
+/// towards +y, its right quarter towards +x; it is copied, and replaces any environment there was. Any thread.
+/// LUXFER_INVALID_ARGUMENT if the image has values that are negative or not finite; LUXFER_OUT_OF_MEMORY beyond the memory
+/// budget.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_scene_set_environment_image(
+    scene: *mut luxfer_scene,
+    image: *mut luxfer_image,
+    red: f32,
+    green: f32,
+    blue: f32,
+) -> luxfer_status {
+    enter(scene, |object| {
+        let image = handle::borrow_in(&object.context, image, "image")?;
+        let strength = colour("environment", red, green, blue)?;
+        if let Some(v) = image.image().data.iter().find(|v| !(v.is_finite() && **v >= 0.0)) {
+            return Err(Error::argument(format!("a sample of the image is {v}; it must be finite and not negative")));
+        }
+        let mut image = image.image().to_rgb()?;
+        for pixel in image.data.chunks_exact_mut(3) {
+            (Vec3::from_slice(pixel) * strength).write_to_slice(pixel);
+        }
+        if image.count_non_finite() > 0 {
+            return Err(Error::argument("the image times its factors is not finite; lower them"));
+        }
+        let bytes = (image.data.len() * size_of::<f32>()) as u64;
+        object.change(bytes, |scene| {
+            scene.environment = Some(Environment::Image(image));
+            Ok(())
+        })
+    })
+}
+
 /// Sets the emission of a material, which multiplies its emission texture if it has one: red, green and blue in cd/m², each
 /// finite and >= 0. Any thread.
 /// LUXFER_NOT_FOUND if there is no such material.

@@ -6,58 +6,13 @@
 use super::guard::{enter, guard};
 use super::params::{self, Report, Versioned};
 use super::pointer::{bytes, set_optional, text};
-use super::scene::{colour, luxfer_scene, missing};
+use super::scene::{luxfer_scene, missing};
 use super::status::luxfer_status;
 use crate::error::{Error, Result, check_range};
 use crate::image::try_vec;
-use crate::scene::{Camera, Material, Mesh};
+use crate::scene::{Camera, Mesh};
 use glam::{Vec2, Vec3};
 use std::ffi::{c_char, c_void};
-
-/// A material: metallic-roughness, as in glTF 2.0. Fill it with luxfer_material_params_init.
-#[repr(C)]
-#[derive(Clone, Copy)]
-pub struct luxfer_material_params {
-    /// sizeof(luxfer_material_params), set by luxfer_material_params_init.
-    pub struct_size: u32,
-    /// Whether back faces reflect and emit as front faces do: 0 or 1, the default.
-    pub double_sided: u32,
-    /// Name in UTF-8, copied; NULL, the default, is none.
-    pub name: *const c_char,
-    /// Linear colour of the surface, each in [0, 1]; default 0.8.
-    pub base_color: [f32; 3],
-    /// In [0, 1]; default 0.
-    pub metallic: f32,
-    /// Perceptual roughness in [0, 1]; default 1.
-    pub roughness: f32,
-    /// Emitted luminance per channel in cd/m², >= 0; default 0.
-    pub emission: [f32; 3],
-    /// Share of light that passes through instead of being reflected diffusely, in [0, 1]; default 0.
-    pub transmission: f32,
-    /// Index of refraction in [1, 4]; default 1.5.
-    pub ior: f32,
-}
-
-const MATERIAL_SIZE: usize = 48 + size_of::<usize>();
-
-// SAFETY: numbers, and a pointer that is checked before use.
-unsafe impl Versioned for luxfer_material_params {
-    const NAME: &'static str = "luxfer_material_params";
-    const SIZES: &'static [usize] = &[MATERIAL_SIZE];
-    fn defaults() -> Self {
-        Self {
-            struct_size: MATERIAL_SIZE as u32,
-            double_sided: 1,
-            name: std::ptr::null(),
-            base_color: [0.8; 3],
-            metallic: 0.0,
-            roughness: 1.0,
-            emission: [0.0; 3],
-            transmission: 0.0,
-            ior: 1.5,
-        }
-    }
-}
 
 /// A triangle mesh in world space. Fill it with luxfer_mesh_params_init.
 #[repr(C)]
@@ -172,15 +127,6 @@ impl luxfer_camera_params {
 
 /// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_material_params_init(
-    params: *mut luxfer_material_params,
-    size: usize,
-) -> luxfer_status {
-    guard(|| params::init(params, size))
-}
-
-/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
-#[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_mesh_params_init(params: *mut luxfer_mesh_params, size: usize) -> luxfer_status {
     guard(|| params::init(params, size))
 }
@@ -189,40 +135,6 @@ pub unsafe extern "C" fn luxfer_mesh_params_init(params: *mut luxfer_mesh_params
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_camera_params_init(params: *mut luxfer_camera_params, size: usize) -> luxfer_status {
     guard(|| params::init(params, size))
-}
-
-/// Adds a material; *index, unless NULL, becomes its index. params may be NULL for the defaults. Any thread.
-/// LUXFER_INVALID_ARGUMENT if a value is out of range.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_scene_add_material(
-    scene: *mut luxfer_scene,
-    params: *const luxfer_material_params,
-    index: *mut u32,
-) -> luxfer_status {
-    enter(scene, |object| {
-        let material = material(&params::read(params)?)?;
-        let added = object.change(0, |scene| Ok(push(&mut scene.materials, material)))?;
-        set_optional(index, added);
-        Ok(())
-    })
-}
-
-fn material(params: &luxfer_material_params) -> Result<Material> {
-    for channel in params.base_color {
-        check_range("material.base_color", channel, 0.0, 1.0)?;
-    }
-    let [red, green, blue] = params.emission;
-    Ok(Material {
-        name: optional_text(params.name, "material.name")?,
-        base_color: Vec3::from_array(params.base_color),
-        metallic: check_range("material.metallic", params.metallic, 0.0, 1.0)?,
-        roughness: check_range("material.roughness", params.roughness, 0.0, 1.0)?,
-        emission: colour("material.emission", red, green, blue)?,
-        transmission: check_range("material.transmission", params.transmission, 0.0, 1.0)?,
-        ior: check_range("material.ior", params.ior, 1.0, 4.0)?,
-        double_sided: check_range("material.double_sided", params.double_sided, 0, 1)? == 1,
-        ..Material::default()
-    })
 }
 
 /// Adds a mesh, copying its arrays; *index, unless NULL, becomes its index. Any thread.
@@ -373,11 +285,11 @@ pub unsafe extern "C" fn luxfer_scene_get_camera(
 }
 
 /// Appends to a list of the scene and tells the index.
-fn push<T>(list: &mut Vec<T>, item: T) -> u32 {
+pub(super) fn push<T>(list: &mut Vec<T>, item: T) -> u32 {
     list.push(item);
     (list.len() - 1) as u32
 }
 
-fn optional_text(pointer: *const c_char, name: &str) -> Result<String> {
+pub(super) fn optional_text(pointer: *const c_char, name: &str) -> Result<String> {
     if pointer.is_null() { Ok(String::new()) } else { Ok(text(pointer, name)?.to_string()) }
 }

@@ -1,41 +1,17 @@
 //! Scene read-back
 //!
-//! What a scene holds, element by element: meshes, materials and the textures they use. Together with the counts of
-//! luxfer_scene_get_counts a host can copy a whole scene.
+//! The meshes a scene holds, element by element. Together with the counts of luxfer_scene_get_counts, and with its
+//! materials, textures and cameras, a host can copy a whole scene.
 
 use super::guard::enter;
-use super::handle::{self, Owned};
-use super::image::{Pixels, luxfer_image};
 use super::params::{Report, Versioned};
-use super::pointer::{Out, bytes_mut, copy_text};
+use super::pointer::{bytes_mut, copy_text};
 use super::query::LUXFER_NONE;
 use super::scene::{luxfer_scene, missing};
-use super::scene_parts::luxfer_material_params;
 use super::status::luxfer_status;
 use crate::error::{Error, ErrorKind, Result};
-use crate::scene::{Material, Mesh, Scene, TextureRef, Wrap};
+use crate::scene::{Mesh, Scene};
 use std::ffi::c_char;
-use std::sync::Arc;
-
-/// What a material uses a texture for: a LUXFER_TEXTURE_ value.
-pub type luxfer_texture_role = i32;
-/// Multiplies the base colour.
-pub const LUXFER_TEXTURE_BASE_COLOR: luxfer_texture_role = 0;
-/// Green multiplies the roughness, blue the metallic share.
-pub const LUXFER_TEXTURE_METALLIC_ROUGHNESS: luxfer_texture_role = 1;
-/// Normals in tangent space.
-pub const LUXFER_TEXTURE_NORMAL: luxfer_texture_role = 2;
-/// Multiplies the emission; looked up without interpolation.
-pub const LUXFER_TEXTURE_EMISSION: luxfer_texture_role = 3;
-
-/// How a texture continues beyond its edges: a LUXFER_WRAP_ value.
-pub type luxfer_wrap = i32;
-/// It repeats.
-pub const LUXFER_WRAP_REPEAT: luxfer_wrap = 0;
-/// Its border goes on.
-pub const LUXFER_WRAP_CLAMP: luxfer_wrap = 1;
-/// It repeats, every other one mirrored.
-pub const LUXFER_WRAP_MIRROR: luxfer_wrap = 2;
 
 /// A mesh of a scene. Set struct_size before the call.
 #[repr(C)]
@@ -64,33 +40,6 @@ unsafe impl Versioned for luxfer_mesh_info {
     fn defaults() -> Self {
         let struct_size = MESH_INFO_SIZE as u32;
         Self { struct_size, material: 0, vertex_count: 0, triangle_count: 0, has_normals: 0, uv_sets: 0 }
-    }
-}
-
-/// A texture as a material uses it. Set struct_size before the call.
-#[repr(C)]
-#[derive(Clone, Copy)]
-pub struct luxfer_texture_use {
-    /// sizeof(luxfer_texture_use), set by the caller.
-    pub struct_size: u32,
-    /// Index of the texture; LUXFER_NONE if there is none, and what follows is 0.
-    pub texture: u32,
-    /// Which of the mesh's sets of texture coordinates it is looked up with, 0 or 1.
-    pub uv_set: u32,
-    /// LUXFER_WRAP_ value, along u.
-    pub wrap_u: luxfer_wrap,
-    /// LUXFER_WRAP_ value, along v.
-    pub wrap_v: luxfer_wrap,
-    /// Two rows of three, applied to (u, v, 1) before the look-up.
-    pub transform: [f32; 6],
-}
-
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_texture_use {
-    const NAME: &'static str = "luxfer_texture_use";
-    const SIZES: &'static [usize] = &[44];
-    fn defaults() -> Self {
-        Self { struct_size: 44, texture: LUXFER_NONE, uv_set: 0, wrap_u: 0, wrap_v: 0, transform: [0.0; 6] }
     }
 }
 
@@ -184,105 +133,12 @@ pub unsafe extern "C" fn luxfer_scene_read_mesh_uvs(
     })
 }
 
-/// Reads a material; set params->struct_size before the call. Its name becomes NULL. Any thread.
-/// LUXFER_NOT_FOUND if there is no such material.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_scene_get_material(
-    scene: *mut luxfer_scene,
-    index: u32,
-    params: *mut luxfer_material_params,
-) -> luxfer_status {
-    enter(scene, |object| {
-        let out = Report::new(params)?;
-        let scene = object.snapshot();
-        let material = material(&scene, index)?;
-        out.set(luxfer_material_params {
-            double_sided: u32::from(material.double_sided),
-            base_color: material.base_color.to_array(),
-            metallic: material.metallic,
-            roughness: material.roughness,
-            emission: material.emission.to_array(),
-            transmission: material.transmission,
-            ior: material.ior,
-            ..luxfer_material_params::defaults()
-        });
-        Ok(())
-    })
-}
-
-/// Tells which texture a material uses for a purpose, and how; role is a LUXFER_TEXTURE_ value. Any thread.
-/// LUXFER_NOT_FOUND if there is no such material; LUXFER_INVALID_ARGUMENT for another role.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_scene_get_material_texture(
-    scene: *mut luxfer_scene,
-    material_index: u32,
-    role: luxfer_texture_role,
-    texture_use: *mut luxfer_texture_use,
-) -> luxfer_status {
-    enter(scene, |object| {
-        let out = Report::new(texture_use)?;
-        let scene = object.snapshot();
-        let material = material(&scene, material_index)?;
-        let used = match role {
-            LUXFER_TEXTURE_BASE_COLOR => &material.base_color_texture,
-            LUXFER_TEXTURE_METALLIC_ROUGHNESS => &material.metallic_roughness_texture,
-            LUXFER_TEXTURE_NORMAL => &material.normal_texture,
-            LUXFER_TEXTURE_EMISSION => &material.emission_texture,
-            _ => return Err(Error::argument(format!("role is {role}; it must be a LUXFER_TEXTURE_ value"))),
-        };
-        out.set(used.as_ref().map_or_else(luxfer_texture_use::defaults, |used| described(&scene, used)));
-        Ok(())
-    })
-}
-
-/// Gets a texture as an image, linear. The caller releases *image. Any thread.
-/// LUXFER_NOT_FOUND if there is no such texture.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_scene_get_texture(
-    scene: *mut luxfer_scene,
-    index: u32,
-    image: *mut *mut luxfer_image,
-) -> luxfer_status {
-    struct TextureOf(Arc<Scene>, usize);
-    enter(scene, |object| {
-        let out = Out::new(image, "image")?;
-        let scene = object.snapshot();
-        if index as usize >= scene.textures.len() {
-            return Err(missing("texture", index, scene.textures.len()));
-        }
-        let texture = Arc::new(TextureOf(scene, index as usize));
-        out.set(handle::give(Pixels::part(object.context(), texture, |t| &t.0.textures[t.1].image)));
-        Ok(())
-    })
-}
-
 fn mesh(scene: &Scene, index: u32) -> Result<&Mesh> {
     scene.meshes.get(index as usize).ok_or_else(|| missing("mesh", index, scene.meshes.len()))
 }
 
-fn material(scene: &Scene, index: u32) -> Result<&Material> {
-    scene.materials.get(index as usize).ok_or_else(|| missing("material", index, scene.materials.len()))
-}
-
 fn lacks(mesh: u32, what: impl std::fmt::Display) -> Error {
     Error::new(ErrorKind::NotFound, format!("mesh {mesh} has no {what}"))
-}
-
-fn described(scene: &Scene, used: &TextureRef) -> luxfer_texture_use {
-    let wrap = scene.textures.get(used.texture).map_or([Wrap::Repeat; 2], |t| t.wrap).map(|wrap| match wrap {
-        Wrap::Repeat => LUXFER_WRAP_REPEAT,
-        Wrap::Clamp => LUXFER_WRAP_CLAMP,
-        Wrap::Mirror => LUXFER_WRAP_MIRROR,
-    });
-    let [a, b, _, c, d, _, e, f, _] = used.transform.to_cols_array();
-    luxfer_texture_use {
-        texture: u32::try_from(used.texture).unwrap_or(LUXFER_NONE),
-        uv_set: used.uv_set as u32,
-        wrap_u: wrap[0],
-        wrap_v: wrap[1],
-        transform: [a, c, e, b, d, f],
-        ..luxfer_texture_use::defaults()
-    }
 }
 
 /// The caller's array and the bytes that go there; nothing where the caller wants nothing.

@@ -8,7 +8,7 @@
 //! `sampler` numbers → `path` a walk → (`light` one light of all, by way of `emissive` and `environment`; `vertex` what was
 //! hit; `bsdf` how it scatters, by way of `ggx`) → a [`PathSink`] → `film` means, errors, and which pixels get more paths.
 //! Beside the image, `layers` makes images of light by the way it came (`lpe`) and of surfaces (`aov`) from the same paths;
-//! [`illuminance`] calculates grids and maps of meshes in lux.
+//! [`illuminance`] calculates grids and maps of meshes in lux. For previews, `denoise` filters noise out, with a bias.
 //!
 //! Not modelled: volumes, refraction in solids, frosted glass, polarisation, wavelengths, depth of field, motion blur.
 
@@ -27,6 +27,7 @@ mod layers;
 mod light;
 pub mod lpe;
 mod path;
+mod preview;
 mod requirements;
 mod sampler;
 mod vertex;
@@ -110,6 +111,9 @@ pub struct Params {
     /// End every path where what is left is at most this share of all light that surfaces scatter, in `[0, 1)`
     /// ([`Requirements::bounces`]): the image is too dark by up to that share. 0 = never: paths end by chance alone.
     pub bounce_error: f32,
+    /// Strength of the filter that makes [`Film::preview`] (`denoise`), in `[0, 10]`, 1 as a rule; 0 = no preview, for
+    /// final images.
+    pub preview: f32,
     pub seed: u64,
     /// What to render beside the main image.
     pub outputs: Outputs,
@@ -125,6 +129,7 @@ impl Default for Params {
             pixel_error: 0.0,
             time_budget_ms: 0,
             bounce_error: 0.0,
+            preview: 0.0,
             seed: 1,
             outputs: Outputs::default(),
         }
@@ -149,6 +154,8 @@ pub struct Film {
     pub discarded: u64,
     /// The images beside it: those of expressions in their order, then those of surfaces in theirs.
     pub layers: Vec<Layer>,
+    /// The image with its noise filtered out, and how far that has moved it, if asked for. It is not the expected value.
+    pub preview: Option<denoise::Output>,
 }
 
 /// Renders a camera's view; `publish` is called with the film after the first pass, and again whenever enough has been
@@ -164,11 +171,13 @@ pub fn run(world: &World, camera: &Camera, params: &Params, job: Job, publish: &
     // The images are made also after a cancel.
     let always = Monitor::default();
     let mut clock = Clock::start(params.time_budget_ms);
-    let mut canvas = Canvas::new(world, camera, params)?;
+    let guided = preview::guided(params);
+    let mut canvas = Canvas::new(world, camera, &guided)?;
     let mut plan = Plan::new(params);
     let mut show = |canvas: &Canvas, clock: &mut Clock| {
         clock.show(|| {
-            let film = canvas.film(always.job())?;
+            let mut film = canvas.film(always.job())?;
+            preview::finish(&mut film, params, always.job())?;
             publish(&film);
             Ok(film)
         })
@@ -200,6 +209,7 @@ fn check(camera: &Camera, params: &Params) -> Result<()> {
     check_range("target_error", params.target_error, 0.0, f32::MAX)?;
     check_range("pixel_error", params.pixel_error, 0.0, f32::MAX)?;
     check_range("bounce_error", params.bounce_error, 0.0, 1.0f32.next_down())?;
+    check_range("preview", params.preview, 0.0, 10.0)?;
     let vectors = [camera.position, camera.forward, camera.up];
     let sees = camera.forward.cross(camera.up).length_squared() > 0.0;
     if vectors.iter().any(|v| !v.is_finite()) || !sees || !(camera.fov_y > 0.0 && camera.fov_y < std::f32::consts::PI) {

@@ -89,18 +89,7 @@ impl World {
         let (requirements, finishes) = requirements::analyse(&scene, albedo_table.as_ref());
         let any_see_through = requirements.glass || requirements.alpha;
         job.report(1.0);
-        Ok(Self {
-            scene,
-            accel,
-            centre,
-            first,
-            facets,
-            finishes,
-            lights,
-            albedo_table,
-            requirements,
-            any_see_through,
-        })
+        Ok(Self { scene, accel, centre, first, facets, finishes, lights, albedo_table, requirements, any_see_through })
     }
 
     /// What the scene requires, and what tracing leaves out.

@@ -154,6 +154,7 @@ impl<'a> Canvas<'a> {
             samples: (total.paths / (self.grid.width * self.grid.height) as u64) as u32,
             error: total.error(),
             discarded: self.discarded.load(Ordering::Relaxed),
+            preview: None,
         })
     }
 }

@@ -59,6 +59,33 @@ fn a_preview_has_a_fraction_of_the_error_and_says_what_it_blurred() {
 }
 
 #[test]
+fn a_render_makes_its_own_preview_and_shows_only_what_was_asked_for() {
+    let (world, camera) = room();
+    let outputs = Outputs { aovs: vec![Aov::Normal, Aov::Depth], ..Outputs::default() };
+    let params = Params { width: 40, height: 30, samples: 8, preview: 1.0, outputs, ..Params::default() };
+    let film = render(&world, &camera, &params);
+    let names: Vec<&str> = film.layers.iter().map(|l| l.name.as_str()).collect();
+    assert_eq!(names, ["Normal", "Depth"]);
+    let preview = film.preview.unwrap();
+    // The same as the filter on outputs of the same paths; the image itself is left alone.
+    let outputs = Outputs { aovs: vec![Aov::Albedo, Aov::Normal, Aov::Position], ..Outputs::default() };
+    let plain = render(&world, &camera, &Params { outputs, preview: 0.0, ..params.clone() });
+    assert!(plain.preview.is_none() && plain.beauty == film.beauty);
+    let [albedo, normal, position] = [0, 1, 2].map(|i| plain.layers[i].image.clone());
+    let expected = smoothed(&plain, &[albedo, normal, position], 1.0);
+    assert_eq!((preview.image, preview.bias), (expected.image, expected.bias));
+    assert!(preview.bias > 0.0);
+    // From the first coarse pass on there is one.
+    let monitor = Monitor::default();
+    let mut shown = 0;
+    let all = run(&world, &camera, &params, monitor.job(), &mut |film| {
+        shown += usize::from(film.preview.as_ref().is_some_and(|p| p.image.count_non_finite() == 0));
+        monitor.cancel();
+    });
+    assert!(all.is_err() && shown == 1, "{shown}");
+}
+
+#[test]
 fn without_variance_the_image_comes_out_as_it_is() {
     let (world, camera) = room();
     let film = render(&world, &camera, &Params { width: 40, height: 30, samples: 4, ..Params::default() });
@@ -87,6 +114,7 @@ fn an_even_wall_stays_even_and_noise_on_it_goes() {
         error: 0.0,
         discarded: 0,
         layers: Vec::new(),
+        preview: None,
     };
     let plane = |x: usize, y: usize| [x as f32, y as f32, 0.0];
     let even = [

@@ -1,0 +1,41 @@
+//! Previews of a render under way: `denoise` on its own outputs, which nobody has to ask for.
+
+use super::denoise::{self, Input};
+use super::{Aov, Film, Params};
+use crate::error::{Error, ErrorKind, Result};
+use crate::job::Job;
+
+/// What guides the filter.
+const GUIDES: [Aov; 3] = [Aov::Albedo, Aov::Normal, Aov::Position];
+
+/// The parameters of a render that also makes what the filter needs, behind the outputs that were asked for.
+pub fn guided(params: &Params) -> Params {
+    let mut guided = params.clone();
+    if params.preview > 0.0 {
+        let asked = &params.outputs.aovs;
+        guided.outputs.aovs.extend(GUIDES.into_iter().filter(|guide| !asked.contains(guide)));
+    }
+    guided
+}
+
+/// Adds the preview to a film made with [`guided`] parameters, and leaves the outputs that were asked for.
+pub fn finish(film: &mut Film, params: &Params, job: Job) -> Result<()> {
+    if params.preview > 0.0 {
+        let guide = |aov: Aov| {
+            let layer = film.layers.iter().find(|l| l.expression.is_none() && l.name == aov.name());
+            layer
+                .map(|l| &l.image)
+                .ok_or_else(|| Error::new(ErrorKind::Internal, format!("the render has no layer {}", aov.name())))
+        };
+        let input = Input {
+            beauty: &film.beauty,
+            variance: &film.variance,
+            albedo: guide(Aov::Albedo)?,
+            normal: guide(Aov::Normal)?,
+            position: guide(Aov::Position)?,
+        };
+        film.preview = Some(denoise::run(&input, &denoise::Params { strength: params.preview }, job)?);
+    }
+    film.layers.truncate(params.outputs.expressions.len() + params.outputs.aovs.len());
+    Ok(())
+}

@@ -1,0 +1,73 @@
+//! Pearson's chi-squared test: whether samples fall as often as is stated.
+
+/// Bins in which less is expected are taken together with their neighbours.
+const LEAST: f64 = 10.0;
+/// The chance that one of all the tests of a routine fails though nothing is wrong.
+const CHANCE: f64 = 1e-3;
+
+/// Asserts that counts follow what is expected of them, as one of `tests` tests that may fail with a chance of 1/1000 all
+/// together (Šidák 1967). Both must cover all there is: they have the same sum, but for the quadrature of what is expected.
+pub(in crate::render) fn assert_follows(expected: &[f64], observed: &[f64], tests: usize, what: &str) {
+    let bins = pooled(expected, observed);
+    let (total, seen) = bins.iter().fold((0.0, 0.0), |(e, o), bin| (e + bin.0, o + bin.1));
+    assert!((total / seen - 1.0).abs() < 2e-3, "{what}: {total} expected in all, {seen} observed");
+    if let Some(degrees) = bins.len().checked_sub(1).filter(|&d| d > 0) {
+        let sum: f64 = bins.iter().map(|(e, o)| (o - e) * (o - e) / e).sum();
+        let limit = limit(degrees as f64, tests);
+        assert!(sum < limit, "{what}: chi-squared is {sum}, over {limit} ({degrees} degrees of freedom)");
+    }
+}
+
+/// Bins of enough expectation, each what is expected and what was observed; what remains goes with the last.
+fn pooled(expected: &[f64], observed: &[f64]) -> Vec<(f64, f64)> {
+    let (mut bins, mut open) = (Vec::new(), (0.0, 0.0));
+    for (&e, &o) in expected.iter().zip(observed) {
+        open = (open.0 + e, open.1 + o);
+        if open.0 >= LEAST {
+            bins.push(std::mem::take(&mut open));
+        }
+    }
+    match bins.last_mut() {
+        Some(last) => *last = (last.0 + open.0, last.1 + open.1),
+        None => bins.push(open),
+    }
+    bins
+}
+
+/// What chi-squared exceeds with the chance of one of `tests` tests (Wilson and Hilferty 1931).
+fn limit(degrees: f64, tests: usize) -> f64 {
+    let chance = 1.0 - (1.0 - CHANCE).powf(1.0 / tests as f64);
+    let (mut low, mut high) = (1.0, 10.0);
+    for _ in 0..60 {
+        let z = (low + high) / 2.0;
+        if tail(z) > chance { low = z } else { high = z }
+    }
+    degrees * (1.0 - 2.0 / (9.0 * degrees) + low * (2.0 / (9.0 * degrees)).sqrt()).powi(3)
+}
+
+/// The chance that a standard normal deviate is larger, for positive `z` (continued fraction of Mills' ratio).
+fn tail(z: f64) -> f64 {
+    let ratio = (1..=60).rev().fold(z, |f, k| z + f64::from(k) / f);
+    (-z * z / 2.0).exp() / (std::f64::consts::TAU.sqrt() * ratio)
+}
+
+#[test]
+fn limits_are_those_of_tables() {
+    // 1/1000 of 10 degrees: 29.588; of 100 degrees: 149.449. The approximation is 0.6 % off at few degrees.
+    assert!((limit(10.0, 1) - 29.588).abs() < 0.2 && (limit(100.0, 1) - 149.449).abs() < 0.1);
+    assert!((tail(1.959964) - 0.025).abs() < 1e-6);
+}
+
+#[test]
+fn bins_are_taken_together_and_none_is_lost() {
+    let bins = pooled(&[3.0, 8.0, 20.0, 1.0], &[1.0, 2.0, 3.0, 50.0]);
+    assert_eq!(bins, [(11.0, 3.0), (21.0, 53.0)]);
+    assert_eq!(pooled(&[1.0], &[1.0]), [(1.0, 1.0)]);
+}
+
+#[test]
+#[should_panic(expected = "chi-squared is")]
+fn what_is_a_few_percent_off_is_found() {
+    let observed: Vec<f64> = (0..100).map(|i| if i % 2 == 0 { 1050.0 } else { 950.0 }).collect();
+    assert_follows(&[1000.0; 100], &observed, 1, "a comb");
+}

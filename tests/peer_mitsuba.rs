@@ -1,0 +1,220 @@
+//! A Cornell box of our own against Mitsuba 3, another unbiased path tracer, within the joint confidence interval.
+//!
+//! Both render independent images of the same GLB that differ in the seed alone. The image is cut into blocks; the scatter of
+//! a block's mean among the images gives the variance of the mean of all, whatever sampling does inside one. Each block and
+//! channel then is a Welch's t-test, at 0.1 % for all of them together (Šidák); one more is that of the image's mean. The
+//! seeds are fixed, so a pass is a pass every time.
+//!
+//! `make setup` installs Mitsuba from PyPI into target/peers. Without it there is nothing to compare with: the test says so,
+//! except in continuous integration (CI set), where it fails.
+
+use glam::{Quat, Vec2, Vec3};
+use luxfer::exec::Pool;
+use luxfer::job::Monitor;
+use luxfer::render::{self, World};
+use luxfer::scene::{Camera, Material, Mesh, Scene, gltf};
+use std::io::{BufRead, BufReader, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::sync::Arc;
+
+const SIDE: usize = 24;
+const BLOCK: usize = 4;
+const IMAGES: u32 = 16;
+const OUR_PATHS: u32 = 256;
+const THEIR_PATHS: u32 = 64;
+
+/// A parallelogram that faces `u × v`.
+fn quad(corner: Vec3, u: Vec3, v: Vec3, material: usize) -> Mesh {
+    Mesh {
+        material,
+        positions: vec![corner, corner + u, corner + u + v, corner + v],
+        uvs: [vec![Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y], Vec::new()],
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+        ..Mesh::default()
+    }
+}
+
+/// A block that stands on the floor, turned about the vertical.
+fn block(centre: Vec3, size: Vec3, angle: f32, material: usize) -> Vec<Mesh> {
+    let turn = Quat::from_rotation_y(angle);
+    let [x, y, z] = [Vec3::X * size.x, Vec3::Y * size.y, Vec3::Z * size.z].map(|v| turn * v);
+    let low = centre - (x + z) / 2.0;
+    vec![
+        quad(low + y, z, x, material),
+        quad(low, x, y, material),
+        quad(low, y, z, material),
+        quad(low + x + z, -x, y, material),
+        quad(low + x + z, y, -z, material),
+    ]
+}
+
+/// The box of Goral et al. (1984) in metres, open to the camera.
+fn cornell() -> Scene {
+    let matt = |name: &str, colour: [f32; 3]| Material::diffuse(name, Vec3::from_array(colour));
+    let (x, y, z) = (Vec3::X * 0.556, Vec3::Y * 0.549, Vec3::Z * 0.559);
+    let mut meshes = vec![
+        quad(Vec3::ZERO, z, x, 0),
+        quad(y, x, z, 0),
+        quad(Vec3::ZERO, x, y, 0),
+        quad(Vec3::ZERO, y, z, 1),
+        quad(x, z, y, 2),
+        quad(Vec3::new(0.213, 0.548, 0.227), Vec3::X * 0.13, Vec3::Z * 0.105, 3),
+    ];
+    meshes.extend(block(Vec3::new(0.37, 0.0, 0.39), Vec3::new(0.165, 0.165, 0.165), -0.29, 0));
+    meshes.extend(block(Vec3::new(0.185, 0.0, 0.2), Vec3::new(0.165, 0.33, 0.165), 0.31, 0));
+    let lamp = Material { emission: Vec3::new(18.4, 15.6, 8.0), ..matt("Lamp", [0.78; 3]) };
+    let materials = vec![
+        matt("White", [0.73, 0.71, 0.68]),
+        matt("Red", [0.57, 0.04, 0.04]),
+        matt("Green", [0.1, 0.38, 0.08]),
+        lamp,
+    ];
+    let camera = Camera::look_at(Vec3::new(0.278, 0.273, 1.35), Vec3::new(0.278, 0.273, 0.0), 0.686);
+    Scene { meshes, materials, cameras: vec![camera], ..Scene::default() }
+}
+
+/// Means of the blocks of an image, channel by channel, and of the whole image at the end.
+fn blocks(pixels: &[f32]) -> Vec<f64> {
+    let across = SIDE / BLOCK;
+    let mut means = vec![0.0; 3 * (across * across + 1)];
+    for (i, v) in pixels.iter().enumerate() {
+        let (x, y, channel) = (i / 3 % SIDE, i / 3 / SIDE, i % 3);
+        means[3 * (y / BLOCK * across + x / BLOCK) + channel] += f64::from(*v) / (BLOCK * BLOCK) as f64;
+        means[3 * across * across + channel] += f64::from(*v) / (SIDE * SIDE) as f64;
+    }
+    means
+}
+
+fn ours(scene: &Scene) -> Vec<Vec<f64>> {
+    let monitor = Monitor::default();
+    Pool::new(2).unwrap().run(|| {
+        let world = World::build(Arc::new(scene.clone()), monitor.job()).unwrap();
+        let image = |seed: u32| {
+            let params = render::Params {
+                width: SIDE,
+                height: SIDE,
+                samples: OUR_PATHS,
+                seed: u64::from(seed),
+                ..render::Params::default()
+            };
+            let film = render::run(&world, &scene.cameras[0], &params, monitor.job(), &mut |_| ()).unwrap();
+            blocks(&film.beauty.data)
+        };
+        (1..=IMAGES).map(image).collect()
+    })
+}
+
+/// Means of Mitsuba's images, by its scalar back end: the one that needs nothing else.
+fn theirs(python: &Path, scene: &Scene) -> Vec<Vec<f64>> {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR"));
+    let glb = folder.join("cornell.glb");
+    std::fs::write(&glb, gltf::export(scene).unwrap()).unwrap();
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/peers/mitsuba_render.py");
+    let out = folder.join("cornell.mitsuba");
+    let log = folder.join("cornell.mitsuba.log");
+    let mut mitsuba: Child = Command::new(python)
+        .arg(script)
+        .arg("scalar_rgb")
+        .arg(&glb)
+        .args([SIDE.to_string(), SIDE.to_string()])
+        .arg(&out)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(std::fs::File::create(&log).unwrap())
+        .spawn()
+        .unwrap();
+    let mut jobs = mitsuba.stdin.take().unwrap();
+    let mut answers = BufReader::new(mitsuba.stdout.take().unwrap()).lines();
+    let mut answer = || {
+        let line = answers.find(|line| line.as_ref().is_ok_and(|l| l.starts_with('{')));
+        assert!(line.is_some(), "Mitsuba gave up: {}", std::fs::read_to_string(&log).unwrap());
+    };
+    answer();
+    let image = |seed: u32| {
+        writeln!(jobs, "{THEIR_PATHS} {seed}").unwrap();
+        answer();
+        let bytes = std::fs::read(&out).unwrap();
+        let pixels: Vec<f32> = bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect();
+        assert_eq!(pixels.len(), 3 * SIDE * SIDE);
+        blocks(&pixels)
+    };
+    let images = (1..=IMAGES).map(image).collect();
+    drop(jobs);
+    mitsuba.wait().unwrap();
+    images
+}
+
+/// Mean, and variance of the mean, of one number over all images.
+fn statistics(images: &[Vec<f64>], number: usize) -> (f64, f64) {
+    let n = images.len() as f64;
+    let mean = images.iter().map(|i| i[number]).sum::<f64>() / n;
+    let variance = images.iter().map(|i| (i[number] - mean).powi(2)).sum::<f64>() / (n - 1.0) / n;
+    (mean, variance)
+}
+
+/// Beyond what Student's t lies with a probability of `outside` on both sides together, by bisection of its integral.
+fn student_quantile(outside: f64, degrees: f64) -> f64 {
+    // The tail in the angle whose tangent is t / sqrt(degrees), where the density is a power of the cosine.
+    let steps = 20_000;
+    let weight = |angle: f64| angle.cos().powf(degrees - 1.0);
+    let step = std::f64::consts::FRAC_PI_2 / f64::from(steps);
+    let slices: Vec<f64> = (0..steps).map(|i| weight((f64::from(i) + 0.5) * step)).collect();
+    let total: f64 = slices.iter().sum();
+    let mut tail = 0.0;
+    for (i, slice) in slices.iter().enumerate().rev() {
+        tail += slice;
+        if tail >= outside * total {
+            return degrees.sqrt() * (i as f64 * step).tan();
+        }
+    }
+    0.0
+}
+
+#[test]
+fn quantiles_are_those_of_printed_tables() {
+    for (outside, degrees, t) in [(0.05, 23.0, 2.0687), (0.01, 10.0, 3.1693), (0.001, 30.0, 3.6460)] {
+        assert!((student_quantile(outside, degrees) / t - 1.0).abs() < 2e-3, "{outside} {degrees}");
+    }
+}
+
+#[test]
+fn a_cornell_box_is_mitsubas_within_the_joint_confidence_interval() {
+    let python = Path::new(env!("CARGO_MANIFEST_DIR")).join("target/peers/mitsuba/bin/python");
+    if !python.exists() {
+        assert!(std::env::var_os("CI").is_none(), "{} is not there: run `make setup`", python.display());
+        println!("skipped: Mitsuba is not installed; `make setup` installs it");
+        return;
+    }
+    let scene = cornell();
+    let (ours, theirs) = (ours(&scene), theirs(&python, &scene));
+    let tests = ours[0].len();
+    let outside = 1.0 - (1.0 - 1e-3f64).powf(1.0 / tests as f64);
+    // The corners outside the box see nothing.
+    let (mut widest, mut worst, mut lit) = (0.0f64, 0.0f64, 0);
+    for number in 0..tests {
+        let ((a, va), (b, vb)) = (statistics(&ours, number), statistics(&theirs, number));
+        let n = f64::from(IMAGES);
+        let degrees = (va + vb).powi(2) / ((va * va + vb * vb) / (n - 1.0)).max(f64::MIN_POSITIVE);
+        let interval = student_quantile(outside, degrees.max(1.0)) * (va + vb).sqrt();
+        assert!((a - b).abs() <= interval + 1e-5 * a, "number {number}: {a} and {b} differ by more than {interval}");
+        if a > 0.0 {
+            widest = widest.max(interval / a);
+            worst = worst.max((a - b).abs() / a);
+            lit += 1;
+        }
+    }
+    let (mean, variance) = statistics(&ours, tests - 2);
+    let (other, other_variance) = statistics(&theirs, tests - 2);
+    println!(
+        "{lit} of {tests} means lit; they differ by up to {:.2} %, the widest interval is {:.2} %; image {mean:.4} ± {:.4} and \
+         {other:.4} ± {:.4}",
+        100.0 * worst,
+        100.0 * widest,
+        variance.sqrt(),
+        other_variance.sqrt()
+    );
+    // Too wide an interval would hide what is wrong.
+    assert!(lit > 90 && widest < 0.15, "{lit} lit, widest interval {widest}");
+    assert!((variance + other_variance).sqrt() < 0.004 * mean, "the image's mean is not known well enough");
+}
