@@ -1,5 +1,5 @@
 # make demo   builds the library and two C programs, and runs a lighting transfer and a stylisation, into out/
-# make test   sets up what is missing (Debian packages) and runs every test
+# make test   sets up what is missing (Debian packages, Mitsuba from PyPI) and runs every test
 # make bench  runs the benches and prints the headline figures; make bench ONLY=rays runs one; plots go to out/bench/
 # make clean  removes what was built
 
@@ -8,7 +8,7 @@ CC      ?= cc
 PROFILE := target/release
 LIB     := $(PROFILE)/libluxfer.so
 SONAME  := $(PROFILE)/libluxfer.so.0.1
-PACKAGES := cmake g++ binutils libopencv-dev libembree-dev
+PACKAGES := cmake g++ binutils libopencv-dev libembree-dev python3-venv
 
 BENCHES  := $(patsubst benches/%.rs,%,$(wildcard benches/*.rs))
 ONLY     ?= $(BENCHES)
@@ -30,7 +30,7 @@ demo: out/lighting_transfer out/stylize
 	./out/stylize --out out
 	@echo "look at out/overview.png and out/stylize.png"
 
-# Installs Debian packages only when one is missing.
+# Installs Debian packages only when one is missing, and the renderer that one test compares with.
 setup:
 	@missing=""; for p in $(PACKAGES); do dpkg -s $$p >/dev/null 2>&1 || missing="$$missing $$p"; done; \
 	if [ -n "$$missing" ]; then \
@@ -40,6 +40,7 @@ setup:
 	  $$root apt-get update -qq </dev/null && \
 	  $$root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $$missing </dev/null; \
 	fi
+	@benches/peers/install.sh mitsuba
 
 test: setup lib
 	$(CARGO) test

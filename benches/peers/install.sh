@@ -1,13 +1,16 @@
 #!/bin/sh
-# Installs what the benches are measured beside, each in a virtual environment under target/peers. What cannot be
-# installed is left out; the benches then say so.
+# Installs what tests and benches compare with, each in a virtual environment under target/peers: those named, or all.
+# What cannot be installed is left out; tests and benches then say so.
 cd "$(dirname "$0")/../.." || exit 1
+
+wanted=$*
 
 install() { # name, packages...
   name=$1
   shift
+  case " ${wanted:-$name} " in *" $name "*) ;; *) return ;; esac
   [ -x "target/peers/$name/bin/python" ] && return
-  echo "installing $name for the benches"
+  echo "installing $name to compare with"
   python3 -m venv "target/peers/$name" && "target/peers/$name/bin/pip" install --quiet "$@" ||
     { echo "$name could not be installed" >&2; rm -rf "target/peers/$name"; }
 }
@@ -15,6 +18,8 @@ install() { # name, packages...
 install mitsuba mitsuba numpy
 # Cycles; its wheels fit one version of Python each.
 install bpy 'bpy==5.0.*' 'numpy<2'
+
+[ -z "$wanted" ] || exit 0
 
 # Mitsuba's vectorised back end needs a shared LLVM that knows this processor.
 if ! ls /usr/lib/*/libLLVM*19* >/dev/null 2>&1 && [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null; then

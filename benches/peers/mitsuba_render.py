@@ -35,7 +35,41 @@ def bitmap(glb, reference):
     return mi.Bitmap(path).convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32, srgb_gamma=False)
 
 
+def coat_albedo(ior, alpha):
+    """What a rough interface reflects of light from everywhere: GGX with Smith's masking and Schlick's Fresnel."""
+    f0 = ((ior - 1) / (ior + 1)) ** 2
+    random = np.random.default_rng(1)
+    u, v, a, b = random.random((4, 1 << 16))
+    wo = np.stack([np.sqrt(u), 0 * u, np.sqrt(1 - u)])
+    # Facets by their projected area, and the reflection about them.
+    z = np.sqrt((1 - a) / (1 + (alpha * alpha - 1) * a))
+    r, angle = np.sqrt(1 - z * z), 2 * np.pi * b
+    h = np.stack([r * np.cos(angle), r * np.sin(angle), z])
+    cosine = (wo * h).sum(0)
+    wi = 2 * cosine * h - wo
+    masking = lambda w: (np.sqrt(1 + alpha * alpha * (1 / w[2] ** 2 - 1)) - 1) / 2
+    valid = (cosine > 0) & (wi[2] > 0)
+    fresnel = f0 + (1 - f0) * (1 - np.clip(cosine, 0, 1)) ** 5
+    weight = fresnel * cosine / (wo[2] * h[2] * (1 + masking(wo) + masking(np.abs(wi))))
+    return float(np.where(valid, weight, 0).mean())
+
+
+def scaled(base, gain, offset):
+    """gain * base + offset, of a colour or an image."""
+    if base["type"] == "rgb":
+        return {"type": "rgb", "value": [gain * c + offset for c in base["value"]]}
+    texels = np.array(base["bitmap"]) * np.float32(gain) + np.float32(offset)
+    return {**base, "bitmap": mi.Bitmap(texels)}
+
+
 def bsdf(glb, material):
+    """Metallic-roughness out of Mitsuba's own parts.
+
+    Its `principled` is another model: the diffuse part sends light back towards where it came from, and nothing is taken
+    from it for what the coat reflects. glTF's dielectric is `roughplastic`, whose diffuse part gets what the coat leaves
+    on both ways. At full roughness that loses what facets scatter twice, while the coat is hardly to be told from the
+    diffuse part: there it is `diffuse` with the albedo of both. Metals are conductors that reflect the base colour.
+    """
     pbr = material.get("pbrMetallicRoughness", {})
     color = pbr.get("baseColorFactor", [1, 1, 1, 1])
     base = {"type": "rgb", "value": color[:3]}
@@ -43,12 +77,34 @@ def bsdf(glb, material):
         texels = np.array(bitmap(glb, pbr["baseColorTexture"])) * np.float32(color[:3])
         base = {"type": "bitmap", "bitmap": mi.Bitmap(texels), "raw": True}
     metallic, roughness = pbr.get("metallicFactor", 1.0), pbr.get("roughnessFactor", 1.0)
-    no_interface = material.get("extensions", {}).get("KHR_materials_ior", {}).get("ior", 1.5) == 1.0
-    if no_interface and metallic == 0.0:
-        inner = {"type": "diffuse", "reflectance": base}
+    ior = material.get("extensions", {}).get("KHR_materials_ior", {}).get("ior", 1.5)
+    alpha = max(roughness * roughness, 1e-4)
+    if ior == 1.0:
+        dielectric = {"type": "diffuse", "reflectance": base}
+    elif roughness >= 0.7:
+        coat = coat_albedo(ior, alpha)
+        dielectric = {"type": "diffuse", "reflectance": scaled(base, 1 - coat, coat)}
     else:
-        inner = {"type": "principled", "base_color": base, "metallic": metallic, "roughness": max(roughness, 1e-3)}
-    return {"type": "twosided", "bsdf": inner}
+        dielectric = {
+            "type": "roughplastic", "distribution": "ggx", "alpha": alpha, "int_ior": ior, "nonlinear": False,
+            "diffuse_reflectance": base,
+        }
+    # A mirror of index n and absorption k that reflects the base colour along the normal (Gulbrandsen 2014).
+    f0 = np.clip(np.array(color[:3]), 0, 0.999)
+    n = (1 - f0) / (1 + f0)
+    k = np.sqrt(np.maximum(f0 * (n + 1) ** 2 - (n - 1) ** 2, 0) / (1 - f0))
+    metal = {
+        "type": "roughconductor", "distribution": "ggx", "alpha": alpha,
+        "eta": {"type": "rgb", "value": n.tolist()}, "k": {"type": "rgb", "value": k.tolist()},
+    }
+    if metallic in (0.0, 1.0):
+        inner = metal if metallic else dielectric
+    else:
+        inner = {"type": "blendbsdf", "weight": metallic, "first": dielectric, "second": metal}
+    inner = {"type": "twosided", "bsdf": inner}
+    if material.get("alphaMode") == "BLEND" and color[3] < 1:
+        inner = {"type": "mask", "opacity": color[3], "bsdf": inner}
+    return inner
 
 
 def emitter(glb, material):
