@@ -5,7 +5,7 @@ use super::node::Child;
 use super::{Accel, SHORT_STACK, units};
 use crate::error::{Error, Result};
 use crate::job::Job;
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
@@ -22,7 +22,7 @@ pub(super) fn build(triangles: &[[Vec3; 3]], job: Job) -> Result<Accel> {
         root: Child::EMPTY,
         low: Vec3::ZERO,
         high: Vec3::ZERO,
-        largest: Vec3::ZERO,
+        largest: Vec4::ZERO,
         stack_need: SHORT_STACK,
         dropped: units.dropped,
         wide_vectors: has_wide_vectors(),
@@ -31,7 +31,7 @@ pub(super) fn build(triangles: &[[Vec3; 3]], job: Job) -> Result<Accel> {
         return Ok(accel);
     }
     (accel.low, accel.high) = (units.low, units.high);
-    accel.largest = units.low.abs().max(units.high.abs());
+    accel.largest = units.low.abs().max(units.high.abs()).extend(0.0);
     job.report(0.1);
     let tree = binary_tree(&units.boxes(triangles), job.part(0.1, 0.8))?;
     collapse::run(&Source { triangles, units: &units.list, tree: &tree }, &mut accel, job)?;

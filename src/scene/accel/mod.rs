@@ -9,6 +9,7 @@
 //!
 //! Not modelled: motion, instancing, curves.
 
+mod aligned;
 mod build;
 mod collapse;
 mod lanes;
@@ -20,7 +21,8 @@ mod units;
 
 use crate::error::Result;
 use crate::job::Job;
-use glam::Vec3;
+use aligned::Aligned;
+use glam::{Vec3, Vec4};
 use lanes::{Baseline, Lanes};
 use node::{Child, Node, NodeRay};
 use packet::{Packet, TriangleRay};
@@ -44,10 +46,6 @@ impl Ray {
     pub fn at(&self, t: f32) -> Vec3 {
         self.origin + self.direction * t
     }
-
-    fn is_usable(&self) -> bool {
-        self.origin.is_finite() && self.direction.is_finite() && self.direction != Vec3::ZERO && self.t_max > 0.0
-    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,7 +66,7 @@ pub struct Accel {
     low: Vec3,
     high: Vec3,
     /// The largest absolute coordinate per axis.
-    largest: Vec3,
+    largest: Vec4,
     /// The most entries a traversal can have waiting.
     stack_need: usize,
     dropped: usize,
@@ -113,7 +111,7 @@ impl Accel {
     /// The nearest hit, or, if `ANY`, the first that is found.
     #[inline(always)]
     fn search<const ANY: bool>(&self, ray: &Ray, accept: &mut impl FnMut(&Hit) -> bool) -> Option<Hit> {
-        if self.root.is_empty() || !ray.is_usable() {
+        if self.root.is_empty() {
             return None;
         }
         if self.stack_need <= SHORT_STACK {
@@ -157,8 +155,9 @@ impl Accel {
         accept: &mut impl FnMut(&Hit) -> bool,
         stack: &mut [MaybeUninit<Waiting>],
     ) -> Option<Hit> {
-        let node_ray = NodeRay::<L>::new(ray, self.largest);
-        let triangle_ray = TriangleRay::<L>::new(ray);
+        let aligned = Aligned::new(ray)?;
+        let node_ray = NodeRay::<L>::new(&aligned, self.largest);
+        let triangle_ray = TriangleRay::new(&aligned);
         let mut best: Option<Hit> = None;
         let mut t_max = ray.t_max;
         let mut stack = Stack::new(stack);
@@ -168,7 +167,7 @@ impl Accel {
                 // Test eight triangles; only a hit that is accepted shortens the ray.
                 // SAFETY: children point into the lists they were built with.
                 let packet = unsafe { self.packets.get_unchecked(index) };
-                let (mut mask, hits) = packet.intersect(&triangle_ray, t_max);
+                let (mut mask, hits) = packet.intersect::<L>(&triangle_ray, t_max);
                 if mask != 0 {
                     let hits = hits.store();
                     while mask != 0 {

@@ -1,8 +1,8 @@
 //! Nodes of eight children and the conservative test of a ray against their boxes.
 
-use super::Ray;
+use super::aligned::Aligned;
 use super::lanes::{Lanes, Row};
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 
 /// What a node points to: another node, a packet of triangles, or nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -83,22 +83,20 @@ impl Node {
     /// processors, which the margin of [`NodeRay`] covers.
     #[inline(always)]
     pub fn intersect<L: Lanes>(&self, ray: &NodeRay<L>, t_max: f32) -> (u32, L) {
-        let plane = |side: usize, axis: usize, shift: L| {
-            // SAFETY: `near_side` is below 6 and so is its neighbour.
-            L::load(unsafe { self.bounds.get_unchecked(side) }).mul_add(ray.scale[axis], shift)
+        let plane = |start: usize, axis: usize, shift: L| {
+            // SAFETY: `near_start` is that of one of six rows, and so is that of its neighbour.
+            L::load(unsafe { &*self.bounds.as_ptr().byte_add(start) }).mul_add(ray.scale[axis], shift)
         };
-        let enter = |axis: usize| plane(ray.near_side[axis], axis, ray.near_shift[axis]);
-        let leave = |axis: usize| plane(ray.near_side[axis] ^ 1, axis, ray.far_shift[axis]);
+        let enter = |axis: usize| plane(ray.near_start[axis], axis, ray.near_shift[axis]);
+        let leave = |axis: usize| plane(ray.near_start[axis] ^ size_of::<Row>(), axis, ray.far_shift[axis]);
         let near = enter(0).max(enter(1)).max(enter(2).max(L::splat(0.0)));
-        let far = leave(0).min(leave(1)).min(leave(2)).mul(L::splat(WIDEN)).min(L::splat(t_max));
+        let far = leave(0).min(leave(1)).min(leave(2).min(L::splat(t_max)));
         (L::bits(near.le(far)), near)
     }
 }
 
-/// Eight rounding errors, of 2^-24 each.
-const MARGIN: f32 = 1.0 / (1 << 21) as f32;
-/// Where a ray leaves a box is put off by this factor.
-const WIDEN: f32 = 1.0 + MARGIN;
+/// Sixteen rounding errors, of 2^-24 each.
+const MARGIN: f32 = 1.0 / (1 << 20) as f32;
 
 /// A ray prepared for boxes: the distance to a plane is `plane * scale + shift`.
 ///
@@ -106,8 +104,8 @@ const WIDEN: f32 = 1.0 + MARGIN;
 /// its triangle; so the near planes are moved towards the ray and the far planes away, as section 3.3 of Woop et al.
 /// asks for. The margin is counted in units of the largest coordinate met, so it follows the scale of the scene.
 pub(super) struct NodeRay<L> {
-    /// Row of [`Node::bounds`] through which the ray enters, per axis.
-    near_side: [usize; 3],
+    /// Byte of [`Node::bounds`] at which the row starts through which the ray enters, per axis.
+    near_start: [usize; 3],
     scale: [L; 3],
     near_shift: [L; 3],
     far_shift: [L; 3],
@@ -115,28 +113,21 @@ pub(super) struct NodeRay<L> {
 
 impl<L: Lanes> NodeRay<L> {
     #[inline(always)]
-    pub fn new(ray: &Ray, largest: Vec3) -> Self {
+    pub fn new(ray: &Aligned, largest: Vec4) -> Self {
         let reach = ray.origin.abs() + largest;
-        let size = ray.direction.abs();
-        let along = size.max_element();
-        let dominant = if size.x == along {
-            reach.x
-        } else if size.y == along {
-            reach.y
-        } else {
-            reach.z
-        };
-        let margin = (reach + Vec3::splat(dominant)) * MARGIN;
+        let dominant = Vec4::select(ray.is_dominant, reach, Vec4::ZERO).max_element();
+        let margin = (reach + Vec4::splat(dominant)) * MARGIN;
         // A component too small to divide by is replaced by one that moves the ray less than the margin.
-        let d = size.max(Vec3::splat(along * 1e-18));
-        let sign = ray.direction.signum();
-        let d = d * sign;
-        let scale = Vec3::ONE / d;
+        let sign = Vec4::ONE.copysign(ray.direction);
+        let d = ray.size.max(Vec4::splat(ray.along * 1e-18)) * sign;
+        let scale = Vec4::ONE / d;
         let margin = margin * sign;
-        let (near, far) = (-(ray.origin + margin) * scale, -(ray.origin - margin) * scale);
-        let side = |axis: usize, d: f32| 2 * axis + (d.to_bits() >> 31) as usize;
+        let near = -(ray.origin + margin) * scale;
+        let far = -(ray.origin - margin) * scale;
+        let is_negative = ray.direction.is_negative_bitmask() as usize;
+        let start = |axis: usize| size_of::<Row>() * (2 * axis + (is_negative >> axis & 1));
         Self {
-            near_side: [side(0, d.x), side(1, d.y), side(2, d.z)],
+            near_start: [start(0), start(1), start(2)],
             scale: [L::splat(scale.x), L::splat(scale.y), L::splat(scale.z)],
             near_shift: [L::splat(near.x), L::splat(near.y), L::splat(near.z)],
             far_shift: [L::splat(far.x), L::splat(far.y), L::splat(far.z)],

@@ -1,7 +1,8 @@
 //! Eight triangles side by side, and the watertight test of a ray against them (Woop, Benthin and Wald 2013).
 
+use super::Hit;
+use super::aligned::Aligned;
 use super::lanes::{Lanes, Row};
-use super::{Hit, Ray};
 use glam::Vec3;
 
 /// Hits nearer than this share of a triangle's depth along the ray are lost in rounding: sixteen errors of 2^-24.
@@ -35,15 +36,15 @@ impl Packet {
 
     /// Mask of the triangles hit at distances in `(0, t_max]`, distances within rounding of 0 left out.
     #[inline(always)]
-    pub fn intersect<L: Lanes>(&self, ray: &TriangleRay<L>, t_max: f32) -> (u32, PacketHits<L>) {
+    pub fn intersect<L: Lanes>(&self, ray: &TriangleRay, t_max: f32) -> (u32, PacketHits<L>) {
         // Move the origin of space to the ray's, and shear it so that the ray runs along the third axis.
         let relative = |corner: usize, k: usize| {
             // SAFETY: `axes` is a permutation of 0, 1, 2.
             let row = unsafe { self.corners[corner].get_unchecked(ray.axes[k]) };
-            L::load(row).sub(ray.origin[k])
+            L::load(row).sub(L::splat(ray.origin[k]))
         };
         let z = [relative(0, 2), relative(1, 2), relative(2, 2)];
-        let sheared = |corner: usize, k: usize| relative(corner, k).sub(z[corner].mul(ray.shear[k]));
+        let sheared = |corner: usize, k: usize| relative(corner, k).sub(z[corner].mul(L::splat(ray.shear[k])));
         let x = [sheared(0, 0), sheared(1, 0), sheared(2, 0)];
         let y = [sheared(0, 1), sheared(1, 1), sheared(2, 1)];
         // Scaled barycentric coordinates: on which side of each edge the ray passes.
@@ -69,10 +70,10 @@ impl Packet {
         // Distances, from the depths of the corners. A determinant of zero gives a NaN or an infinity, which fail below.
         let reciprocal = L::splat(1.0).div(determinant);
         let (b0, u, v) = (edge[0].mul(reciprocal), edge[1].mul(reciprocal), edge[2].mul(reciprocal));
-        let t = b0.mul(z[0]).add(u.mul(z[1])).add(v.mul(z[2])).mul(ray.shear[2]);
+        let t = b0.mul(z[0]).add(u.mul(z[1])).add(v.mul(z[2])).mul(L::splat(ray.shear[2]));
         // A hit nearer than its own rounding error is the surface the ray starts on.
         let depth = z[0].abs().max(z[1].abs()).max(z[2].abs());
-        let far_enough = depth.mul(ray.nearest).lt(t);
+        let far_enough = depth.mul(L::splat(ray.nearest)).lt(t);
         let hit = L::and(L::and(hit, far_enough), t.le(L::splat(t_max)));
         (L::bits(hit), PacketHits { t, u, v })
     }
@@ -131,35 +132,28 @@ impl HitRows {
 }
 
 /// A ray prepared for triangles: axes permuted so that the longest component of its direction is the third.
-pub(super) struct TriangleRay<L> {
+pub(super) struct TriangleRay {
     /// Permuted, as is `shear`.
-    origin: [L; 3],
+    origin: [f32; 3],
     axes: [usize; 3],
-    shear: [L; 3],
+    shear: [f32; 3],
     /// What a triangle's depth is multiplied by to give the least distance.
-    nearest: L,
+    nearest: f32,
 }
 
-impl<L: Lanes> TriangleRay<L> {
+impl TriangleRay {
     #[inline(always)]
-    pub fn new(ray: &Ray) -> Self {
-        let d = ray.direction;
-        let size = d.abs();
-        let z = if size.x > size.y && size.x > size.z {
-            0
-        } else if size.y > size.z {
-            1
-        } else {
-            2
-        };
-        let axes = [[1, 2, 0], [2, 0, 1], [0, 1, 2]][z];
-        let [x, y, z] = axes;
+    pub fn new(ray: &Aligned) -> Self {
+        let z = ray.dominant_axis();
+        let (origin, d) = (ray.origin.to_array(), ray.direction.to_array());
+        // The two axes after it in turn, from tables of two bits each: 1, 2, 0 and 2, 0, 1.
+        let (x, y) = (0b00_10_01 >> (2 * z) & 3, 0b01_00_10 >> (2 * z) & 3);
         let inverse = 1.0 / d[z];
         Self {
-            origin: [L::splat(ray.origin[x]), L::splat(ray.origin[y]), L::splat(ray.origin[z])],
-            axes,
-            shear: [L::splat(d[x] * inverse), L::splat(d[y] * inverse), L::splat(inverse)],
-            nearest: L::splat(inverse.abs() * NEAREST),
+            origin: [origin[x], origin[y], origin[z]],
+            axes: [x, y, z],
+            shear: [d[x] * inverse, d[y] * inverse, inverse],
+            nearest: inverse.abs() * NEAREST,
         }
     }
 }

@@ -35,11 +35,11 @@ fn tessellated_box(n: usize, low: Vec3, high: Vec3) -> Vec<[Vec3; 3]> {
 }
 
 fn brute_force(triangles: &[[Vec3; 3]], ray: &Ray) -> Option<Hit> {
-    let triangle_ray = TriangleRay::<Baseline>::new(ray);
+    let triangle_ray = TriangleRay::new(&Aligned::new(ray).unwrap());
     let mut best: Option<Hit> = None;
     for id in 0..triangles.len() as u32 {
         let packet = Packet::new(triangles, &[id]);
-        let (mask, hits) = packet.intersect(&triangle_ray, ray.t_max);
+        let (mask, hits) = packet.intersect::<Baseline>(&triangle_ray, ray.t_max);
         if mask & 1 != 0 {
             let hit = hits.store().lane(0, &packet);
             if is_better(&hit, best.as_ref(), ray.t_max) {
