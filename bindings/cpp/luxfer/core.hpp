@@ -1,0 +1,328 @@
+// The context, images and jobs; and what every handle is.
+//
+// SPDX-License-Identifier: MIT OR Apache-2.0
+#pragma once
+
+#include "result.hpp"
+#include "view.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <functional>
+#include <limits>
+#include <vector>
+
+namespace luxfer {
+
+/// Whether a library of one version serves a program built with a header of another: before 1.0 those of one minor
+/// version do, from then on all of the same major version that are not older.
+constexpr bool is_compatible(std::uint32_t library, std::uint32_t header) noexcept {
+    return header >= 10000 ? library / 10000 == header / 10000 && library >= header : library / 100 == header / 100;
+}
+
+namespace detail {
+
+/// One reference to a C object, or none. Copies retain, the destructor releases.
+template <class C, luxfer_status (*retain)(C *), luxfer_status (*release)(C *)>
+class Reference {
+public:
+    Reference() noexcept = default;
+    explicit Reference(C *adopted) noexcept : object_(adopted) {}
+    Reference(const Reference &other) noexcept : object_(other.object_) {
+        if (object_ != nullptr)
+            retain(object_);
+    }
+    Reference(Reference &&other) noexcept : object_(std::exchange(other.object_, nullptr)) {}
+    Reference &operator=(Reference other) noexcept {
+        std::swap(object_, other.object_);
+        return *this;
+    }
+    ~Reference() { release(object_); }
+
+    C *get() const noexcept { return object_; }
+
+private:
+    C *object_ = nullptr;
+};
+
+template <class T, class = void>
+struct IsVersioned : std::false_type {};
+template <class T>
+struct IsVersioned<T, std::void_t<decltype(T::struct_size)>> : std::true_type {};
+
+/// Calls a C function whose last parameter is a plain value or a versioned struct, and returns that.
+template <class T, class... Parameters, class... Arguments>
+Result<T> get_value(luxfer_context *context, luxfer_status (*function)(Parameters...), Arguments... arguments) {
+    T value = T();
+    if constexpr (IsVersioned<T>::value)
+        value.struct_size = sizeof value;
+    const luxfer_status status = function(arguments..., &value);
+    return finish(context, status, value);
+}
+
+/// Calls a C function whose last parameters are a buffer, its capacity and the capacity needed.
+template <class... Parameters, class... Arguments>
+Result<std::string> get_text(luxfer_context *context, luxfer_status (*function)(Parameters...), Arguments... arguments) {
+    std::size_t needed = 0;
+    luxfer_status status = function(arguments..., nullptr, 0, &needed);
+    std::string text(needed, '\0');
+    if (status == LUXFER_OK)
+        status = function(arguments..., text.data(), needed, nullptr);
+    text.resize(std::strlen(text.c_str()));
+    return finish(context, status, std::move(text));
+}
+
+} // namespace detail
+
+using ContextParams = Params<luxfer_context_params, luxfer_context_params_init>;
+
+/// The threads that do the work, a memory budget and the error messages: what all else is made in. See luxfer_context.
+class Context {
+public:
+    /// Empty: every call on it, or with it, is LUXFER_INVALID_ARGUMENT.
+    Context() noexcept = default;
+
+    /// LUXFER_UNSUPPORTED if the library that was loaded is not compatible with the header the program was built with.
+    static Result<Context> create(const luxfer_context_params &params = ContextParams()) {
+        if (!is_compatible(luxfer_version(), LUXFER_VERSION))
+            return detail::fail<Context>(Error(LUXFER_UNSUPPORTED, mismatch()));
+        luxfer_context *made = nullptr;
+        const luxfer_status status = luxfer_context_create(&params, &made);
+        if (status != LUXFER_OK)
+            return detail::fail<Context>(
+                Error(status, std::string("luxfer_context_create: ") + luxfer_status_name(status)));
+        return Context(made);
+    }
+
+    /// Takes over a reference that the caller has to a context, such as one of another part of the program.
+    static Context adopt(luxfer_context *context) noexcept { return Context(context); }
+
+    /// The C handle, for the C functions; still owned by this object.
+    luxfer_context *get() const noexcept { return reference_.get(); }
+    explicit operator bool() const noexcept { return get() != nullptr; }
+
+    /// The message of this thread's latest failure, which Error::what() has told already.
+    Result<std::string> last_error() const { return detail::get_text(get(), luxfer_context_last_error, get()); }
+
+private:
+    explicit Context(luxfer_context *adopted) noexcept : reference_(adopted) {}
+
+    static std::string mismatch() {
+        const std::uint32_t header = LUXFER_VERSION;
+        return "the program was built for luxfer " + std::to_string(header / 10000) + "." +
+               std::to_string(header / 100 % 100) + "." + std::to_string(header % 100) + " and has loaded luxfer " +
+               luxfer_version_string() + "; install a library that is compatible, or rebuild the program";
+    }
+
+    detail::Reference<luxfer_context, luxfer_context_retain, luxfer_context_release> reference_;
+};
+
+/// What images, scenes, jobs and stages have in common: a reference to a C object, and one to its context, whose words the
+/// errors use. Copies share the object; a moved-from or default-made one is empty, which stands for NULL where a function
+/// takes that, and is LUXFER_INVALID_ARGUMENT elsewhere. May be destroyed in any order, also after the context.
+template <class C, luxfer_status (*retain)(C *), luxfer_status (*release)(C *)>
+class Handle {
+public:
+    /// The type of the C object.
+    using Object = C;
+
+    Handle() noexcept = default;
+
+    /// Takes over a reference that the caller has to a C object made in a context.
+    Handle(const Context &context, C *adopted) noexcept
+        : context_(adopted != nullptr ? context : Context()), reference_(adopted) {}
+
+    /// The C handle, for the C functions; still owned by this object.
+    C *get() const noexcept { return reference_.get(); }
+    explicit operator bool() const noexcept { return get() != nullptr; }
+
+    /// The context it was made in.
+    const Context &context() const noexcept { return context_; }
+
+protected:
+    /// Calls a C function on the object.
+    template <class... Parameters, class... Arguments>
+    Result<> call(luxfer_status (*function)(C *, Parameters...), Arguments... arguments) const {
+        return detail::finish(context_.get(), function(get(), arguments...));
+    }
+
+    /// Calls a C function on the object whose last parameter becomes a new object of class T.
+    template <class T, class... Parameters, class... Arguments>
+    Result<T> make(luxfer_status (*function)(C *, Parameters...), Arguments... arguments) const {
+        typename T::Object *made = nullptr;
+        const luxfer_status status = function(get(), arguments..., &made);
+        return detail::finish(context_.get(), status, T(context_, made));
+    }
+
+    /// The same for a C function on the context.
+    template <class T, class... Parameters, class... Arguments>
+    static Result<T> make_in(const Context &context, luxfer_status (*function)(luxfer_context *, Parameters...),
+                             Arguments... arguments) {
+        typename T::Object *made = nullptr;
+        const luxfer_status status = function(context.get(), arguments..., &made);
+        return detail::finish(context.get(), status, T(context, made));
+    }
+
+    /// Calls a C function on the object whose last parameter becomes a plain value or a struct.
+    template <class T, class... Parameters, class... Arguments>
+    Result<T> value(luxfer_status (*function)(C *, Parameters...), Arguments... arguments) const {
+        return detail::get_value<T>(context_.get(), function, get(), arguments...);
+    }
+
+    /// Calls a C function on the object that copies a text.
+    template <class... Parameters, class... Arguments>
+    Result<std::string> text(luxfer_status (*function)(C *, Parameters...), Arguments... arguments) const {
+        return detail::get_text(context_.get(), function, get(), arguments...);
+    }
+
+private:
+    Context context_;
+    detail::Reference<C, retain, release> reference_;
+};
+
+/// Width and height in pixels, and channels.
+struct ImageSize {
+    std::uint32_t width = 0, height = 0, channels = 0;
+
+    /// Samples in all.
+    std::size_t samples() const noexcept { return std::size_t(width) * height * channels; }
+};
+
+/// An image, which never changes. See luxfer_image.
+class Image : public Handle<luxfer_image, luxfer_image_retain, luxfer_image_release> {
+public:
+    using Handle::Handle;
+
+    /// Of a copy of the caller's pixels.
+    static Result<Image> create(const Context &context, const ConstImageView &view) {
+        return make_in<Image>(context, luxfer_image_create, &view);
+    }
+
+    /// Of a PNG, JPEG, Radiance HDR or OpenEXR file.
+    static Result<Image> load(const Context &context, Text path, luxfer_colour_space colour_space = LUXFER_COLOUR_SRGB) {
+        return make_in<Image>(context, luxfer_image_load, path.get(), colour_space);
+    }
+
+    /// Of such a file in memory: any container of bytes.
+    template <class Bytes>
+    static Result<Image> load_memory(const Context &context, const Bytes &file,
+                                     luxfer_colour_space colour_space = LUXFER_COLOUR_SRGB) {
+        static_assert(sizeof *std::data(file) == 1, "a file consists of bytes");
+        const void *data = std::data(file);
+        return make_in<Image>(context, luxfer_image_load_memory, data, std::size(file), colour_space);
+    }
+
+    /// As .png, multiplied by exposure, or as .exr.
+    Result<> save(Text path, float exposure = 1.0f) const { return call(luxfer_image_save, path.get(), exposure); }
+
+    Result<ImageSize> size() const {
+        ImageSize size;
+        const luxfer_status status = luxfer_image_size(get(), &size.width, &size.height, &size.channels);
+        return detail::finish(context().get(), status, size);
+    }
+
+    /// Writes it into the caller's pixels.
+    Result<> read(const ImageView &view, std::uint32_t first_channel = 0) const {
+        return call(luxfer_image_read, first_channel, &view);
+    }
+
+    /// All of its samples, packed: rows downwards, pixels from left to right, channels. At most four channels; take more
+    /// apart with read().
+    Result<std::vector<float>> samples() const {
+        ImageSize size;
+        luxfer_status status = luxfer_image_size(get(), &size.width, &size.height, &size.channels);
+        std::vector<float> samples(size.samples());
+        const ImageView view(samples, size.width, size.height, size.channels);
+        if (status == LUXFER_OK)
+            status = luxfer_image_read(get(), 0, &view);
+        return detail::finish(context().get(), status, std::move(samples));
+    }
+
+    /// A new image whose pixel at p is this one's at to_source(p).
+    Result<Image> warp(Numbers<9> to_source, std::uint32_t width, std::uint32_t height) const {
+        return make<Image>(luxfer_image_warp, to_source.data(), width, height);
+    }
+};
+
+/// The map that takes four points to four points, row by row; points are x and y of each.
+inline Result<std::array<double, 9>> homography_from_corners(const Context &context, Numbers<8> from, Numbers<8> to) {
+    std::array<double, 9> map = {};
+    const luxfer_status status = luxfer_homography_from_corners(context.get(), from.data(), to.data(), map.data());
+    return detail::finish(context.get(), status, map);
+}
+
+/// Told how far a job is, from 0 to 1, on the thread that waits; returns false to cancel it. May throw: the job is then
+/// cancelled, and the exception leaves wait() (with LUXFER_NO_EXCEPTIONS it must not throw).
+using Progress = std::function<bool(double fraction)>;
+
+/// How far a job is, and whether it has ended, well or not.
+struct JobState {
+    double fraction = 0;
+    bool is_finished = false;
+};
+
+/// Work in progress. The destructor of the last copy cancels it and waits for its end. See luxfer_job.
+class Job : public Handle<luxfer_job, luxfer_job_retain, luxfer_job_release> {
+public:
+    using Handle::Handle;
+
+    /// Waits until the job has ended; its failure is the error of this call.
+    Result<> wait(const Progress &progress = {}) const {
+        return detail::finish(context().get(), wait_c(get(), -1, progress));
+    }
+
+    /// Waits for a time at most. True if the job has ended well, false if it still runs; its failure is an error.
+    Result<bool> wait_for(std::chrono::milliseconds time, const Progress &progress = {}) const {
+        constexpr std::int64_t longest = std::numeric_limits<std::int32_t>::max();
+        const auto limit = std::int32_t(std::min(std::max<std::int64_t>(time.count(), 0), longest));
+        luxfer_status status = wait_c(get(), limit, progress);
+        if (status == LUXFER_NOT_READY) {
+            // It still runs, or has ended with that very status.
+            std::int32_t finished = 0;
+            status = luxfer_job_poll(get(), nullptr, &finished);
+            if (status == LUXFER_OK && !finished)
+                return false;
+            status = luxfer_job_wait(get(), 0, nullptr, nullptr);
+        }
+        return detail::finish(context().get(), status, true);
+    }
+
+    /// Does not wait.
+    Result<JobState> poll() const {
+        JobState state;
+        std::int32_t finished = 0;
+        const luxfer_status status = luxfer_job_poll(get(), &state.fraction, &finished);
+        state.is_finished = finished != 0;
+        return detail::finish(context().get(), status, state);
+    }
+
+    /// How it has ended, which is no error of this call; LUXFER_NOT_READY while it runs.
+    luxfer_status status() const noexcept { return luxfer_job_status(get()); }
+
+    /// Asks it to end early, from any thread; returns at once.
+    Result<> cancel() const { return call(luxfer_job_cancel); }
+
+private:
+    struct Listener {
+        const Progress &progress;
+        detail::Caught caught;
+    };
+
+    static std::int32_t tell(void *user, double fraction) {
+        Listener &listener = *static_cast<Listener *>(user);
+        return listener.caught.run([&] { return listener.progress(fraction); });
+    }
+
+    // As luxfer_job_wait.
+    static luxfer_status wait_c(luxfer_job *job, std::int32_t timeout_ms, const Progress &progress) {
+        if (!progress)
+            return luxfer_job_wait(job, timeout_ms, nullptr, nullptr);
+        Listener listener = {progress, {}};
+        const luxfer_status status = luxfer_job_wait(job, timeout_ms, tell, &listener);
+        listener.caught.rethrow();
+        return status;
+    }
+};
+
+} // namespace luxfer

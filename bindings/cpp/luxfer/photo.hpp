@@ -1,0 +1,143 @@
+// From a photo to an emissive texture: rectification, features, segmentation, emission, each a stage of its own.
+//
+// Stages have one face: create, set the inputs, start a job, read images and a report. An input that the C header allows to
+// be NULL is left out by an empty Image (or Rectify).
+//
+// SPDX-License-Identifier: MIT OR Apache-2.0
+#pragma once
+
+#include "core.hpp"
+
+namespace luxfer {
+
+using RectifyParams = Params<luxfer_rectify_params, luxfer_rectify_params_init>;
+using FeaturesParams = Params<luxfer_features_params, luxfer_features_params_init>;
+using SegmentParams = Params<luxfer_segment_params, luxfer_segment_params_init>;
+using EmissionParams = Params<luxfer_emission_params, luxfer_emission_params_init>;
+
+/// Lines, vanishing points, the camera; and a plane seen straight on. See luxfer_rectify.
+class Rectify : public Handle<luxfer_rectify, luxfer_rectify_retain, luxfer_rectify_release> {
+public:
+    using Handle::Handle;
+
+    static Result<Rectify> create(const Context &context) { return make_in<Rectify>(context, luxfer_rectify_create); }
+
+    Result<> set_photo(const Image &photo) const { return call(luxfer_rectify_set_photo, photo.get()); }
+
+    /// Of the plane to unwarp; may be empty: only lines are found.
+    Result<> set_mask(const Image &mask) const { return call(luxfer_rectify_set_mask, mask.get()); }
+
+    Result<Job> start(const luxfer_rectify_params &params = RectifyParams()) const {
+        return make<Job>(luxfer_rectify_start, &params);
+    }
+
+    /// A LUXFER_RECTIFY_ value.
+    Result<Image> image(luxfer_rectify_image which) const { return make<Image>(luxfer_rectify_get_image, which); }
+
+    /// Another image of the photo's size, unwarped as the plane was.
+    Result<Image> warp(const Image &source) const { return make<Image>(luxfer_rectify_warp, source.get()); }
+
+    Result<luxfer_rectify_report> report() const { return value<luxfer_rectify_report>(luxfer_rectify_get_report); }
+};
+
+/// What segmentation knows of each pixel of a photo. See luxfer_features.
+class Features : public Handle<luxfer_features, luxfer_features_retain, luxfer_features_release> {
+public:
+    using Handle::Handle;
+
+    static Result<Features> create(const Context &context) { return make_in<Features>(context, luxfer_features_create); }
+
+    Result<> set_photo(const Image &photo) const { return call(luxfer_features_set_photo, photo.get()); }
+
+    /// May be empty: none.
+    Result<> set_depth(const Image &depth, luxfer_depth_kind kind = LUXFER_DEPTH_ALONG_Z) const {
+        return call(luxfer_features_set_depth, depth.get(), kind);
+    }
+
+    /// Lines and camera as they are now; may be empty: none.
+    Result<> set_view(const Rectify &rectify) const { return call(luxfer_features_set_view, rectify.get()); }
+
+    Result<Job> start(const luxfer_features_params &params = FeaturesParams()) const {
+        return make<Job>(luxfer_features_start, &params);
+    }
+
+    /// A LUXFER_FEATURES_ value.
+    Result<Image> image(luxfer_features_image which) const { return make<Image>(luxfer_features_get_image, which); }
+
+    Result<luxfer_features_report> report() const { return value<luxfer_features_report>(luxfer_features_get_report); }
+};
+
+/// From strokes to a mask. See luxfer_segment.
+class Segment : public Handle<luxfer_segment, luxfer_segment_retain, luxfer_segment_release> {
+public:
+    using Handle::Handle;
+
+    static Result<Segment> create(const Context &context) { return make_in<Segment>(context, luxfer_segment_create); }
+
+    Result<> set_features(const Image &features) const { return call(luxfer_segment_set_features, features.get()); }
+
+    /// Where to look; may be empty: everywhere.
+    Result<> set_within(const Image &within) const { return call(luxfer_segment_set_within, within.get()); }
+
+    /// Along a polyline: points are x and y of each, in pixels.
+    Result<> add_stroke(Span<const float> points, float radius, bool is_positive) const {
+        const std::int32_t positive = is_positive;
+        return call(luxfer_segment_add_stroke, points.data(), points.size() / 2, radius, positive);
+    }
+    Result<> add_strokes(const Image &drawing, luxfer_phase phase) const {
+        return call(luxfer_segment_add_strokes_image, drawing.get(), phase);
+    }
+    Result<> add_strokes(Text description, luxfer_phase phase) const {
+        return call(luxfer_segment_add_strokes_text, description.get(), phase);
+    }
+    Result<> clear_strokes() const { return call(luxfer_segment_clear_strokes); }
+
+    Result<Job> start(const luxfer_segment_params &params = SegmentParams()) const {
+        return make<Job>(luxfer_segment_start, &params);
+    }
+
+    /// A LUXFER_SEGMENT_ value.
+    Result<Image> image(luxfer_segment_image which) const { return make<Image>(luxfer_segment_get_image, which); }
+
+    Result<luxfer_segment_report> report() const { return value<luxfer_segment_report>(luxfer_segment_get_report); }
+};
+
+/// From unwarped lights to an emissive texture of any size. See luxfer_emission.
+class Emission : public Handle<luxfer_emission, luxfer_emission_retain, luxfer_emission_release> {
+public:
+    using Handle::Handle;
+
+    static Result<Emission> create(const Context &context) { return make_in<Emission>(context, luxfer_emission_create); }
+
+    Result<> set_exemplar(const Image &unwarped, const Image &light, const Image &valid) const {
+        return call(luxfer_emission_set_exemplar, unwarped.get(), light.get(), valid.get());
+    }
+
+    /// Where full detail is recovered from, and the map from unwarped to photo pixels (luxfer_rectify_report.to_photo).
+    Result<> set_photo(const Image &photo, Numbers<9> to_photo) const {
+        return call(luxfer_emission_set_photo, photo.get(), to_photo.data());
+    }
+    Result<> clear_photo() const { return call(luxfer_emission_set_photo, nullptr, nullptr); }
+
+    Result<Job> start(const luxfer_emission_params &params = EmissionParams()) const {
+        return make<Job>(luxfer_emission_start, &params);
+    }
+
+    /// A LUXFER_EMISSION_ value.
+    Result<Image> image(luxfer_emission_image which) const { return make<Image>(luxfer_emission_get_image, which); }
+
+    Result<luxfer_emission_report> report() const { return value<luxfer_emission_report>(luxfer_emission_get_report); }
+
+    Result<luxfer_luminaire> luminaire(std::uint32_t index) const {
+        return value<luxfer_luminaire>(luxfer_emission_get_luminaire, index);
+    }
+
+    /// A corner of a luminaire's outline, x and y in texels.
+    Result<std::array<double, 2>> corner(std::uint32_t luminaire, std::uint32_t corner) const {
+        std::array<double, 2> point = {};
+        const luxfer_status status = luxfer_emission_get_corner(get(), luminaire, corner, &point[0], &point[1]);
+        return detail::finish(context().get(), status, point);
+    }
+};
+
+} // namespace luxfer

@@ -1,0 +1,121 @@
+// Light in a scene: pictures with their layers, illuminance, and the solution for an emission.
+//
+// SPDX-License-Identifier: MIT OR Apache-2.0
+#pragma once
+
+#include "scene.hpp"
+
+namespace luxfer {
+
+using RenderParams = Params<luxfer_render_params, luxfer_render_params_init>;
+using IlluminanceParams = Params<luxfer_illuminance_params, luxfer_illuminance_params_init>;
+using IlluminanceGrid = Params<luxfer_illuminance_grid, luxfer_illuminance_grid_init>;
+using RelightParams = Params<luxfer_relight_params, luxfer_relight_params_init>;
+
+/// A path tracer; what it has so far can be read while its job runs. See luxfer_render.
+class Render : public Handle<luxfer_render, luxfer_render_retain, luxfer_render_release> {
+public:
+    using Handle::Handle;
+
+    static Result<Render> create(const Context &context) { return make_in<Render>(context, luxfer_render_create); }
+
+    Result<> set_scene(const Scene &scene) const { return call(luxfer_render_set_scene, scene.get()); }
+
+    /// A camera of the scene, or one of its own.
+    Result<> set_camera(std::uint32_t index) const { return call(luxfer_render_set_camera_index, index); }
+    Result<> set_camera(const luxfer_camera_params &camera) const { return call(luxfer_render_set_camera, &camera); }
+
+    // What is made beside the picture, of the same paths.
+
+    /// A layer of the light that came by certain ways, such as "C<RD>L".
+    Result<> add_expression(Text name, Text expression) const {
+        return call(luxfer_render_add_expression, name.get(), expression.get());
+    }
+    Result<> clear_expressions() const { return call(luxfer_render_clear_expressions); }
+
+    /// A LUXFER_EMITTER_AS_ value.
+    Result<> set_emitter_as(luxfer_emitter_as emitter_as) const { return call(luxfer_render_set_emitter_as, emitter_as); }
+
+    /// LUXFER_AOV_ flags.
+    Result<> set_aovs(std::uint32_t flags) const { return call(luxfer_render_set_aovs, flags); }
+
+    Result<Job> start(const luxfer_render_params &params = RenderParams()) const {
+        return make<Job>(luxfer_render_start, &params);
+    }
+
+    /// A LUXFER_RENDER_ value.
+    Result<Image> image(luxfer_render_image which = LUXFER_RENDER_BEAUTY) const {
+        return make<Image>(luxfer_render_get_image, which);
+    }
+
+    Result<luxfer_render_report> report() const { return value<luxfer_render_report>(luxfer_render_get_report); }
+
+    Result<std::uint32_t> layer_count() const { return value<std::uint32_t>(luxfer_render_get_layer_count); }
+    Result<std::string> layer_name(std::uint32_t index) const { return text(luxfer_render_get_layer_name, index); }
+    Result<std::uint32_t> find_layer(Text name) const {
+        return value<std::uint32_t>(luxfer_render_find_layer, name.get());
+    }
+    Result<Image> layer(std::uint32_t index) const { return make<Image>(luxfer_render_get_layer, index); }
+
+    /// The picture and all layers in one file.
+    Result<> write_exr(Text path) const { return call(luxfer_render_write_exr, path.get()); }
+};
+
+/// Illuminance in lux, on a grid or over a mesh. See luxfer_illuminance.
+class Illuminance : public Handle<luxfer_illuminance, luxfer_illuminance_retain, luxfer_illuminance_release> {
+public:
+    using Handle::Handle;
+
+    static Result<Illuminance> create(const Context &context) {
+        return make_in<Illuminance>(context, luxfer_illuminance_create);
+    }
+
+    Result<> set_scene(const Scene &scene) const { return call(luxfer_illuminance_set_scene, scene.get()); }
+
+    Result<Job> start_grid(const luxfer_illuminance_grid &grid,
+                           const luxfer_illuminance_params &params = IlluminanceParams()) const {
+        return make<Job>(luxfer_illuminance_start_grid, &grid, &params);
+    }
+
+    /// On the side that the triangles' winding faces, or the other, the back.
+    Result<Job> start_mesh(std::uint32_t mesh, bool back = false,
+                           const luxfer_illuminance_params &params = IlluminanceParams()) const {
+        const std::uint32_t side = back;
+        return make<Job>(luxfer_illuminance_start_mesh, mesh, side, &params);
+    }
+
+    /// A LUXFER_ILLUMINANCE_ value.
+    Result<Image> image(luxfer_illuminance_image which = LUXFER_ILLUMINANCE_LUX) const {
+        return make<Image>(luxfer_illuminance_get_image, which);
+    }
+
+    Result<luxfer_illuminance_report> report() const {
+        return value<luxfer_illuminance_report>(luxfer_illuminance_get_report);
+    }
+};
+
+/// Solves for the colour and intensity of an emission. See luxfer_relight.
+class Relight : public Handle<luxfer_relight, luxfer_relight_retain, luxfer_relight_release> {
+public:
+    using Handle::Handle;
+
+    static Result<Relight> create(const Context &context) { return make_in<Relight>(context, luxfer_relight_create); }
+
+    /// The emission to solve for, as Scene::place_emission has told it; its mesh is the surface to match.
+    Result<> set_scene(const Scene &scene, PlacedEmission emission) const {
+        return call(luxfer_relight_set_scene, scene.get(), emission.material, emission.mesh);
+    }
+
+    /// The mean radiance that the surface should have, in cd/m².
+    Result<> set_target(Rgb target) const {
+        return call(luxfer_relight_set_target, target.red, target.green, target.blue);
+    }
+
+    Result<Job> start(const luxfer_relight_params &params = RelightParams()) const {
+        return make<Job>(luxfer_relight_start, &params);
+    }
+
+    Result<luxfer_relight_report> report() const { return value<luxfer_relight_report>(luxfer_relight_get_report); }
+};
+
+} // namespace luxfer

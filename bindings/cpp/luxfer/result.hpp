@@ -1,0 +1,173 @@
+// How a call ends: with its result, or with an Error.
+//
+// By default errors are thrown, and Result<T> is T itself. With LUXFER_NO_EXCEPTIONS defined (for every file of a program
+// alike) nothing is thrown: Result<T> holds a T or an Error, as std::expected of C++23 does. All of the wrapper's functions
+// are written against Result, so that both ways of working have the same functions.
+//
+// SPDX-License-Identifier: MIT OR Apache-2.0
+#pragma once
+
+#include <luxfer.h>
+
+#include <cassert>
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <variant>
+
+namespace luxfer {
+
+/// Why a call failed: what() is the library's message, which names the parameter, its value and what is allowed.
+class Error : public std::runtime_error {
+public:
+    Error(luxfer_status status, const std::string &message) : std::runtime_error(message), status_(status) {}
+
+    /// LUXFER_INVALID_ARGUMENT, LUXFER_CANCELLED, ...; never LUXFER_OK.
+    luxfer_status status() const noexcept { return status_; }
+
+    /// The name of the status, such as "LUXFER_FORMAT".
+    const char *name() const noexcept { return luxfer_status_name(status_); }
+
+private:
+    luxfer_status status_;
+};
+
+#ifndef LUXFER_NO_EXCEPTIONS
+
+/// What a function returns: a T. Errors are thrown.
+template <class T = void>
+using Result = T;
+
+#else
+
+/// What a function returns: a T, or an Error. `if (result)` tells which; then *result, result->..., or result.error().
+template <class T = void>
+class [[nodiscard]] Result {
+public:
+    Result(T value) : either_(std::move(value)) {}
+    Result(Error error) : either_(std::move(error)) {}
+
+    bool has_value() const noexcept { return either_.index() == 0; }
+    explicit operator bool() const noexcept { return has_value(); }
+
+    /// The value, which must be there.
+    T &operator*() & noexcept { return *operator->(); }
+    const T &operator*() const & noexcept { return *operator->(); }
+    T &&operator*() && noexcept { return std::move(*operator->()); }
+    T *operator->() noexcept { return assert(has_value()), std::get_if<0>(&either_); }
+    const T *operator->() const noexcept { return assert(has_value()), std::get_if<0>(&either_); }
+
+    /// The error, which must be there.
+    const Error &error() const noexcept { return assert(!has_value()), *std::get_if<1>(&either_); }
+
+private:
+    std::variant<T, Error> either_;
+};
+
+/// Nothing, or an Error.
+template <>
+class [[nodiscard]] Result<void> : private Result<std::monostate> {
+    using Base = Result<std::monostate>;
+
+public:
+    Result() : Base(std::monostate()) {}
+    Result(Error error) : Base(std::move(error)) {}
+
+    using Base::error;
+    using Base::has_value;
+    using Base::operator bool;
+};
+
+#endif
+
+namespace detail {
+
+/// The message of this thread's latest failure. Without a context there is none: the status has to do.
+inline Error error_of(luxfer_context *context, luxfer_status status) {
+    if (context == nullptr)
+        return Error(status, std::string(luxfer_status_name(status)) + ": the object, or the context, is empty");
+    std::size_t needed = 1;
+    luxfer_context_last_error(context, nullptr, 0, &needed);
+    std::string text(needed, '\0');
+    luxfer_context_last_error(context, text.data(), needed, nullptr);
+    text.pop_back();
+    return Error(status, text);
+}
+
+#ifndef LUXFER_NO_EXCEPTIONS
+
+template <class T>
+[[noreturn]] T fail(Error error) {
+    throw error;
+}
+
+/// The end of every call: throws unless status is LUXFER_OK.
+inline void finish(luxfer_context *context, luxfer_status status) {
+    if (status != LUXFER_OK)
+        throw error_of(context, status);
+}
+
+template <class T>
+T finish(luxfer_context *context, luxfer_status status, T value) {
+    finish(context, status);
+    return value;
+}
+
+/// Runs a function of the caller's inside a callback from C, which no exception may cross: it waits here.
+class Caught {
+public:
+    /// What the C callback returns: 0 to go on if the function says true.
+    template <class Function>
+    std::int32_t run(const Function &function) noexcept {
+        try {
+            return function() ? 0 : 1;
+        } catch (...) {
+            exception_ = std::current_exception();
+            return 1;
+        }
+    }
+
+    /// To be called when C has returned.
+    void rethrow() {
+        if (exception_)
+            std::rethrow_exception(std::exchange(exception_, nullptr));
+    }
+
+private:
+    std::exception_ptr exception_;
+};
+
+#else
+
+template <class T>
+Result<T> fail(Error error) {
+    return error;
+}
+
+/// The end of every call: an error unless status is LUXFER_OK.
+inline Result<> finish(luxfer_context *context, luxfer_status status) {
+    return status == LUXFER_OK ? Result<>() : Result<>(error_of(context, status));
+}
+
+template <class T>
+Result<T> finish(luxfer_context *context, luxfer_status status, T value) {
+    return status == LUXFER_OK ? Result<T>(std::move(value)) : Result<T>(error_of(context, status));
+}
+
+/// Runs a function of the caller's inside a callback from C. It must not throw: that would end the program.
+class Caught {
+public:
+    template <class Function>
+    std::int32_t run(const Function &function) noexcept {
+        return function() ? 0 : 1;
+    }
+    void rethrow() {}
+};
+
+#endif
+
+} // namespace detail
+} // namespace luxfer

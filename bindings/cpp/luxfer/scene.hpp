@@ -1,0 +1,185 @@
+// Scenes: made, loaded, described by arrays, asked, read back.
+//
+// SPDX-License-Identifier: MIT OR Apache-2.0
+#pragma once
+
+#include "core.hpp"
+
+namespace luxfer {
+
+using MaterialParams = Params<luxfer_material_params, luxfer_material_params_init>;
+using CameraParams = Params<luxfer_camera_params, luxfer_camera_params_init>;
+using LightParams = Params<luxfer_light_params, luxfer_light_params_init>;
+
+/// A mesh of packed arrays, which must live until it is added. Arrays with strides are set in the C struct's fields.
+struct MeshParams : Params<luxfer_mesh_params, luxfer_mesh_params_init> {
+    MeshParams() noexcept = default;
+
+    /// Three numbers for each vertex, three indices for each triangle.
+    MeshParams(Span<const float> positions_, Span<const std::uint32_t> indices_, std::uint32_t material_ = 0) noexcept {
+        positions = positions_.data();
+        vertex_count = positions_.size() / 3;
+        indices = indices_.data();
+        triangle_count = indices_.size() / 3;
+        material = material_;
+    }
+};
+
+/// The mesh and the material that a light texture became.
+struct PlacedEmission {
+    std::uint32_t mesh = 0, material = 0;
+};
+
+/// Takes the next bytes of a file; returns false to give up. May throw: the exception leaves the function that writes.
+using Writer = std::function<bool(const void *data, std::size_t size)>;
+
+/// What the host describes: meshes, materials, textures, lights, cameras. See luxfer_scene.
+class Scene : public Handle<luxfer_scene, luxfer_scene_retain, luxfer_scene_release> {
+public:
+    using Handle::Handle;
+
+    /// An empty one.
+    static Result<Scene> create(const Context &context) { return make_in<Scene>(context, luxfer_scene_create); }
+
+    /// Of a .glb, or a .gltf with the files it names.
+    static Result<Scene> load(const Context &context, Text path) {
+        return make_in<Scene>(context, luxfer_scene_load, path.get());
+    }
+
+    /// Of such a file in memory: any container of bytes. Other files that it names are looked up in base_path.
+    template <class Bytes>
+    static Result<Scene> load_memory(const Context &context, const Bytes &file, Text base_path = nullptr) {
+        static_assert(sizeof *std::data(file) == 1, "a file consists of bytes");
+        const void *data = std::data(file);
+        return make_in<Scene>(context, luxfer_scene_load_memory, data, std::size(file), base_path.get());
+    }
+
+    /// A scene that the library generates: a LUXFER_DEMO_ value.
+    static Result<Scene> demo(const Context &context, luxfer_demo which) {
+        return make_in<Scene>(context, luxfer_demo_scene, which);
+    }
+
+    /// As a .glb with all of its textures inside.
+    Result<> save(Text path) const { return call(luxfer_scene_export, path.get()); }
+
+    /// The same through a function of the caller's.
+    Result<> write(const Writer &writer) const {
+        Sink sink = {writer, {}};
+        const luxfer_status status = luxfer_scene_export_memory(get(), take, &sink);
+        sink.caught.rethrow();
+        return detail::finish(context().get(), status);
+    }
+
+    // Its parts.
+
+    Result<luxfer_scene_counts> counts() const { return value<luxfer_scene_counts>(luxfer_scene_get_counts); }
+
+    /// These three return the index of what was added.
+    Result<std::uint32_t> add_material(const luxfer_material_params &params = MaterialParams()) const {
+        return value<std::uint32_t>(luxfer_scene_add_material, &params);
+    }
+    Result<std::uint32_t> add_mesh(const luxfer_mesh_params &params) const {
+        return value<std::uint32_t>(luxfer_scene_add_mesh, &params);
+    }
+    Result<std::uint32_t> add_camera(const luxfer_camera_params &params = CameraParams()) const {
+        return value<std::uint32_t>(luxfer_scene_add_camera, &params);
+    }
+    Result<std::uint32_t> add_light(const luxfer_light_params &params = LightParams()) const {
+        return value<std::uint32_t>(luxfer_scene_add_light, &params);
+    }
+
+    Result<> set_camera(std::uint32_t index, const luxfer_camera_params &params) const {
+        return call(luxfer_scene_set_camera, index, &params);
+    }
+
+    /// Light of one colour from all directions, in cd/m².
+    Result<> set_environment(Rgb light) const {
+        return call(luxfer_scene_set_environment, light.red, light.green, light.blue);
+    }
+
+    /// What a material emits, in cd/m².
+    Result<> set_emission(std::uint32_t material, Rgb emission) const {
+        return call(luxfer_scene_set_emission, material, emission.red, emission.green, emission.blue);
+    }
+
+    // Surfaces.
+
+    /// The planar surface of that object or material that faces the room.
+    Result<luxfer_surface> find_surface(Text name) const {
+        return value<luxfer_surface>(luxfer_scene_find_surface, name.get());
+    }
+
+    /// Lays an emissive texture over it, which emits texture * scale in cd/m².
+    Result<PlacedEmission> place_emission(Text name, const Image &texture, Rgb scale) const {
+        PlacedEmission placed;
+        const luxfer_status status =
+            luxfer_scene_place_emission(get(), name.get(), texture.get(), scale.red, scale.green, scale.blue, &placed.mesh,
+                                        &placed.material);
+        return detail::finish(context().get(), status, placed);
+    }
+
+    // What the library itself sees in it.
+
+    /// The nearest hit of each ray, into as many hits.
+    Result<> intersect(Span<const luxfer_ray> rays, Span<luxfer_hit> hits) const {
+        if (rays.size() != hits.size())
+            return detail::fail<void>(Error(LUXFER_INVALID_ARGUMENT, "there must be as many hits as rays"));
+        return call(luxfer_scene_intersect, rays.data(), rays.size(), hits.data());
+    }
+
+    /// What the renderer has to do for it; error is the share of light that bounces may leave out.
+    Result<luxfer_requirements> requirements(float error = 0.01f) const {
+        return value<luxfer_requirements>(luxfer_scene_requirements, error);
+    }
+
+    /// What rendering it leaves out, a sentence per line.
+    Result<std::string> requirements_text() const { return text(luxfer_scene_requirements_text); }
+
+    // Read back, by index.
+
+    Result<luxfer_camera_params> camera(std::uint32_t index) const {
+        return value<luxfer_camera_params>(luxfer_scene_get_camera, index);
+    }
+    Result<luxfer_mesh_info> mesh(std::uint32_t index) const {
+        return value<luxfer_mesh_info>(luxfer_scene_get_mesh, index);
+    }
+    Result<std::string> mesh_name(std::uint32_t index) const { return text(luxfer_scene_get_mesh_name, index); }
+
+    /// Into packed arrays: positions and normals, three for each vertex, and indices, three for each triangle. What is not
+    /// wanted is left empty.
+    Result<> read_mesh(std::uint32_t index, Span<float> positions, Span<float> normals, Span<std::uint32_t> indices) const {
+        std::size_t vertices = std::max(positions.size(), normals.size()) / 3;
+        if (!positions.empty() && !normals.empty())
+            vertices = std::min(positions.size(), normals.size()) / 3;
+        return call(luxfer_scene_read_mesh, index, vertices, positions.data(), normals.data(), indices.size() / 3,
+                    indices.data());
+    }
+
+    /// One of its sets of texture coordinates, two for each vertex.
+    Result<> read_mesh_uvs(std::uint32_t index, std::uint32_t uv_set, Span<float> uvs) const {
+        return call(luxfer_scene_read_mesh_uvs, index, uv_set, uvs.size() / 2, uvs.data());
+    }
+
+    Result<luxfer_material_params> material(std::uint32_t index) const {
+        return value<luxfer_material_params>(luxfer_scene_get_material, index);
+    }
+
+    /// Which texture a material uses for a purpose, a LUXFER_TEXTURE_ value, and how.
+    Result<luxfer_texture_use> material_texture(std::uint32_t material, luxfer_texture_role role) const {
+        return value<luxfer_texture_use>(luxfer_scene_get_material_texture, material, role);
+    }
+    Result<Image> texture(std::uint32_t index) const { return make<Image>(luxfer_scene_get_texture, index); }
+
+private:
+    struct Sink {
+        const Writer &writer;
+        detail::Caught caught;
+    };
+
+    static std::int32_t take(void *user, const void *data, std::size_t size) {
+        Sink &sink = *static_cast<Sink *>(user);
+        return sink.caught.run([&] { return sink.writer(data, size); });
+    }
+};
+
+} // namespace luxfer

@@ -1,0 +1,108 @@
+// The lighting transfer from end to end, and the demonstration photo to try it with.
+//
+// SPDX-License-Identifier: MIT OR Apache-2.0
+#pragma once
+
+#include "photo.hpp"
+#include "render.hpp"
+
+namespace luxfer {
+
+/// Its pointers to the settings of the stages must live until start() returns.
+using TransferParams = Params<luxfer_transfer_params, luxfer_transfer_params_init>;
+using DemoPhotoParams = Params<luxfer_demo_photo_params, luxfer_demo_photo_params_init>;
+
+/// From a photo, a few strokes and a scene to that scene lit as in the photo. See luxfer_transfer.
+class Transfer : public Handle<luxfer_transfer, luxfer_transfer_retain, luxfer_transfer_release> {
+public:
+    using Handle::Handle;
+
+    static Result<Transfer> create(const Context &context) { return make_in<Transfer>(context, luxfer_transfer_create); }
+
+    // Its inputs.
+
+    Result<> set_photo(const Image &photo) const { return call(luxfer_transfer_set_photo, photo.get()); }
+
+    /// May be empty: none.
+    Result<> set_depth(const Image &depth, luxfer_depth_kind kind = LUXFER_DEPTH_ALONG_Z) const {
+        return call(luxfer_transfer_set_depth, depth.get(), kind);
+    }
+
+    /// The scene to light, and the object or material that receives the lights.
+    Result<> set_scene(const Scene &scene, Text surface) const {
+        return call(luxfer_transfer_set_scene, scene.get(), surface.get());
+    }
+
+    /// In place of one made from the photo; may be empty: one is made.
+    Result<> set_texture(const Image &texture) const { return call(luxfer_transfer_set_texture, texture.get()); }
+
+    /// Of the picture; without one it is the scene's first, or chosen.
+    Result<> set_camera(const luxfer_camera_params &camera) const { return call(luxfer_transfer_set_camera, &camera); }
+    Result<> clear_camera() const { return call(luxfer_transfer_set_camera, nullptr); }
+
+    /// Along a polyline: points are x and y of each, in pixels of the photo; phase is a LUXFER_PHASE_ value.
+    Result<> add_stroke(luxfer_phase phase, Span<const float> points, float radius, bool is_positive) const {
+        const std::int32_t positive = is_positive;
+        return call(luxfer_transfer_add_stroke, phase, points.data(), points.size() / 2, radius, positive);
+    }
+    Result<> add_strokes(const Image &drawing) const { return call(luxfer_transfer_add_strokes_image, drawing.get()); }
+    Result<> add_strokes(Text description) const { return call(luxfer_transfer_add_strokes_text, description.get()); }
+    Result<> clear_strokes() const { return call(luxfer_transfer_clear_strokes); }
+
+    // Results of the caller's in the place of its own.
+
+    Result<> use(const Rectify &rectify) const { return call(luxfer_transfer_use_rectify, rectify.get()); }
+    Result<> use(const Features &features) const { return call(luxfer_transfer_use_features, features.get()); }
+    Result<> use(luxfer_phase phase, const Segment &segment) const {
+        return call(luxfer_transfer_use_segment, phase, segment.get());
+    }
+    Result<> use(luxfer_phase phase, const Image &mask) const { return call(luxfer_transfer_use_mask, phase, mask.get()); }
+
+    /// Runs the stages first to last, LUXFER_STAGE_ values.
+    Result<Job> start(luxfer_stage first, luxfer_stage last, const luxfer_transfer_params &params = TransferParams()) const {
+        return make<Job>(luxfer_transfer_start, first, last, &params);
+    }
+
+    /// Runs all stages.
+    Result<Job> start(const luxfer_transfer_params &params = TransferParams()) const {
+        return start(LUXFER_STAGE_VIEW, LUXFER_STAGE_RENDER, params);
+    }
+
+    // Its results, as soon as their stage has ended.
+
+    /// A LUXFER_TRANSFER_ value.
+    Result<Image> image(luxfer_transfer_image which) const { return make<Image>(luxfer_transfer_get_image, which); }
+
+    /// A LUXFER_SCENE_ value.
+    Result<Scene> scene(luxfer_transfer_scene which = LUXFER_SCENE_LIT) const {
+        return make<Scene>(luxfer_transfer_get_scene, which);
+    }
+
+    Result<luxfer_transfer_report> report() const { return value<luxfer_transfer_report>(luxfer_transfer_get_report); }
+    Result<luxfer_rectify_report> view() const { return value<luxfer_rectify_report>(luxfer_transfer_get_view); }
+    Result<luxfer_relight_report> solution() const {
+        return value<luxfer_relight_report>(luxfer_transfer_get_solution);
+    }
+    Result<luxfer_fixture> fixture(std::uint32_t index) const {
+        return value<luxfer_fixture>(luxfer_transfer_get_fixture, index);
+    }
+};
+
+/// A photo of a generated office, and the strokes a user would paint on it. See luxfer_demo_photo.
+class DemoPhoto : public Handle<luxfer_demo_photo, luxfer_demo_photo_retain, luxfer_demo_photo_release> {
+public:
+    using Handle::Handle;
+
+    static Result<DemoPhoto> create(const Context &context) {
+        return make_in<DemoPhoto>(context, luxfer_demo_photo_create);
+    }
+
+    Result<Job> start(const luxfer_demo_photo_params &params = DemoPhotoParams()) const {
+        return make<Job>(luxfer_demo_photo_start, &params);
+    }
+
+    /// A LUXFER_DEMO_PHOTO_ value.
+    Result<Image> image(luxfer_demo_photo_image which) const { return make<Image>(luxfer_demo_photo_get_image, which); }
+};
+
+} // namespace luxfer

@@ -1,0 +1,121 @@
+// Views of the caller's memory: strings, arrays and pixels as the C functions take them. Views own nothing and copy nothing.
+//
+// SPDX-License-Identifier: MIT OR Apache-2.0
+#pragma once
+
+#include <luxfer.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+#include <string>
+#include <type_traits>
+#include <utility>
+
+namespace luxfer {
+
+/// A string in UTF-8 that ends with a zero: a literal, or a std::string. nullptr is none, where a function allows it.
+class Text {
+public:
+    Text(const char *text) noexcept : text_(text) {}
+    Text(const std::string &text) noexcept : text_(text.c_str()) {}
+    const char *get() const noexcept { return text_; }
+
+private:
+    const char *text_;
+};
+
+/// Any number of elements in a row, as std::span of C++20: made of an array, a std::vector or std::array, or of a pointer
+/// and a count.
+template <class T>
+class Span {
+public:
+    constexpr Span() noexcept = default;
+    constexpr Span(T *data, std::size_t size) noexcept : data_(data), size_(size) {}
+
+    template <class Elements, class = std::enable_if_t<std::is_convertible_v<
+                                  std::remove_pointer_t<decltype(std::data(std::declval<Elements &>()))> (*)[], T (*)[]>>>
+    constexpr Span(Elements &&elements) noexcept : data_(std::data(elements)), size_(std::size(elements)) {}
+
+    constexpr T *data() const noexcept { return data_; }
+    constexpr std::size_t size() const noexcept { return size_; }
+    constexpr bool empty() const noexcept { return size_ == 0; }
+    constexpr T *begin() const noexcept { return data_; }
+    constexpr T *end() const noexcept { return data_ + size_; }
+    constexpr T &operator[](std::size_t i) const noexcept { return data_[i]; }
+
+private:
+    T *data_ = nullptr;
+    std::size_t size_ = 0;
+};
+
+/// Exactly N numbers, of an array or a std::array: 9 for a matrix row by row, 8 for four points.
+template <std::size_t N>
+class Numbers {
+public:
+    constexpr Numbers(const double (&numbers)[N]) noexcept : data_(numbers) {}
+    constexpr Numbers(const std::array<double, N> &numbers) noexcept : data_(numbers.data()) {}
+    constexpr const double *data() const noexcept { return data_; }
+
+private:
+    const double *data_;
+};
+
+/// A colour, or an amount of light for each channel.
+struct Rgb {
+    float red, green, blue;
+};
+
+/// A versioned struct of the C header that starts with the library's defaults. It is the C struct: set its fields, which
+/// the C header documents. (Should its initialisation fail, its size stays 0, which the call that gets it refuses.)
+template <class C, luxfer_status (*init)(C *, std::size_t)>
+struct Params : C {
+    Params() noexcept : C() { init(this, sizeof(C)); }
+};
+
+namespace detail {
+
+template <class T>
+constexpr luxfer_sample sample_of() {
+    if constexpr (std::is_same_v<T, std::uint8_t>)
+        return LUXFER_SAMPLE_U8;
+    else if constexpr (std::is_same_v<T, std::uint16_t>)
+        return LUXFER_SAMPLE_U16;
+    else {
+        static_assert(std::is_same_v<T, float>, "samples are std::uint8_t, std::uint16_t or float");
+        return LUXFER_SAMPLE_F32;
+    }
+}
+
+} // namespace detail
+
+/// Pixels to read from: `ConstImageView(pixels, width, height, channels)` for any container of packed samples. Strides,
+/// flags, colour space and half floats are set in the fields that it has from luxfer_image_view.
+struct ConstImageView : Params<luxfer_image_view, luxfer_image_view_init> {
+    ConstImageView() noexcept = default;
+
+    template <class Pixels>
+    ConstImageView(const Pixels &pixels, std::uint32_t width_, std::uint32_t height_, std::uint32_t channels_ = 3) noexcept {
+        using Sample = std::remove_const_t<std::remove_pointer_t<decltype(std::data(pixels))>>;
+        sample = detail::sample_of<Sample>();
+        width = width_;
+        height = height_;
+        channels = channels_;
+        byte_size = std::size(pixels) * sizeof(Sample);
+        data = const_cast<Sample *>(std::data(pixels)); // The library only reads it.
+    }
+};
+
+/// Pixels to write to, otherwise the same.
+struct ImageView : ConstImageView {
+    ImageView() noexcept = default;
+
+    template <class Pixels>
+    ImageView(Pixels &&pixels, std::uint32_t width_, std::uint32_t height_, std::uint32_t channels_ = 3) noexcept
+        : ConstImageView(pixels, width_, height_, channels_) {
+        static_assert(!std::is_const_v<std::remove_pointer_t<decltype(std::data(pixels))>>, "these pixels cannot be written");
+    }
+};
+
+} // namespace luxfer
