@@ -50,13 +50,15 @@ impl Child {
     }
 }
 
-/// Eight boxes side by side: `bounds[2 * axis]` are their low ends, `bounds[2 * axis + 1]` their high ends.
+/// Eight boxes side by side, in four lines of the cache. The test of a ray reads all the bounds, so the lines of these
+/// are asked for at once; with the children at their head none is left to be waited for after the test.
 #[derive(Clone)]
 #[repr(C, align(64))]
 pub(super) struct Node {
-    pub bounds: [Row; 6],
     /// Bits of a [`Child`] each, so that they can be moved eight at a time.
     pub children: [u32; 8],
+    /// `bounds[2 * axis]` are the low ends, `bounds[2 * axis + 1]` the high ends.
+    pub bounds: [Row; 6],
 }
 
 impl Node {
