@@ -1,0 +1,196 @@
+// A scene of every kind of material under every kind of light, described through the C functions.
+//
+// Panels of 1 x 1 m lie in rows over a matt floor; those that let light through hang 40 cm above it. The camera looks down
+// on them. A lamp, a point light, a spot light and a distant light shine, and an image of a sky all around.
+#pragma once
+
+#include "scene_copy.hpp"
+
+constexpr int PANEL_COLUMNS = 4;
+
+struct Panel {
+    const char *name;
+    double metallic, roughness, transmission, ior, alpha;
+    luxfer_alpha_mode alpha_mode;
+    Vec colour;
+    bool textured, bumpy, layered, hangs;
+};
+
+// Roughnesses in 31sts: of these the library has the reflecting layer's albedo without interpolating.
+inline const std::vector<Panel> &panels() {
+    static const std::vector<Panel> list = {
+        {"coated", 0, 10 / 31.0, 0, 1.5, 1, LUXFER_ALPHA_OPAQUE, {0.6, 0.3, 0.1}, false, false, false, false},
+        {"rough coat", 0, 1, 0, 2.0, 1, LUXFER_ALPHA_OPAQUE, {0.3, 0.5, 0.7}, false, false, false, false},
+        {"smooth coat", 0, 0, 0, 1.5, 1, LUXFER_ALPHA_OPAQUE, {0.2, 0.6, 0.3}, false, false, false, false},
+        {"metal", 1, 10 / 31.0, 0, 1.5, 1, LUXFER_ALPHA_OPAQUE, {0.9, 0.7, 0.4}, false, false, false, false},
+        {"half metal", 0.5, 16 / 31.0, 0, 1.5, 1, LUXFER_ALPHA_OPAQUE, {0.7, 0.7, 0.8}, false, false, false, false},
+        {"mirror", 1, 0, 0, 1.5, 1, LUXFER_ALPHA_OPAQUE, {0.9, 0.9, 0.8}, false, false, false, false},
+        {"bumpy", 0, 16 / 31.0, 0, 1.5, 1, LUXFER_ALPHA_OPAQUE, {0.5, 0.5, 0.5}, true, true, false, false},
+        {"layered", 1, 1, 0, 1.5, 1, LUXFER_ALPHA_OPAQUE, {0.8, 0.5, 0.4}, false, false, true, false},
+        {"clear glass", 0, 0, 0.9, 1.5, 1, LUXFER_ALPHA_OPAQUE, {0.9, 0.6, 0.5}, false, false, false, true},
+        {"milky glass", 0, 10 / 31.0, 0.5, 1.5, 1, LUXFER_ALPHA_OPAQUE, {0.5, 0.7, 0.9}, false, false, false, true},
+        {"cut out", 0, 1, 0, 1.0, 0.9, LUXFER_ALPHA_MASK, {0.8, 0.8, 0.8}, true, false, false, true},
+        {"veil", 0, 16 / 31.0, 0, 1.5, 0.4, LUXFER_ALPHA_BLEND, {0.8, 0.4, 0.4}, false, false, false, true},
+    };
+    return list;
+}
+
+constexpr float CUTOFF = 0.5f;
+constexpr float NORMAL_SCALE = 0.7f;
+constexpr std::uint32_t SKY_WIDTH = 16, SKY_HEIGHT = 8, PATTERN = 4;
+constexpr float SKY_STRENGTH = 2.0f;
+
+struct Gallery {
+    luxfer_context *context = nullptr;
+    luxfer_scene *scene = nullptr;
+    // The same numbers for whoever traces the scene without the library. Rows of RGBA.
+    TextureCopy colours, normals, layers, sky;
+    luxfer_light_params point, spot, distant;
+    Vec lamp_corner = {-1.0, 3.5, -0.5}, lamp_u = {1.5, 0, 0}, lamp_v = {0, 0, 1}, lamp_emission = {30, 25, 20};
+
+    Gallery() {
+        CHECK_OK(luxfer_context_create(nullptr, &context));
+        CHECK_OK(luxfer_scene_create(context, &scene));
+        // Patterns: some of the colours' alphas are below the cutoff; normals lean by up to some 20 degrees.
+        colours = make(PATTERN, PATTERN, 4, [](std::uint32_t x, std::uint32_t y, int c) {
+            return c == 3 ? ((x + y) % 3 == 0 ? 0.1f : 1.0f) : 0.4f + 0.15f * float((x * 3 + y * 5 + c) % 4);
+        });
+        normals = make(PATTERN, PATTERN, 4, [](std::uint32_t x, std::uint32_t y, int c) {
+            return c == 0 ? 0.35f + 0.1f * float(x) : c == 1 ? 0.6f - 0.08f * float(y) : 1.0f;
+        });
+        // Roughness is green, metal blue; constant roughness, so that nothing lies between two entries of a table.
+        layers = make(PATTERN, PATTERN, 4, [](std::uint32_t x, std::uint32_t y, int c) {
+            return c == 1 ? float(16 / 31.0) : c == 2 ? float((x + y) % 2) : 1.0f;
+        });
+        sky = make(SKY_WIDTH, SKY_HEIGHT, 3, [](std::uint32_t x, std::uint32_t y, int c) {
+            return y < SKY_HEIGHT / 2 ? 0.5f + 0.1f * float(c) + 0.2f * float(x % 5) : 0.1f;
+        });
+        luxfer_image *image = upload(sky);
+        CHECK_OK(luxfer_scene_set_environment_image(scene, image, SKY_STRENGTH, SKY_STRENGTH, SKY_STRENGTH));
+        CHECK_OK(luxfer_image_release(image));
+        const std::uint32_t pattern = add(colours), bumps = add(normals), mixture = add(layers);
+
+        luxfer_material_params matt;
+        CHECK_OK(luxfer_material_params_init(&matt, sizeof matt));
+        matt.ior = 1;
+        matt.base_color[0] = matt.base_color[1] = matt.base_color[2] = 0.5f;
+        std::uint32_t floor = 0, black = 0;
+        CHECK_OK(luxfer_scene_add_material(scene, &matt, &floor));
+        matt.base_color[0] = matt.base_color[1] = matt.base_color[2] = 0;
+        matt.double_sided = 0;
+        store(lamp_emission, matt.emission);
+        CHECK_OK(luxfer_scene_add_material(scene, &matt, &black));
+        quad({-4, 0, -4}, {0, 0, 8}, {8, 0, 0}, floor);
+        quad(lamp_corner, lamp_u, lamp_v, black);
+        for (std::size_t i = 0; i < panels().size(); ++i) {
+            const Panel &panel = panels()[i];
+            luxfer_material_params params;
+            CHECK_OK(luxfer_material_params_init(&params, sizeof params));
+            params.metallic = float(panel.metallic);
+            params.roughness = float(panel.roughness);
+            params.transmission = float(panel.transmission);
+            params.ior = float(panel.ior);
+            params.alpha = float(panel.alpha);
+            params.alpha_mode = panel.alpha_mode;
+            params.alpha_cutoff = CUTOFF;
+            params.normal_scale = NORMAL_SCALE;
+            store(panel.colour, params.base_color);
+            std::uint32_t material = 0;
+            CHECK_OK(luxfer_scene_add_material(scene, &params, &material));
+            const auto use = [&](bool wanted, luxfer_texture_role role, std::uint32_t texture) {
+                if (wanted)
+                    CHECK_OK(luxfer_scene_set_material_texture(scene, material, role, texture, 0, nullptr));
+            };
+            use(panel.textured, LUXFER_TEXTURE_BASE_COLOR, pattern);
+            use(panel.bumpy, LUXFER_TEXTURE_NORMAL, bumps);
+            use(panel.layered, LUXFER_TEXTURE_METALLIC_ROUGHNESS, mixture);
+            const double column = double(i % PANEL_COLUMNS), row = double(i / PANEL_COLUMNS);
+            quad({1.2 * column - 2.3, panel.hangs ? 0.4 : 0.01, 1.2 * row - 1.7}, {0, 0, 1}, {1, 0, 0}, material);
+        }
+        light(point, LUXFER_LIGHT_POINT, {2.5, 2, 0.5}, {}, {12, 10, 8});
+        light(spot, LUXFER_LIGHT_SPOT, {-2.5, 2.5, 1}, {2, -2.5, -0.6}, {30, 30, 40});
+        light(distant, LUXFER_LIGHT_DIRECTIONAL, {}, {0.3, -1, -0.4}, {3, 3, 2});
+        luxfer_camera_params camera;
+        CHECK_OK(luxfer_camera_params_init(&camera, sizeof camera));
+        store({0.1, 4.4, 3.6}, camera.position);
+        store({0, 0, 0}, camera.target);
+        camera.fov_y = 0.65f;
+        CHECK_OK(luxfer_scene_add_camera(scene, &camera, nullptr));
+    }
+    ~Gallery() {
+        CHECK_OK(luxfer_scene_release(scene));
+        CHECK_OK(luxfer_context_release(context));
+    }
+    Gallery(const Gallery &) = delete;
+    Gallery &operator=(const Gallery &) = delete;
+
+private:
+    static void store(Vec v, float *to) {
+        to[0] = float(v.x);
+        to[1] = float(v.y);
+        to[2] = float(v.z);
+    }
+
+    template <class F> static TextureCopy make(std::uint32_t width, std::uint32_t height, std::uint32_t channels, F value) {
+        TextureCopy copy;
+        copy.width = width;
+        copy.height = height;
+        copy.channels = channels;
+        for (std::uint32_t y = 0; y < height; ++y)
+            for (std::uint32_t x = 0; x < width; ++x)
+                for (std::uint32_t c = 0; c < channels; ++c)
+                    copy.pixels.push_back(value(x, y, int(c)));
+        return copy;
+    }
+
+    luxfer_image *upload(TextureCopy &copy) {
+        luxfer_image_view view;
+        CHECK_OK(luxfer_image_view_init(&view, sizeof view));
+        view.channels = copy.channels;
+        view.width = copy.width;
+        view.height = copy.height;
+        view.byte_size = copy.pixels.size() * sizeof(float);
+        view.data = copy.pixels.data();
+        luxfer_image *image = nullptr;
+        CHECK_OK(luxfer_image_create(context, &view, &image));
+        return image;
+    }
+
+    std::uint32_t add(TextureCopy &copy) {
+        luxfer_image *image = upload(copy);
+        std::uint32_t index = 0;
+        CHECK_OK(luxfer_scene_add_texture(scene, image, LUXFER_WRAP_REPEAT, LUXFER_WRAP_REPEAT, &index));
+        CHECK_OK(luxfer_image_release(image));
+        return index;
+    }
+
+    void quad(Vec corner, Vec u, Vec v, std::uint32_t material) {
+        float positions[12];
+        const Vec corners[4] = {corner, corner + u, corner + u + v, corner + v};
+        for (int i = 0; i < 4; ++i)
+            store(corners[i], positions + 3 * i);
+        const float uvs[8] = {0, 0, 1, 0, 1, 1, 0, 1};
+        const std::uint32_t indices[6] = {0, 1, 2, 0, 2, 3};
+        luxfer_mesh_params mesh;
+        CHECK_OK(luxfer_mesh_params_init(&mesh, sizeof mesh));
+        mesh.material = material;
+        mesh.vertex_count = 4;
+        mesh.positions = positions;
+        mesh.uvs = uvs;
+        mesh.triangle_count = 2;
+        mesh.indices = indices;
+        CHECK_OK(luxfer_scene_add_mesh(scene, &mesh, nullptr));
+    }
+
+    void light(luxfer_light_params &params, luxfer_light_kind kind, Vec position, Vec direction, Vec intensity) {
+        CHECK_OK(luxfer_light_params_init(&params, sizeof params));
+        params.kind = kind;
+        store(position, params.position);
+        if (length(direction) > 0)
+            store(direction, params.direction);
+        store(intensity, params.intensity);
+        params.inner_angle = 0.2f;
+        params.outer_angle = 0.5f;
+        CHECK_OK(luxfer_scene_add_light(scene, &params, nullptr));
+    }
+};
