@@ -1,0 +1,431 @@
+// The C++ wrapper: who owns what, how errors arrive, callbacks that throw, views of memory. Built twice, with exceptions and
+// with LUXFER_NO_EXCEPTIONS; wrapper_is_complete.cmake looks after functions that it may lack.
+#include "check.hpp"
+
+#include <luxfer.hpp>
+
+#include <cmath>
+#include <cstring>
+#include <optional>
+#include <thread>
+
+namespace {
+
+// The same in both builds: the value of a call that must succeed, and the error of one that must not.
+#ifndef LUXFER_NO_EXCEPTIONS
+
+template <class T>
+T ok(T value) {
+    return value;
+}
+
+template <class Call>
+luxfer::Error error_of(const Call &call) {
+    try {
+        call();
+    } catch (const luxfer::Error &error) {
+        return error;
+    }
+    return luxfer::Error(LUXFER_OK, "");
+}
+
+#define OK(call) (call)
+
+#else
+
+template <class T>
+T ok(luxfer::Result<T> result) {
+    if (!result) {
+        std::fprintf(stderr, "%s\n", result.error().what());
+        std::abort();
+    }
+    return *std::move(result);
+}
+
+template <class Call>
+luxfer::Error error_of(const Call &call) {
+    const auto result = call();
+    return result ? luxfer::Error(LUXFER_OK, "") : result.error();
+}
+
+#define OK(call) CHECK((call).has_value())
+
+#endif
+
+#define CHECK_ERROR(call, wanted) CHECK_STATUS(error_of([&] { return call; }).status(), wanted)
+
+using luxfer::Context, luxfer::Image, luxfer::Scene, luxfer::Render, luxfer::Job;
+
+constexpr std::uint32_t endless = 1u << 20;
+
+Context new_context() {
+    luxfer::ContextParams params;
+    params.num_threads = 2;
+    return ok(Context::create(params));
+}
+
+Image new_image(const Context &context) {
+    const std::vector<float> pixels(4 * 3 * 3, 0.5f);
+    return ok(Image::create(context, luxfer::ConstImageView(pixels, 4, 3)));
+}
+
+// A lamp over a floor, and a camera.
+Scene new_scene(const Context &context) {
+    const Scene scene = ok(Scene::create(context));
+    luxfer::MaterialParams material;
+    OK(scene.add_material(material));
+    std::fill_n(material.emission, 3, 100.0f);
+    const std::uint32_t glowing = ok(scene.add_material(material));
+    CHECK(glowing == 1);
+    const std::uint32_t indices[] = {0, 1, 2, 0, 2, 3};
+    const std::array<float, 12> floor = {-3, -1, -3, -3, -1, 3, 3, -1, 3, 3, -1, -3};
+    const std::vector<float> lamp = {-1, 2, -1, -1, 2, 1, 1, 2, 1, 1, 2, -1};
+    luxfer::MeshParams mesh(floor, indices);
+    mesh.name = "Floor";
+    OK(scene.add_mesh(mesh));
+    mesh = luxfer::MeshParams(lamp, indices, glowing);
+    mesh.name = "Lamp";
+    OK(scene.add_mesh(mesh));
+    OK(scene.add_camera());
+    return scene;
+}
+
+Render new_render(const Context &context) {
+    const Render render = ok(Render::create(context));
+    OK(render.set_scene(new_scene(context)));
+    return render;
+}
+
+Job start(const Render &render, std::uint32_t samples) {
+    luxfer::RenderParams params;
+    params.width = params.height = 16;
+    params.samples = samples;
+    return ok(render.start(params));
+}
+
+// Versions: before 1.0 minor versions differ, after that major ones, and older libraries lack functions.
+static_assert(luxfer::is_compatible(LUXFER_VERSION, LUXFER_VERSION));
+static_assert(luxfer::is_compatible(103, 101) && luxfer::is_compatible(101, 103) && !luxfer::is_compatible(201, 101));
+static_assert(!luxfer::is_compatible(10000, 101) && !luxfer::is_compatible(101, 10000));
+static_assert(luxfer::is_compatible(10203, 10100) && !luxfer::is_compatible(10100, 10203) &&
+              !luxfer::is_compatible(20000, 10000));
+
+// The cost of a handle: its pointer, and that of its context.
+static_assert(sizeof(Image) == 2 * sizeof(void *) && sizeof(luxfer::RenderParams) == sizeof(luxfer_render_params));
+static_assert(std::is_nothrow_move_constructible_v<Image> && std::is_nothrow_move_assignable_v<Image>);
+
+void moved_from_handles_are_empty() {
+    const Context context = new_context();
+    Image image = new_image(context);
+    luxfer_image *const c = image.get();
+    Image moved = std::move(image);
+    CHECK(moved.get() == c && moved && !image && image.get() == nullptr && !image.context());
+    CHECK_ERROR(image.size(), LUXFER_INVALID_ARGUMENT);
+    CHECK_ERROR(Image().size(), LUXFER_INVALID_ARGUMENT);
+    CHECK(std::strstr(error_of([&] { return image.size(); }).what(), "empty") != nullptr);
+    CHECK_ERROR(Image::create(Context(), luxfer::ConstImageView()), LUXFER_INVALID_ARGUMENT);
+    image = std::move(moved);
+    CHECK(image.get() == c && ok(image.size()).width == 4);
+    Image &self = image;
+    image = self;
+    CHECK(image.get() == c && ok(image.size()).height == 3);
+    image = Image();
+    CHECK(!image);
+}
+
+// What a luxfer_context_params.memory_budget_mib of 1 has room for tells which images are still alive.
+void copies_share_and_the_last_one_releases() {
+    luxfer::ContextParams params;
+    params.memory_budget_mib = 1;
+    const Context context = ok(Context::create(params));
+    const std::vector<float> pixels(256 * 256 * 3);
+    const auto fill = [&] { return Image::create(context, luxfer::ConstImageView(pixels, 256, 256)); };
+    Image first = ok(fill());
+    Image copy = first;
+    CHECK(copy.get() == first.get());
+    CHECK_ERROR(fill(), LUXFER_OUT_OF_MEMORY);
+    first = Image();
+    CHECK(ok(copy.size()).width == 256);
+    CHECK_ERROR(fill(), LUXFER_OUT_OF_MEMORY);
+    copy = Image();
+    first = ok(fill());
+
+    // A C handle that the caller has, taken over.
+    CHECK_OK(luxfer_image_retain(first.get()));
+    Image adopted(context, first.get());
+    first = Image();
+    CHECK(ok(adopted.size()).width == 256);
+    adopted = Image();
+    OK(fill());
+}
+
+void any_order_of_release() {
+    std::optional<Context> context = new_context();
+    std::optional<Scene> scene = new_scene(*context);
+    std::optional<Render> render = ok(Render::create(*context));
+    OK(render->set_scene(*scene));
+    context.reset();
+    scene.reset();
+    std::optional<Job> job = start(*render, 4);
+    std::optional<Render> gone = std::move(render);
+    OK(job->wait());
+    const Image image = ok(gone->image());
+    gone.reset();
+    job.reset();
+    CHECK(ok(image.samples()).size() == 16 * 16 * 3);
+    // The context lives on in the image, and has words for its errors.
+    CHECK(std::strlen(error_of([&] { return image.save("picture.xyz"); }).what()) > 20);
+    // Letting go of a job that runs ends it.
+    const Render other = new_render(image.context());
+    start(other, endless);
+    start(other, 1);
+}
+
+void errors_have_status_and_words() {
+    const Context context = new_context();
+    const luxfer::Error error = error_of([&] { return Image::load(context, "/nonexistent/photo.png"); });
+    CHECK_STATUS(error.status(), LUXFER_IO);
+    CHECK(std::strcmp(error.name(), "LUXFER_IO") == 0);
+    CHECK(std::strstr(error.what(), "/nonexistent/photo.png") != nullptr);
+    CHECK(ok(context.last_error()) == error.what());
+
+    // Those of one thread are not those of another.
+    std::thread([&] {
+        CHECK(ok(context.last_error()).empty());
+        CHECK(std::strstr(error_of([&] { return Scene::load(context, std::string("other.glb")); }).what(), "other.glb"));
+    }).join();
+    CHECK(ok(context.last_error()) == error.what());
+
+    // Of a job, by whoever waits for it.
+    const luxfer::Transfer transfer = ok(luxfer::Transfer::create(context));
+    const Job job = ok(transfer.start(LUXFER_STAGE_VIEW, LUXFER_STAGE_VIEW));
+    CHECK(std::strstr(error_of([&] { return job.wait(); }).what(), "photo") != nullptr);
+    CHECK_STATUS(job.status(), LUXFER_NOT_READY);
+    // It has ended with the status that elsewhere means that it still runs.
+    CHECK_ERROR(job.wait_for(std::chrono::seconds(9)), LUXFER_NOT_READY);
+
+    luxfer::ContextParams bad;
+    bad.num_threads = 5000;
+    CHECK_ERROR(Context::create(bad), LUXFER_INVALID_ARGUMENT);
+    CHECK_ERROR(ok(Scene::create(context)).intersect(luxfer::Span<const luxfer_ray>(nullptr, 1), {}), LUXFER_INVALID_ARGUMENT);
+}
+
+void settings_start_with_the_defaults() {
+    luxfer_render_params c;
+    CHECK_OK(luxfer_render_params_init(&c, sizeof c));
+    const luxfer::RenderParams params;
+    CHECK(std::memcmp(&c, static_cast<const luxfer_render_params *>(&params), sizeof c) == 0);
+    CHECK(luxfer::StylizeParams(LUXFER_STYLIZE_PREVIEW).preview == 1 && luxfer::StylizeParams().preview == 0);
+    CHECK(luxfer::StylizeParams(-1).struct_size == 0);
+}
+
+void jobs_report_and_are_cancelled() {
+    const Context context = new_context();
+    const Render render = new_render(context);
+    double last = -1;
+    OK(start(render, 4).wait([&](double fraction) {
+        CHECK(fraction >= last);
+        last = fraction;
+        return true;
+    }));
+    CHECK(last == 1.0);
+
+    const Job job = start(render, endless);
+    CHECK(!ok(job.wait_for(std::chrono::milliseconds(1))));
+    CHECK(!ok(job.poll()).is_finished && job.status() == LUXFER_NOT_READY);
+    CHECK_ERROR(render.start(), LUXFER_INVALID_OPERATION);
+    CHECK_ERROR(job.wait([](double) { return false; }), LUXFER_CANCELLED);
+    CHECK(ok(job.poll()).is_finished && job.status() == LUXFER_CANCELLED);
+    CHECK_ERROR(job.wait_for(std::chrono::milliseconds(-1)), LUXFER_CANCELLED);
+
+    const Job other = start(render, endless);
+    OK(other.cancel());
+    CHECK_ERROR(other.wait(), LUXFER_CANCELLED);
+    CHECK(ok(start(render, 1).wait_for(std::chrono::hours(1000))));
+}
+
+#ifndef LUXFER_NO_EXCEPTIONS
+
+struct Interrupted {
+    int code;
+};
+
+void exceptions_cross_the_callbacks() {
+    const Context context = new_context();
+    const Render render = new_render(context);
+    const Job job = start(render, endless);
+    // Two threads wait for one job; the exception reaches the one whose function threw, the other hears of the cancel.
+    std::thread other([&] { CHECK_ERROR(job.wait(), LUXFER_CANCELLED); });
+    int calls = 0, code = 0;
+    try {
+        job.wait([&](double) -> bool { throw Interrupted{++calls}; });
+    } catch (const Interrupted &interrupted) {
+        code = interrupted.code;
+    }
+    other.join();
+    CHECK(calls == 1 && code == 1);
+    CHECK(job.status() == LUXFER_CANCELLED);
+
+    const Scene scene = new_scene(context);
+    code = 0;
+    try {
+        scene.write([](const void *, std::size_t) -> bool { throw Interrupted{7}; });
+    } catch (const Interrupted &interrupted) {
+        code = interrupted.code;
+    }
+    CHECK(code == 7);
+}
+
+#endif
+
+void views_of_memory() {
+    const Context context = new_context();
+    std::uint8_t bytes[2 * 2] = {0, 255, 128, 64};
+    const Image image = ok(Image::create(context, luxfer::ConstImageView(bytes, 2, 2, 1)));
+    const std::vector<float> samples = ok(image.samples());
+    CHECK(samples.size() == 4 && samples[1] == 1.0f && std::abs(samples[2] - 128.0f / 255.0f) < 1e-6f);
+    std::array<std::uint16_t, 4> wide = {};
+    OK(image.read(luxfer::ImageView(wide, 2, 2, 1)));
+    CHECK(wide[0] == 0 && wide[1] == 65535 && wide[3] == 64 * 257);
+
+    // The lower row first, in the first byte of every four.
+    std::uint8_t strided[16] = {};
+    luxfer::ImageView view(strided, 2, 2, 1);
+    view.flags = LUXFER_VIEW_BOTTOM_UP;
+    view.pixel_stride = 4;
+    OK(image.read(view));
+    CHECK(strided[0] == 128 && strided[4] == 64 && strided[12] == 255 && strided[1] == 0);
+    CHECK_ERROR(image.read(luxfer::ImageView(luxfer::Span<float>(nullptr, 4), 2, 2, 1)), LUXFER_INVALID_ARGUMENT);
+    CHECK_ERROR(Image::create(context, luxfer::ConstImageView(samples, 2, 3, 1)), LUXFER_INVALID_ARGUMENT);
+
+    const std::array<double, 8> square = {0, 0, 1, 0, 1, 1, 0, 1};
+    const std::array<double, 9> identity = ok(luxfer::homography_from_corners(context, square, square));
+    CHECK(std::abs(identity[0] - identity[8]) < 1e-12 && std::abs(identity[1]) < 1e-12);
+    CHECK(ok(ok(image.warp(identity, 2, 2)).samples()) == samples);
+}
+
+// A scene through a file in memory, and read back.
+void scenes_come_back() {
+    const Context context = new_context();
+    const Scene scene = new_scene(context);
+    std::vector<unsigned char> file;
+    OK(scene.write([&](const void *data, std::size_t size) {
+        const auto *first = static_cast<const unsigned char *>(data);
+        file.insert(file.end(), first, first + size);
+        return true;
+    }));
+    CHECK_ERROR(scene.write([](const void *, std::size_t) { return false; }), LUXFER_IO);
+    const Scene copy = ok(Scene::load_memory(context, file));
+    const luxfer_scene_counts counts = ok(copy.counts());
+    CHECK(counts.meshes == 2 && counts.cameras == 1 && counts.triangles == 4);
+    CHECK(ok(copy.mesh_name(0)) == "Floor" && ok(copy.mesh_name(1)) == "Lamp");
+    CHECK(ok(copy.material(ok(copy.mesh(1)).material)).emission[0] == 100.0f);
+    std::vector<float> positions(12);
+    std::vector<std::uint32_t> indices(6);
+    OK(copy.read_mesh(0, positions, {}, indices));
+    CHECK(positions[1] == -1.0f && indices[5] == 3);
+    CHECK_ERROR(copy.read_mesh(0, positions, positions, indices), LUXFER_NOT_FOUND);
+    CHECK_ERROR(copy.read_mesh_uvs(0, 0, positions), LUXFER_NOT_FOUND);
+    CHECK(ok(copy.material_texture(0, LUXFER_TEXTURE_NORMAL)).texture == LUXFER_NONE);
+    CHECK_ERROR(copy.texture(0), LUXFER_NOT_FOUND);
+
+    const luxfer_surface floor = ok(copy.find_surface("Floor"));
+    CHECK(std::abs(floor.area - 36) < 1e-4f && floor.normal[1] > 0.99f);
+    const luxfer_ray down[] = {{{2, 1, 2}, {0, -1, 0}, 10}};
+    luxfer_hit hit[1];
+    OK(copy.intersect(down, hit));
+    CHECK(hit[0].mesh == 0 && hit[0].t == 2.0f);
+    CHECK(ok(copy.requirements()).lights == LUXFER_LIGHTS_SURFACE);
+    OK(copy.requirements_text());
+    OK(copy.set_environment({1, 2, 3}));
+    CHECK((ok(copy.requirements()).lights & LUXFER_LIGHTS_ENVIRONMENT) != 0);
+    OK(copy.set_emission(1, {1, 1, 1}));
+    OK(copy.add_light());
+    OK(copy.set_camera(0, luxfer::CameraParams()));
+    CHECK(ok(copy.camera(0)).fov_y == 1.0f);
+}
+
+void layers_have_names() {
+    const Context context = new_context();
+    const Render render = new_render(context);
+    CHECK(std::strstr(error_of([&] { return render.add_expression("slip", "LDXE"); }).what(), "column 3") != nullptr);
+    OK(render.add_expression("direct", "C<RD>L"));
+    OK(render.set_aovs(LUXFER_AOV_DEPTH));
+    OK(render.set_camera(0));
+    OK(start(render, 4).wait());
+    CHECK(ok(render.layer_count()) == 2 && ok(render.layer_name(0)) == "direct" && ok(render.find_layer("Depth")) == 1);
+    CHECK(ok(ok(render.layer(1)).size()).channels == 1);
+    CHECK(ok(render.report()).samples == 4);
+
+    const luxfer::Illuminance illuminance = ok(luxfer::Illuminance::create(context));
+    OK(illuminance.set_scene(new_scene(context)));
+    luxfer::IlluminanceGrid grid;
+    luxfer::IlluminanceParams few;
+    few.columns = few.rows = 4;
+    OK(ok(illuminance.start_grid(grid, few)).wait());
+    CHECK(ok(illuminance.report()).points == 16 && ok(illuminance.report()).mean > 0);
+}
+
+// Each stage is asked for results before it has any, so that each method is seen to reach the function of its own.
+void stages_say_what_they_lack() {
+    const Context context = new_context();
+    const auto rectify = ok(luxfer::Rectify::create(context));
+    const auto features = ok(luxfer::Features::create(context));
+    const auto segment = ok(luxfer::Segment::create(context));
+    const auto emission = ok(luxfer::Emission::create(context));
+    const auto relight = ok(luxfer::Relight::create(context));
+    const auto transfer = ok(luxfer::Transfer::create(context));
+    const auto guides = ok(luxfer::Guides::create(context));
+    const auto demo = ok(luxfer::DemoPhoto::create(context));
+    CHECK_ERROR(rectify.start(), LUXFER_INVALID_OPERATION);
+    CHECK_ERROR(features.start(), LUXFER_INVALID_OPERATION);
+    CHECK_ERROR(segment.start(), LUXFER_INVALID_OPERATION);
+    CHECK_ERROR(emission.start(), LUXFER_INVALID_OPERATION);
+    CHECK_ERROR(relight.start(), LUXFER_INVALID_OPERATION);
+    CHECK_ERROR(guides.start(), LUXFER_INVALID_OPERATION);
+    CHECK_ERROR(rectify.report(), LUXFER_NOT_READY);
+    CHECK_ERROR(rectify.warp(new_image(context)), LUXFER_NOT_READY);
+    CHECK_ERROR(features.set_view(rectify), LUXFER_NOT_READY);
+    CHECK_ERROR(segment.image(LUXFER_SEGMENT_MASK), LUXFER_NOT_READY);
+    CHECK_ERROR(emission.corner(0, 0), LUXFER_NOT_READY);
+    CHECK_ERROR(relight.report(), LUXFER_NOT_READY);
+    CHECK_ERROR(transfer.scene(), LUXFER_NOT_READY);
+    CHECK_ERROR(transfer.use(LUXFER_PHASE_PLANE, segment), LUXFER_NOT_READY);
+    CHECK_ERROR(transfer.use(features), LUXFER_NOT_READY);
+    CHECK_ERROR(guides.demo_artwork(LUXFER_ARTWORK_PEN), LUXFER_NOT_READY);
+    CHECK_ERROR(demo.image(LUXFER_DEMO_PHOTO_PICTURE), LUXFER_NOT_READY);
+    CHECK_ERROR(luxfer::Sheet::align(new_image(context), 8, 8), LUXFER_DEGENERATE);
+
+    // Empty objects stand for NULL where that means none, and are errors elsewhere.
+    OK(rectify.set_mask(Image()));
+    OK(features.set_depth(Image()));
+    OK(emission.clear_photo());
+    OK(transfer.clear_camera());
+    CHECK_ERROR(rectify.set_photo(Image()), LUXFER_INVALID_ARGUMENT);
+    CHECK_ERROR(transfer.set_scene(Scene(), "Ceiling"), LUXFER_INVALID_ARGUMENT);
+
+    const float points[] = {0.5f, 0.5f, 3.5f, 2.5f};
+    CHECK_ERROR(segment.add_stroke(points, 1, true), LUXFER_INVALID_OPERATION);
+    OK(segment.set_features(new_image(context)));
+    OK(segment.add_stroke(points, 1, true));
+    CHECK_ERROR(segment.add_strokes("plane one", LUXFER_PHASE_PLANE), LUXFER_FORMAT);
+}
+
+} // namespace
+
+int main() {
+    moved_from_handles_are_empty();
+    copies_share_and_the_last_one_releases();
+    any_order_of_release();
+    errors_have_status_and_words();
+    settings_start_with_the_defaults();
+    jobs_report_and_are_cancelled();
+#ifndef LUXFER_NO_EXCEPTIONS
+    exceptions_cross_the_callbacks();
+#endif
+    views_of_memory();
+    scenes_come_back();
+    layers_have_names();
+    stages_say_what_they_lack();
+    return check::summary("wrapper");
+}
