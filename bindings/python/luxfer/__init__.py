@@ -1,0 +1,37 @@
+"""Lighting from one photo onto a 3D scene, and illumination-guided stylisation.
+
+Create a Context; make objects in it; start a stage, or run it and wait. Images go in and come out as numpy arrays. Units:
+metres, radians, right-handed, Y up; scene-linear Rec.709, luminance in cd/m², illuminance in lux, flux in lumens.
+
+Settings are keyword arguments, enumerations may be given by name ("srgb", "plane-mask"), and what the library refuses is an
+exception of errors.Error with its message. Everything of the C interface is in `abi`, callable through `library`.
+"""
+
+from . import _abi as abi
+from . import errors, types
+from ._library import library
+from .context import Context
+from .demo import DemoPhoto
+from .emission import Emission
+from .errors import Error
+from .features import Features
+from .guides import Guides
+from .illuminance import Illuminance
+from .image import Image, homography
+from .job import Job
+from .rectify import Rectify
+from .relight import Relight
+from .render import Render
+from .scene import Scene
+from .segment import Segment
+from .sheet import align_sheet, print_sheet
+from .stylize import Stylize
+from .transfer import Transfer
+
+__version__ = f"{abi.LUXFER_VERSION_MAJOR}.{abi.LUXFER_VERSION_MINOR}.{abi.LUXFER_VERSION_PATCH}"
+
+__all__ = [
+    "Context", "DemoPhoto", "Emission", "Error", "Features", "Guides", "Illuminance", "Image", "Job", "Rectify", "Relight",
+    "Render", "Scene", "Segment", "Stylize", "Transfer", "abi", "align_sheet", "errors", "homography", "library",
+    "print_sheet", "types",
+]

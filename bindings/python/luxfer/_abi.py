@@ -1,0 +1,1089 @@
+# Generated from include/luxfer.h by generate.py: do not edit.
+"""The C functions, structs and constants of luxfer.h, for ctypes."""
+
+from __future__ import annotations
+
+from ctypes import CFUNCTYPE, POINTER, Structure, c_char_p, c_double, c_float, c_int32, c_size_t, c_uint32, c_uint64, c_void_p
+
+from . import types
+
+LUXFER_VERSION_MAJOR = 0
+LUXFER_VERSION_MINOR = 1
+LUXFER_VERSION_PATCH = 0
+LUXFER_OK = 0
+LUXFER_UNKNOWN = 1
+LUXFER_INVALID_ARGUMENT = 2
+LUXFER_INVALID_OPERATION = 3
+LUXFER_OUT_OF_MEMORY = 4
+LUXFER_UNSUPPORTED = 5
+LUXFER_CANCELLED = 6
+LUXFER_IO = 7
+LUXFER_FORMAT = 8
+LUXFER_NOT_READY = 9
+LUXFER_INTERNAL = 10
+LUXFER_DEGENERATE = 11
+LUXFER_NOT_FOUND = 12
+LUXFER_UNREACHABLE = 13
+LUXFER_VIEW_BOTTOM_UP = 1
+LUXFER_SAMPLE_U8 = 0
+LUXFER_SAMPLE_U16 = 1
+LUXFER_SAMPLE_F16 = 2
+LUXFER_SAMPLE_F32 = 3
+LUXFER_COLOUR_LINEAR = 0
+LUXFER_COLOUR_SRGB = 1
+LUXFER_LIGHT_POINT = 0
+LUXFER_LIGHT_SPOT = 1
+LUXFER_LIGHT_DIRECTIONAL = 2
+LUXFER_NONE = 4294967295
+LUXFER_SCATTERING_DIFFUSE = 1
+LUXFER_SCATTERING_GLOSSY = 2
+LUXFER_SCATTERING_MIRROR = 4
+LUXFER_SCATTERING_GLASS = 8
+LUXFER_SCATTERING_ALPHA = 16
+LUXFER_LIGHTS_SURFACE = 1
+LUXFER_LIGHTS_TEXTURE = 2
+LUXFER_LIGHTS_POINT = 4
+LUXFER_LIGHTS_SPOT = 8
+LUXFER_LIGHTS_DIRECTIONAL = 16
+LUXFER_LIGHTS_ENVIRONMENT = 32
+LUXFER_TEXTURE_BASE_COLOR = 0
+LUXFER_TEXTURE_METALLIC_ROUGHNESS = 1
+LUXFER_TEXTURE_NORMAL = 2
+LUXFER_TEXTURE_EMISSION = 3
+LUXFER_WRAP_REPEAT = 0
+LUXFER_WRAP_CLAMP = 1
+LUXFER_WRAP_MIRROR = 2
+LUXFER_LINES_REGIONS = 0
+LUXFER_LINES_HOUGH = 1
+LUXFER_SEARCH_MANHATTAN = 0
+LUXFER_SEARCH_SUCCESSIVE = 1
+LUXFER_METRIC_SEGMENT = 0
+LUXFER_METRIC_VISIBLE_LINE = 1
+LUXFER_FOCAL_GIVEN = 0
+LUXFER_FOCAL_FROM_VANISHING_POINTS = 1
+LUXFER_FOCAL_ASSUMED = 2
+LUXFER_RECTIFY_UNWARPED = 0
+LUXFER_RECTIFY_VALID = 1
+LUXFER_DEPTH_ALONG_Z = 0
+LUXFER_DEPTH_ALONG_RAY = 1
+LUXFER_FEATURES_CHANNELS = 0
+LUXFER_FEATURES_DEPTH_CONFIDENCE = 1
+LUXFER_DEPTH_FROM_CALLER = 0
+LUXFER_DEPTH_FROM_LAYOUT = 1
+LUXFER_DEPTH_FROM_NOTHING = 2
+LUXFER_PHASE_PLANE = 0
+LUXFER_PHASE_LIGHTS = 1
+LUXFER_SEGMENT_MASK = 0
+LUXFER_SEGMENT_CONFIDENCE = 1
+LUXFER_SEGMENT_UNSEEN = 2
+LUXFER_EMISSION_TEXTURE = 0
+LUXFER_EMISSION_MASK = 1
+LUXFER_EMISSION_EXEMPLAR_METADATA = 2
+LUXFER_EMISSION_METADATA = 3
+LUXFER_RENDER_BEAUTY = 0
+LUXFER_RENDER_VARIANCE = 1
+LUXFER_RENDER_PATHS = 2
+LUXFER_RENDER_INTERVAL = 3
+LUXFER_AOV_DEPTH = 1
+LUXFER_AOV_DISTANCE = 2
+LUXFER_AOV_POSITION = 4
+LUXFER_AOV_NORMAL = 8
+LUXFER_AOV_GEOMETRIC_NORMAL = 16
+LUXFER_AOV_ALBEDO = 32
+LUXFER_AOV_OBJECT = 64
+LUXFER_AOV_MATERIAL = 128
+LUXFER_AOV_ALPHA = 256
+LUXFER_AOV_LUMINANCE = 512
+LUXFER_EMITTER_AS_BOTH = 0
+LUXFER_EMITTER_AS_LIGHT = 1
+LUXFER_EMITTER_AS_OBJECT = 2
+LUXFER_ILLUMINANCE_LUX = 0
+LUXFER_ILLUMINANCE_ERROR = 1
+LUXFER_QUANTITY_OUTGOING = 0
+LUXFER_QUANTITY_INCIDENT = 1
+LUXFER_REACH_MET = 0
+LUXFER_REACH_TOO_BRIGHT = 1
+LUXFER_REACH_DARK = 2
+LUXFER_STAGE_VIEW = 0
+LUXFER_STAGE_FEATURES = 1
+LUXFER_STAGE_PLANE = 2
+LUXFER_STAGE_LIGHTS = 3
+LUXFER_STAGE_UNWARP = 4
+LUXFER_STAGE_EMISSION = 5
+LUXFER_STAGE_RELIGHT = 6
+LUXFER_STAGE_RENDER = 7
+LUXFER_TARGET_SURFACE = 0
+LUXFER_TARGET_WHOLE_IMAGE = 1
+LUXFER_TRANSFER_FEATURES = 0
+LUXFER_TRANSFER_PLANE_MASK = 1
+LUXFER_TRANSFER_PLANE_CONFIDENCE = 2
+LUXFER_TRANSFER_LIGHTS_MASK = 3
+LUXFER_TRANSFER_LIGHTS_CONFIDENCE = 4
+LUXFER_TRANSFER_UNWARPED = 5
+LUXFER_TRANSFER_UNWARPED_VALID = 6
+LUXFER_TRANSFER_EMISSION = 7
+LUXFER_TRANSFER_EMISSION_MASK = 8
+LUXFER_TRANSFER_RENDER = 9
+LUXFER_TRANSFER_RENDER_VARIANCE = 10
+LUXFER_SCENE_UNSOLVED = 0
+LUXFER_SCENE_LIT = 1
+LUXFER_SCENE_WHITE = 2
+LUXFER_GUIDES_FULL = 0
+LUXFER_GUIDES_DIRECT = 1
+LUXFER_GUIDES_SPECULAR = 2
+LUXFER_GUIDES_INDIRECT = 3
+LUXFER_GUIDES_TWO_BOUNCES = 4
+LUXFER_GUIDES_NORMALS = 5
+LUXFER_GUIDES_EDGES = 6
+LUXFER_GUIDES_MATERIALS = 7
+LUXFER_STYLIZE_FULL = 0
+LUXFER_STYLIZE_FAST = 1
+LUXFER_STYLIZE_PREVIEW = 2
+LUXFER_STYLIZE_PAPER = 3
+LUXFER_STYLIZE_MODE_BUDGET = 0
+LUXFER_STYLIZE_MODE_UNIFORM = 1
+LUXFER_STYLIZE_MODE_NEAREST = 2
+LUXFER_STYLIZE_MODE_GREEDY = 3
+LUXFER_STYLIZE_MODE_LIT_SPHERE = 4
+LUXFER_STYLIZE_SEARCH_PATCHMATCH = 0
+LUXFER_STYLIZE_SEARCH_TABLE = 1
+LUXFER_STYLIZE_VOTE_PLAIN = 0
+LUXFER_STYLIZE_VOTE_WEIGHTED = 1
+LUXFER_STYLIZE_VOTE_NEAREST = 2
+LUXFER_GUIDES_WITH_NORMALS = 1
+LUXFER_GUIDES_WITH_EDGES = 2
+LUXFER_GUIDES_WITH_MATERIALS = 4
+LUXFER_GUIDE_LIGHT = 0
+LUXFER_GUIDE_DATA = 1
+LUXFER_STYLIZE_IMAGE_PICTURE = 0
+LUXFER_STYLIZE_IMAGE_GUIDE_ERROR = 1
+LUXFER_STYLIZE_IMAGE_SOURCES = 2
+LUXFER_DEMO_TARGET_ROOM = 0
+LUXFER_DEMO_EXEMPLAR_ROOM = 1
+LUXFER_DEMO_SPHERE_ON_TABLE = 2
+LUXFER_DEMO_STILL_LIFE = 3
+LUXFER_ARTWORK_PEN = 0
+LUXFER_ARTWORK_STIPPLE = 1
+LUXFER_ARTWORK_PAINT = 2
+LUXFER_DEMO_PHOTO_PICTURE = 0
+LUXFER_DEMO_PHOTO_STROKES = 1
+
+
+class luxfer_context(Structure):
+    """A context: threads, memory budget and error messages. See luxfer_context_create."""
+
+
+class luxfer_image(Structure):
+    """An image. See luxfer_image_create."""
+
+
+class luxfer_job(Structure):
+    """Work in progress. See luxfer_job_wait."""
+
+
+class luxfer_scene(Structure):
+    """A scene. See luxfer_scene_load and luxfer_scene_create."""
+
+
+class luxfer_rectify(Structure):
+    """Lines, vanishing points and the unwarped plane of a photo. See luxfer_rectify_create."""
+
+
+class luxfer_features(Structure):
+    """The features of a photo. See luxfer_features_create."""
+
+
+class luxfer_segment(Structure):
+    """A segmentation by strokes. See luxfer_segment_create."""
+
+
+class luxfer_emission(Structure):
+    """An emissive texture in the making. See luxfer_emission_create."""
+
+
+class luxfer_render(Structure):
+    """A rendering of a scene. See luxfer_render_create."""
+
+
+class luxfer_illuminance(Structure):
+    """A calculation of illuminance. See luxfer_illuminance_create."""
+
+
+class luxfer_relight(Structure):
+    """A relighting of a scene. See luxfer_relight_create."""
+
+
+class luxfer_transfer(Structure):
+    """A lighting transfer. See luxfer_transfer_create."""
+
+
+class luxfer_guides(Structure):
+    """The guides of a scene. See luxfer_guides_create."""
+
+
+class luxfer_stylize(Structure):
+    """A stylisation. See luxfer_stylize_create."""
+
+
+class luxfer_demo_photo(Structure):
+    """A photo in the making. See luxfer_demo_photo_create."""
+
+
+luxfer_progress_fn = CFUNCTYPE(c_int32, c_void_p, c_double)
+
+luxfer_write_fn = CFUNCTYPE(c_int32, c_void_p, c_void_p, c_size_t)
+
+
+class luxfer_context_params(Structure):
+    """How a context is set up."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("num_threads", c_uint32),
+        ("memory_budget_mib", c_uint64),
+    ]
+    enumerations = {}
+
+
+class luxfer_image_view(Structure):
+    """An image in the caller's memory."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("channels", c_uint32),
+        ("sample", c_int32),
+        ("colour_space", c_int32),
+        ("width", c_uint32),
+        ("height", c_uint32),
+        ("flags", c_uint32),
+        ("reserved", c_uint32),
+        ("pixel_stride", c_size_t),
+        ("row_stride", c_size_t),
+        ("byte_size", c_size_t),
+        ("data", c_void_p),
+    ]
+    enumerations = {"sample": types.Sample, "colour_space": types.ColourSpace, "flags": types.View}
+
+
+class luxfer_scene_counts(Structure):
+    """How much there is in a scene."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("meshes", c_uint32),
+        ("materials", c_uint32),
+        ("textures", c_uint32),
+        ("lights", c_uint32),
+        ("cameras", c_uint32),
+        ("triangles", c_uint64),
+    ]
+    enumerations = {}
+    result = types.SceneCounts
+
+
+class luxfer_surface(Structure):
+    """A planar surface of a scene."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("triangles", c_uint32),
+        ("origin", c_float * 3),
+        ("u_axis", c_float * 3),
+        ("v_axis", c_float * 3),
+        ("normal", c_float * 3),
+        ("size", c_float * 2),
+        ("area", c_float),
+        ("reserved", c_uint32),
+    ]
+    enumerations = {}
+    result = types.Surface
+
+
+class luxfer_material_params(Structure):
+    """A material: metallic-roughness, as in glTF 2.0."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("double_sided", c_uint32),
+        ("name", c_char_p),
+        ("base_color", c_float * 3),
+        ("metallic", c_float),
+        ("roughness", c_float),
+        ("emission", c_float * 3),
+        ("transmission", c_float),
+        ("ior", c_float),
+    ]
+    enumerations = {}
+
+
+class luxfer_mesh_params(Structure):
+    """A triangle mesh in world space."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("material", c_uint32),
+        ("name", c_char_p),
+        ("vertex_count", c_size_t),
+        ("positions", c_void_p),
+        ("position_stride", c_size_t),
+        ("normals", c_void_p),
+        ("normal_stride", c_size_t),
+        ("uvs", c_void_p),
+        ("uv_stride", c_size_t),
+        ("triangle_count", c_size_t),
+        ("indices", c_void_p),
+        ("index_stride", c_size_t),
+    ]
+    enumerations = {}
+
+
+class luxfer_camera_params(Structure):
+    """A pinhole camera."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("fov_y", c_float),
+        ("position", c_float * 3),
+        ("target", c_float * 3),
+        ("up", c_float * 3),
+        ("reserved", c_uint32),
+    ]
+    enumerations = {}
+
+
+class luxfer_light_params(Structure):
+    """A light without a surface."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("kind", c_int32),
+        ("position", c_float * 3),
+        ("direction", c_float * 3),
+        ("intensity", c_float * 3),
+        ("inner_angle", c_float),
+        ("outer_angle", c_float),
+        ("reserved", c_uint32),
+    ]
+    enumerations = {"kind": types.LightKind}
+
+
+class luxfer_ray(Structure):
+    """A half-line. An element of arrays, so it will never change."""
+
+    _fields_ = [
+        ("origin", c_float * 3),
+        ("direction", c_float * 3),
+        ("t_max", c_float),
+    ]
+    enumerations = {}
+    result = types.Ray
+
+
+class luxfer_hit(Structure):
+    """Where a ray meets a scene. An element of arrays, so it will never change."""
+
+    _fields_ = [
+        ("t", c_float),
+        ("mesh", c_uint32),
+        ("triangle", c_uint32),
+        ("u", c_float),
+        ("v", c_float),
+    ]
+    enumerations = {}
+    result = types.Hit
+
+
+class luxfer_requirements(Structure):
+    """What a scene requires of the renderer."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("scattering", c_uint32),
+        ("lights", c_uint32),
+        ("textures", c_uint32),
+        ("bounces", c_uint32),
+        ("brightest_material", c_uint32),
+        ("albedo", c_float * 3),
+    ]
+    enumerations = {"scattering": types.Scattering, "lights": types.Lights}
+    result = types.Requirements
+
+
+class luxfer_mesh_info(Structure):
+    """A mesh of a scene."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("material", c_uint32),
+        ("vertex_count", c_size_t),
+        ("triangle_count", c_size_t),
+        ("has_normals", c_uint32),
+        ("uv_sets", c_uint32),
+    ]
+    enumerations = {}
+    result = types.MeshInfo
+
+
+class luxfer_texture_use(Structure):
+    """A texture as a material uses it."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("texture", c_uint32),
+        ("uv_set", c_uint32),
+        ("wrap_u", c_int32),
+        ("wrap_v", c_int32),
+        ("transform", c_float * 6),
+    ]
+    enumerations = {"wrap_u": types.Wrap, "wrap_v": types.Wrap}
+    result = types.TextureUse
+
+
+class luxfer_rectify_params(Structure):
+    """Settings of a rectification."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("detector", c_int32),
+        ("search", c_int32),
+        ("metric", c_int32),
+        ("hough_band", c_double),
+        ("focal", c_double),
+        ("principal", c_double * 2),
+        ("plane_axes", c_int32 * 2),
+        ("max_side", c_uint32),
+        ("reserved", c_uint32),
+        ("max_magnification", c_double),
+        ("seed", c_uint64),
+    ]
+    enumerations = {"detector": types.Lines, "search": types.Search, "metric": types.Metric}
+
+
+class luxfer_rectify_report(Structure):
+    """What the lines of a photo say about its camera, and how the plane was unwarped."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("segments", c_uint32),
+        ("vanishing_points", (c_double * 3) * 3),
+        ("vanishing_errors", c_double * 3),
+        ("vanishing_support", c_uint32 * 3),
+        ("focal_source", c_int32),
+        ("focal", c_double),
+        ("principal", c_double * 2),
+        ("axes", (c_double * 3) * 3),
+        ("is_unwarped", c_uint32),
+        ("reserved", c_uint32),
+        ("to_photo", c_double * 9),
+        ("corners", (c_double * 2) * 4),
+        ("corner_errors", c_double * 4),
+        ("pixel_size", c_double),
+        ("aspect_confidence", c_double),
+    ]
+    enumerations = {"focal_source": types.FocalSource}
+    result = types.RectifyReport
+
+
+class luxfer_features_params(Structure):
+    """Settings of the features."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("near_plane", c_float),
+        ("far_plane", c_float),
+        ("normal_radius", c_uint32),
+    ]
+    enumerations = {}
+
+
+class luxfer_features_report(Structure):
+    """How good the features are."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("depth_source", c_int32),
+        ("depth_confidence", c_double),
+        ("replaced_pixels", c_uint64),
+    ]
+    enumerations = {"depth_source": types.DepthSource}
+    result = types.FeaturesReport
+
+
+class luxfer_segment_params(Structure):
+    """Settings of a segmentation."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("samples_per_class", c_uint32),
+        ("channels", c_uint32),
+        ("reserved", c_uint32),
+        ("ridge", c_double),
+        ("seed", c_uint64),
+    ]
+    enumerations = {}
+
+
+class luxfer_segment_report(Structure):
+    """How good a segmentation is."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("reserved", c_uint32),
+        ("error", c_double),
+        ("negative_samples", c_uint64),
+        ("positive_samples", c_uint64),
+        ("contradictory_pixels", c_uint64),
+    ]
+    enumerations = {}
+    result = types.SegmentReport
+
+
+class luxfer_emission_params(Structure):
+    """Settings of the emission."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("width", c_uint32),
+        ("height", c_uint32),
+        ("block", c_uint32),
+        ("scale", c_double),
+        ("working_side", c_uint32),
+        ("metadata_weight", c_float),
+        ("seed", c_uint64),
+    ]
+    enumerations = {}
+
+
+class luxfer_emission_report(Structure):
+    """How good the texture is."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("luminaires", c_uint32),
+        ("error", c_double),
+        ("regularity", c_double),
+    ]
+    enumerations = {}
+    result = types.EmissionReport
+
+
+class luxfer_luminaire(Structure):
+    """One lamp of the texture."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("corners", c_uint32),
+        ("centre", c_double * 2),
+        ("size", c_double * 2),
+        ("orientation", c_double),
+        ("area", c_double),
+        ("flux_share", c_double),
+        ("colour", c_float * 3),
+        ("reserved", c_uint32),
+    ]
+    enumerations = {}
+    result = types.Luminaire
+
+
+class luxfer_render_params(Structure):
+    """Settings of a rendering."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("width", c_uint32),
+        ("height", c_uint32),
+        ("samples", c_uint32),
+        ("target_error", c_float),
+        ("time_budget_ms", c_uint32),
+        ("seed", c_uint64),
+        ("pixel_error", c_float),
+        ("reserved", c_uint32),
+    ]
+    enumerations = {}
+
+
+class luxfer_render_report(Structure):
+    """How good a rendering is."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("samples", c_uint32),
+        ("error", c_double),
+        ("discarded", c_uint64),
+    ]
+    enumerations = {}
+    result = types.RenderReport
+
+
+class luxfer_illuminance_params(Structure):
+    """Settings of the calculation."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("columns", c_uint32),
+        ("rows", c_uint32),
+        ("samples", c_uint32),
+        ("seed", c_uint64),
+    ]
+    enumerations = {}
+
+
+class luxfer_illuminance_grid(Structure):
+    """A calculation grid."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("origin", c_float * 3),
+        ("across", c_float * 3),
+        ("down", c_float * 3),
+        ("normal", c_float * 3),
+        ("reserved", c_uint32),
+    ]
+    enumerations = {}
+
+
+class luxfer_illuminance_report(Structure):
+    """The illuminance on the whole, in lux."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("points", c_uint32),
+        ("least", c_double),
+        ("mean", c_double),
+        ("largest", c_double),
+        ("mean_error", c_double),
+    ]
+    enumerations = {}
+    result = types.IlluminanceReport
+
+
+class luxfer_relight_params(Structure):
+    """Settings of a relighting."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("quantity", c_int32),
+        ("paths", c_uint32),
+        ("target_error", c_float),
+        ("time_budget_ms", c_uint32),
+        ("reserved", c_uint32),
+        ("seed", c_uint64),
+    ]
+    enumerations = {"quantity": types.Quantity}
+
+
+class luxfer_relight_report(Structure):
+    """The solution and how sure it is."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("paths", c_uint32),
+        ("scale", c_double * 3),
+        ("half_width", c_double * 3),
+        ("response", c_double * 3),
+        ("background", c_double * 3),
+        ("reach", c_int32 * 3),
+        ("reserved", c_uint32),
+        ("error", c_double),
+    ]
+    enumerations = {"reach": types.Reach}
+    result = types.RelightReport
+
+
+class luxfer_transfer_params(Structure):
+    """Settings of a transfer. The structs pointed to are read during the call."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("max_texels", c_uint32),
+        ("plane_distance", c_double),
+        ("white_luminance", c_float),
+        ("target", c_int32),
+        ("rectify", POINTER(luxfer_rectify_params)),
+        ("features", POINTER(luxfer_features_params)),
+        ("plane", POINTER(luxfer_segment_params)),
+        ("lights", POINTER(luxfer_segment_params)),
+        ("emission", POINTER(luxfer_emission_params)),
+        ("relight", POINTER(luxfer_relight_params)),
+        ("render", POINTER(luxfer_render_params)),
+    ]
+    enumerations = {"target": types.Target}
+
+
+class luxfer_transfer_report(Structure):
+    """What each stage took and how good its result is. Errors of stages without a result are NaN."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("fixtures", c_uint32),
+        ("seconds", c_double * 8),
+        ("view_error", c_double),
+        ("depth_confidence", c_double),
+        ("plane_error", c_double),
+        ("lights_error", c_double),
+        ("unwarp_error", c_double),
+        ("emission_error", c_double),
+        ("relight_error", c_double),
+        ("render_error", c_double),
+        ("texel_size", c_double),
+        ("target", c_float * 3),
+        ("reserved", c_uint32),
+    ]
+    enumerations = {}
+    result = types.TransferReport
+
+
+class luxfer_fixture(Structure):
+    """One lamp of the lit scene."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("position", c_float * 3),
+        ("normal", c_float * 3),
+        ("axis", c_float * 3),
+        ("radiance", c_float * 3),
+        ("reserved", c_uint32),
+        ("size", c_double * 2),
+        ("area", c_double),
+        ("flux", c_double),
+    ]
+    enumerations = {}
+    result = types.Fixture
+
+
+class luxfer_guides_params(Structure):
+    """Settings of guides."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("width", c_uint32),
+        ("height", c_uint32),
+        ("samples", c_uint32),
+        ("camera", c_uint32),
+        ("smooth", c_uint32),
+        ("seed", c_uint64),
+    ]
+    enumerations = {}
+
+
+class luxfer_stylize_params(Structure):
+    """Settings of a stylisation. Fill them with luxfer_stylize_params_init or luxfer_stylize_params_preset; the
+    defaults given here are those of StylizePreset.FULL."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("mode", c_int32),
+        ("search", c_int32),
+        ("patch", c_uint32),
+        ("guide_weight", c_float),
+        ("levels", c_uint32),
+        ("iterations", c_uint32),
+        ("finest_iterations", c_uint32),
+        ("sweeps", c_uint32),
+        ("coverage", c_float),
+        ("passes", c_uint32),
+        ("settle", c_uint32),
+        ("vote", c_int32),
+        ("final_vote", c_int32),
+        ("preview", c_uint32),
+        ("keep_for_update", c_uint32),
+        ("coherence", c_float),
+        ("match_appearance", c_float),
+        ("seed", c_uint64),
+    ]
+    enumerations = {"mode": types.StylizeMode, "search": types.StylizeSearch, "vote": types.StylizeVote, "final_vote": types.StylizeVote}
+
+
+class luxfer_stylize_report(Structure):
+    """How good a stylisation is."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("finished", c_uint32),
+        ("levels", c_uint32),
+        ("halvings", c_uint32),
+        ("patch", c_uint32),
+        ("most_used", c_uint32),
+        ("energy", c_double),
+        ("used", c_double),
+        ("entropy", c_double),
+        ("guide_error", c_double),
+        ("broken_source", c_uint64),
+        ("broken_target", c_uint64),
+    ]
+    enumerations = {}
+    result = types.StylizeReport
+
+
+class luxfer_stylize_round(Structure):
+    """One round of matching and painting."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("passes", c_uint32),
+        ("energy", c_double),
+    ]
+    enumerations = {}
+    result = types.StylizeRound
+
+
+class luxfer_stylize_pass(Structure):
+    """One pass of matching under the budget."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("reserved", c_uint32),
+        ("knee", c_double),
+        ("coverage", c_double),
+        ("gained", c_uint64),
+    ]
+    enumerations = {}
+    result = types.StylizePass
+
+
+class luxfer_sheet_params(Structure):
+    """Settings of a print sheet."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("even_light", c_uint32),
+        ("paper_width", c_double),
+        ("paper_height", c_double),
+        ("dpi", c_double),
+        ("margin", c_double),
+        ("contrast", c_double),
+    ]
+    enumerations = {}
+
+
+class luxfer_sheet_report(Structure):
+    """How well a photo was aligned."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("marks", c_uint32),
+        ("residual", c_double),
+        ("error", c_double),
+        ("to_photo", c_double * 9),
+    ]
+    enumerations = {}
+    result = types.SheetReport
+
+
+class luxfer_demo_photo_params(Structure):
+    """Settings of the photo."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("width", c_uint32),
+        ("height", c_uint32),
+        ("samples", c_uint32),
+        ("seed", c_uint64),
+    ]
+    enumerations = {}
+
+
+#: What each function returns, and takes: names and types.
+FUNCTIONS = {
+    "luxfer_version": (c_uint32, []),
+    "luxfer_version_string": (c_char_p, []),
+    "luxfer_status_name": (c_char_p, [("status", c_int32)]),
+    "luxfer_context_params_init": (c_int32, [("params", POINTER(luxfer_context_params)), ("size", c_size_t)]),
+    "luxfer_context_create": (c_int32, [("params", POINTER(luxfer_context_params)), ("context", POINTER(POINTER(luxfer_context)))]),
+    "luxfer_context_retain": (c_int32, [("context", POINTER(luxfer_context))]),
+    "luxfer_context_release": (c_int32, [("context", POINTER(luxfer_context))]),
+    "luxfer_context_last_error": (c_int32, [("context", POINTER(luxfer_context)), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
+    "luxfer_image_view_init": (c_int32, [("view", POINTER(luxfer_image_view)), ("size", c_size_t)]),
+    "luxfer_image_create": (c_int32, [("context", POINTER(luxfer_context)), ("view", POINTER(luxfer_image_view)), ("image", POINTER(POINTER(luxfer_image)))]),
+    "luxfer_image_load": (c_int32, [("context", POINTER(luxfer_context)), ("path", c_char_p), ("colour_space", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
+    "luxfer_image_load_memory": (c_int32, [("context", POINTER(luxfer_context)), ("data", c_void_p), ("size", c_size_t), ("colour_space", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
+    "luxfer_image_save": (c_int32, [("image", POINTER(luxfer_image)), ("path", c_char_p), ("exposure", c_float)]),
+    "luxfer_image_size": (c_int32, [("image", POINTER(luxfer_image)), ("width", POINTER(c_uint32)), ("height", POINTER(c_uint32)), ("channels", POINTER(c_uint32))]),
+    "luxfer_image_read": (c_int32, [("image", POINTER(luxfer_image)), ("first_channel", c_uint32), ("view", POINTER(luxfer_image_view))]),
+    "luxfer_image_retain": (c_int32, [("image", POINTER(luxfer_image))]),
+    "luxfer_image_release": (c_int32, [("image", POINTER(luxfer_image))]),
+    "luxfer_job_wait": (c_int32, [("job", POINTER(luxfer_job)), ("timeout_ms", c_int32), ("progress", luxfer_progress_fn), ("user", c_void_p)]),
+    "luxfer_job_poll": (c_int32, [("job", POINTER(luxfer_job)), ("fraction", POINTER(c_double)), ("finished", POINTER(c_int32))]),
+    "luxfer_job_status": (c_int32, [("job", POINTER(luxfer_job))]),
+    "luxfer_job_cancel": (c_int32, [("job", POINTER(luxfer_job))]),
+    "luxfer_job_retain": (c_int32, [("job", POINTER(luxfer_job))]),
+    "luxfer_job_release": (c_int32, [("job", POINTER(luxfer_job))]),
+    "luxfer_scene_create": (c_int32, [("context", POINTER(luxfer_context)), ("scene", POINTER(POINTER(luxfer_scene)))]),
+    "luxfer_scene_load": (c_int32, [("context", POINTER(luxfer_context)), ("path", c_char_p), ("scene", POINTER(POINTER(luxfer_scene)))]),
+    "luxfer_scene_load_memory": (c_int32, [("context", POINTER(luxfer_context)), ("data", c_void_p), ("size", c_size_t), ("base_path", c_char_p), ("scene", POINTER(POINTER(luxfer_scene)))]),
+    "luxfer_scene_export": (c_int32, [("scene", POINTER(luxfer_scene)), ("path", c_char_p)]),
+    "luxfer_scene_export_memory": (c_int32, [("scene", POINTER(luxfer_scene)), ("write", luxfer_write_fn), ("user", c_void_p)]),
+    "luxfer_scene_get_counts": (c_int32, [("scene", POINTER(luxfer_scene)), ("counts", POINTER(luxfer_scene_counts))]),
+    "luxfer_scene_set_environment": (c_int32, [("scene", POINTER(luxfer_scene)), ("red", c_float), ("green", c_float), ("blue", c_float)]),
+    "luxfer_scene_set_emission": (c_int32, [("scene", POINTER(luxfer_scene)), ("material", c_uint32), ("red", c_float), ("green", c_float), ("blue", c_float)]),
+    "luxfer_scene_find_surface": (c_int32, [("scene", POINTER(luxfer_scene)), ("name", c_char_p), ("found", POINTER(luxfer_surface))]),
+    "luxfer_scene_place_emission": (c_int32, [("scene", POINTER(luxfer_scene)), ("name", c_char_p), ("texture", POINTER(luxfer_image)), ("red", c_float), ("green", c_float), ("blue", c_float), ("mesh", POINTER(c_uint32)), ("material", POINTER(c_uint32))]),
+    "luxfer_scene_retain": (c_int32, [("scene", POINTER(luxfer_scene))]),
+    "luxfer_scene_release": (c_int32, [("scene", POINTER(luxfer_scene))]),
+    "luxfer_material_params_init": (c_int32, [("params", POINTER(luxfer_material_params)), ("size", c_size_t)]),
+    "luxfer_mesh_params_init": (c_int32, [("params", POINTER(luxfer_mesh_params)), ("size", c_size_t)]),
+    "luxfer_camera_params_init": (c_int32, [("params", POINTER(luxfer_camera_params)), ("size", c_size_t)]),
+    "luxfer_scene_add_material": (c_int32, [("scene", POINTER(luxfer_scene)), ("params", POINTER(luxfer_material_params)), ("index", POINTER(c_uint32))]),
+    "luxfer_scene_add_mesh": (c_int32, [("scene", POINTER(luxfer_scene)), ("params", POINTER(luxfer_mesh_params)), ("index", POINTER(c_uint32))]),
+    "luxfer_scene_add_camera": (c_int32, [("scene", POINTER(luxfer_scene)), ("params", POINTER(luxfer_camera_params)), ("index", POINTER(c_uint32))]),
+    "luxfer_scene_set_camera": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("params", POINTER(luxfer_camera_params))]),
+    "luxfer_scene_get_camera": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("params", POINTER(luxfer_camera_params))]),
+    "luxfer_light_params_init": (c_int32, [("params", POINTER(luxfer_light_params)), ("size", c_size_t)]),
+    "luxfer_scene_add_light": (c_int32, [("scene", POINTER(luxfer_scene)), ("params", POINTER(luxfer_light_params)), ("index", POINTER(c_uint32))]),
+    "luxfer_scene_intersect": (c_int32, [("scene", POINTER(luxfer_scene)), ("rays", POINTER(luxfer_ray)), ("count", c_size_t), ("hits", POINTER(luxfer_hit))]),
+    "luxfer_scene_requirements": (c_int32, [("scene", POINTER(luxfer_scene)), ("error", c_float), ("requirements", POINTER(luxfer_requirements))]),
+    "luxfer_scene_requirements_text": (c_int32, [("scene", POINTER(luxfer_scene)), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
+    "luxfer_scene_get_mesh": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("info", POINTER(luxfer_mesh_info))]),
+    "luxfer_scene_get_mesh_name": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
+    "luxfer_scene_read_mesh": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("vertex_capacity", c_size_t), ("positions", POINTER(c_float)), ("normals", POINTER(c_float)), ("triangle_capacity", c_size_t), ("indices", POINTER(c_uint32))]),
+    "luxfer_scene_read_mesh_uvs": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("uv_set", c_uint32), ("capacity", c_size_t), ("uvs", POINTER(c_float))]),
+    "luxfer_scene_get_material": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("params", POINTER(luxfer_material_params))]),
+    "luxfer_scene_get_material_texture": (c_int32, [("scene", POINTER(luxfer_scene)), ("material_index", c_uint32), ("role", c_int32), ("texture_use", POINTER(luxfer_texture_use))]),
+    "luxfer_scene_get_texture": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("image", POINTER(POINTER(luxfer_image)))]),
+    "luxfer_homography_from_corners": (c_int32, [("context", POINTER(luxfer_context)), ("from", POINTER(c_double)), ("to", POINTER(c_double)), ("homography", POINTER(c_double))]),
+    "luxfer_image_warp": (c_int32, [("source", POINTER(luxfer_image)), ("to_source", POINTER(c_double)), ("width", c_uint32), ("height", c_uint32), ("warped", POINTER(POINTER(luxfer_image)))]),
+    "luxfer_rectify_params_init": (c_int32, [("params", POINTER(luxfer_rectify_params)), ("size", c_size_t)]),
+    "luxfer_rectify_create": (c_int32, [("context", POINTER(luxfer_context)), ("rectify", POINTER(POINTER(luxfer_rectify)))]),
+    "luxfer_rectify_set_photo": (c_int32, [("rectify", POINTER(luxfer_rectify)), ("photo", POINTER(luxfer_image))]),
+    "luxfer_rectify_set_mask": (c_int32, [("rectify", POINTER(luxfer_rectify)), ("mask", POINTER(luxfer_image))]),
+    "luxfer_rectify_start": (c_int32, [("rectify", POINTER(luxfer_rectify)), ("params", POINTER(luxfer_rectify_params)), ("job", POINTER(POINTER(luxfer_job)))]),
+    "luxfer_rectify_get_image": (c_int32, [("rectify", POINTER(luxfer_rectify)), ("which", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
+    "luxfer_rectify_warp": (c_int32, [("rectify", POINTER(luxfer_rectify)), ("source", POINTER(luxfer_image)), ("warped", POINTER(POINTER(luxfer_image)))]),
+    "luxfer_rectify_get_report": (c_int32, [("rectify", POINTER(luxfer_rectify)), ("report", POINTER(luxfer_rectify_report))]),
+    "luxfer_rectify_retain": (c_int32, [("rectify", POINTER(luxfer_rectify))]),
+    "luxfer_rectify_release": (c_int32, [("rectify", POINTER(luxfer_rectify))]),
+    "luxfer_features_params_init": (c_int32, [("params", POINTER(luxfer_features_params)), ("size", c_size_t)]),
+    "luxfer_features_create": (c_int32, [("context", POINTER(luxfer_context)), ("features", POINTER(POINTER(luxfer_features)))]),
+    "luxfer_features_set_photo": (c_int32, [("features", POINTER(luxfer_features)), ("photo", POINTER(luxfer_image))]),
+    "luxfer_features_set_depth": (c_int32, [("features", POINTER(luxfer_features)), ("depth", POINTER(luxfer_image)), ("kind", c_int32)]),
+    "luxfer_features_set_view": (c_int32, [("features", POINTER(luxfer_features)), ("rectify", POINTER(luxfer_rectify))]),
+    "luxfer_features_start": (c_int32, [("features", POINTER(luxfer_features)), ("params", POINTER(luxfer_features_params)), ("job", POINTER(POINTER(luxfer_job)))]),
+    "luxfer_features_get_image": (c_int32, [("features", POINTER(luxfer_features)), ("which", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
+    "luxfer_features_get_report": (c_int32, [("features", POINTER(luxfer_features)), ("report", POINTER(luxfer_features_report))]),
+    "luxfer_features_retain": (c_int32, [("features", POINTER(luxfer_features))]),
+    "luxfer_features_release": (c_int32, [("features", POINTER(luxfer_features))]),
+    "luxfer_segment_params_init": (c_int32, [("params", POINTER(luxfer_segment_params)), ("size", c_size_t)]),
+    "luxfer_segment_create": (c_int32, [("context", POINTER(luxfer_context)), ("segment", POINTER(POINTER(luxfer_segment)))]),
+    "luxfer_segment_set_features": (c_int32, [("segment", POINTER(luxfer_segment)), ("features", POINTER(luxfer_image))]),
+    "luxfer_segment_set_within": (c_int32, [("segment", POINTER(luxfer_segment)), ("within", POINTER(luxfer_image))]),
+    "luxfer_segment_add_stroke": (c_int32, [("segment", POINTER(luxfer_segment)), ("points", POINTER(c_float)), ("point_count", c_size_t), ("radius", c_float), ("positive", c_int32)]),
+    "luxfer_segment_add_strokes_image": (c_int32, [("segment", POINTER(luxfer_segment)), ("drawing", POINTER(luxfer_image)), ("phase", c_int32)]),
+    "luxfer_segment_add_strokes_text": (c_int32, [("segment", POINTER(luxfer_segment)), ("description", c_char_p), ("phase", c_int32)]),
+    "luxfer_segment_clear_strokes": (c_int32, [("segment", POINTER(luxfer_segment))]),
+    "luxfer_segment_start": (c_int32, [("segment", POINTER(luxfer_segment)), ("params", POINTER(luxfer_segment_params)), ("job", POINTER(POINTER(luxfer_job)))]),
+    "luxfer_segment_get_image": (c_int32, [("segment", POINTER(luxfer_segment)), ("which", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
+    "luxfer_segment_get_report": (c_int32, [("segment", POINTER(luxfer_segment)), ("report", POINTER(luxfer_segment_report))]),
+    "luxfer_segment_retain": (c_int32, [("segment", POINTER(luxfer_segment))]),
+    "luxfer_segment_release": (c_int32, [("segment", POINTER(luxfer_segment))]),
+    "luxfer_emission_params_init": (c_int32, [("params", POINTER(luxfer_emission_params)), ("size", c_size_t)]),
+    "luxfer_emission_create": (c_int32, [("context", POINTER(luxfer_context)), ("emission", POINTER(POINTER(luxfer_emission)))]),
+    "luxfer_emission_set_exemplar": (c_int32, [("emission", POINTER(luxfer_emission)), ("unwarped", POINTER(luxfer_image)), ("light", POINTER(luxfer_image)), ("valid", POINTER(luxfer_image))]),
+    "luxfer_emission_set_photo": (c_int32, [("emission", POINTER(luxfer_emission)), ("photo", POINTER(luxfer_image)), ("to_photo", POINTER(c_double))]),
+    "luxfer_emission_start": (c_int32, [("emission", POINTER(luxfer_emission)), ("params", POINTER(luxfer_emission_params)), ("job", POINTER(POINTER(luxfer_job)))]),
+    "luxfer_emission_get_image": (c_int32, [("emission", POINTER(luxfer_emission)), ("which", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
+    "luxfer_emission_get_report": (c_int32, [("emission", POINTER(luxfer_emission)), ("report", POINTER(luxfer_emission_report))]),
+    "luxfer_emission_get_luminaire": (c_int32, [("emission", POINTER(luxfer_emission)), ("index", c_uint32), ("luminaire", POINTER(luxfer_luminaire))]),
+    "luxfer_emission_get_corner": (c_int32, [("emission", POINTER(luxfer_emission)), ("index", c_uint32), ("corner", c_uint32), ("x", POINTER(c_double)), ("y", POINTER(c_double))]),
+    "luxfer_emission_retain": (c_int32, [("emission", POINTER(luxfer_emission))]),
+    "luxfer_emission_release": (c_int32, [("emission", POINTER(luxfer_emission))]),
+    "luxfer_render_params_init": (c_int32, [("params", POINTER(luxfer_render_params)), ("size", c_size_t)]),
+    "luxfer_render_create": (c_int32, [("context", POINTER(luxfer_context)), ("render", POINTER(POINTER(luxfer_render)))]),
+    "luxfer_render_set_scene": (c_int32, [("render", POINTER(luxfer_render)), ("scene", POINTER(luxfer_scene))]),
+    "luxfer_render_set_camera_index": (c_int32, [("render", POINTER(luxfer_render)), ("camera", c_uint32)]),
+    "luxfer_render_set_camera": (c_int32, [("render", POINTER(luxfer_render)), ("camera", POINTER(luxfer_camera_params))]),
+    "luxfer_render_start": (c_int32, [("render", POINTER(luxfer_render)), ("params", POINTER(luxfer_render_params)), ("job", POINTER(POINTER(luxfer_job)))]),
+    "luxfer_render_get_image": (c_int32, [("render", POINTER(luxfer_render)), ("which", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
+    "luxfer_render_get_report": (c_int32, [("render", POINTER(luxfer_render)), ("report", POINTER(luxfer_render_report))]),
+    "luxfer_render_retain": (c_int32, [("render", POINTER(luxfer_render))]),
+    "luxfer_render_release": (c_int32, [("render", POINTER(luxfer_render))]),
+    "luxfer_render_add_expression": (c_int32, [("render", POINTER(luxfer_render)), ("name", c_char_p), ("expression", c_char_p)]),
+    "luxfer_render_clear_expressions": (c_int32, [("render", POINTER(luxfer_render))]),
+    "luxfer_render_set_emitter_as": (c_int32, [("render", POINTER(luxfer_render)), ("emitter_as", c_int32)]),
+    "luxfer_render_set_aovs": (c_int32, [("render", POINTER(luxfer_render)), ("flags", c_uint32)]),
+    "luxfer_render_get_layer_count": (c_int32, [("render", POINTER(luxfer_render)), ("count", POINTER(c_uint32))]),
+    "luxfer_render_get_layer_name": (c_int32, [("render", POINTER(luxfer_render)), ("index", c_uint32), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
+    "luxfer_render_find_layer": (c_int32, [("render", POINTER(luxfer_render)), ("name", c_char_p), ("index", POINTER(c_uint32))]),
+    "luxfer_render_get_layer": (c_int32, [("render", POINTER(luxfer_render)), ("index", c_uint32), ("image", POINTER(POINTER(luxfer_image)))]),
+    "luxfer_render_write_exr": (c_int32, [("render", POINTER(luxfer_render)), ("path", c_char_p)]),
+    "luxfer_illuminance_params_init": (c_int32, [("params", POINTER(luxfer_illuminance_params)), ("size", c_size_t)]),
+    "luxfer_illuminance_grid_init": (c_int32, [("grid", POINTER(luxfer_illuminance_grid)), ("size", c_size_t)]),
+    "luxfer_illuminance_create": (c_int32, [("context", POINTER(luxfer_context)), ("illuminance", POINTER(POINTER(luxfer_illuminance)))]),
+    "luxfer_illuminance_set_scene": (c_int32, [("illuminance", POINTER(luxfer_illuminance)), ("scene", POINTER(luxfer_scene))]),
+    "luxfer_illuminance_start_grid": (c_int32, [("illuminance", POINTER(luxfer_illuminance)), ("grid", POINTER(luxfer_illuminance_grid)), ("params", POINTER(luxfer_illuminance_params)), ("job", POINTER(POINTER(luxfer_job)))]),
+    "luxfer_illuminance_start_mesh": (c_int32, [("illuminance", POINTER(luxfer_illuminance)), ("mesh", c_uint32), ("back", c_uint32), ("params", POINTER(luxfer_illuminance_params)), ("job", POINTER(POINTER(luxfer_job)))]),
+    "luxfer_illuminance_get_image": (c_int32, [("illuminance", POINTER(luxfer_illuminance)), ("which", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
+    "luxfer_illuminance_get_report": (c_int32, [("illuminance", POINTER(luxfer_illuminance)), ("report", POINTER(luxfer_illuminance_report))]),
+    "luxfer_illuminance_retain": (c_int32, [("illuminance", POINTER(luxfer_illuminance))]),
+    "luxfer_illuminance_release": (c_int32, [("illuminance", POINTER(luxfer_illuminance))]),
+    "luxfer_relight_params_init": (c_int32, [("params", POINTER(luxfer_relight_params)), ("size", c_size_t)]),
+    "luxfer_relight_create": (c_int32, [("context", POINTER(luxfer_context)), ("relight", POINTER(POINTER(luxfer_relight)))]),
+    "luxfer_relight_set_scene": (c_int32, [("relight", POINTER(luxfer_relight)), ("scene", POINTER(luxfer_scene)), ("material", c_uint32), ("mesh", c_uint32)]),
+    "luxfer_relight_set_target": (c_int32, [("relight", POINTER(luxfer_relight)), ("red", c_float), ("green", c_float), ("blue", c_float)]),
+    "luxfer_relight_start": (c_int32, [("relight", POINTER(luxfer_relight)), ("params", POINTER(luxfer_relight_params)), ("job", POINTER(POINTER(luxfer_job)))]),
+    "luxfer_relight_get_report": (c_int32, [("relight", POINTER(luxfer_relight)), ("report", POINTER(luxfer_relight_report))]),
+    "luxfer_relight_retain": (c_int32, [("relight", POINTER(luxfer_relight))]),
+    "luxfer_relight_release": (c_int32, [("relight", POINTER(luxfer_relight))]),
+    "luxfer_transfer_params_init": (c_int32, [("params", POINTER(luxfer_transfer_params)), ("size", c_size_t)]),
+    "luxfer_transfer_create": (c_int32, [("context", POINTER(luxfer_context)), ("transfer", POINTER(POINTER(luxfer_transfer)))]),
+    "luxfer_transfer_set_photo": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("photo", POINTER(luxfer_image))]),
+    "luxfer_transfer_set_depth": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("depth", POINTER(luxfer_image)), ("kind", c_int32)]),
+    "luxfer_transfer_set_scene": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("scene", POINTER(luxfer_scene)), ("surface", c_char_p)]),
+    "luxfer_transfer_set_texture": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("texture", POINTER(luxfer_image))]),
+    "luxfer_transfer_set_camera": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("camera", POINTER(luxfer_camera_params))]),
+    "luxfer_transfer_add_stroke": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("phase", c_int32), ("points", POINTER(c_float)), ("point_count", c_size_t), ("radius", c_float), ("positive", c_int32)]),
+    "luxfer_transfer_add_strokes_image": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("drawing", POINTER(luxfer_image))]),
+    "luxfer_transfer_add_strokes_text": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("description", c_char_p)]),
+    "luxfer_transfer_clear_strokes": (c_int32, [("transfer", POINTER(luxfer_transfer))]),
+    "luxfer_transfer_use_rectify": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("rectify", POINTER(luxfer_rectify))]),
+    "luxfer_transfer_use_features": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("features", POINTER(luxfer_features))]),
+    "luxfer_transfer_use_segment": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("phase", c_int32), ("segment", POINTER(luxfer_segment))]),
+    "luxfer_transfer_use_mask": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("phase", c_int32), ("mask", POINTER(luxfer_image))]),
+    "luxfer_transfer_start": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("first", c_int32), ("last", c_int32), ("params", POINTER(luxfer_transfer_params)), ("job", POINTER(POINTER(luxfer_job)))]),
+    "luxfer_transfer_retain": (c_int32, [("transfer", POINTER(luxfer_transfer))]),
+    "luxfer_transfer_release": (c_int32, [("transfer", POINTER(luxfer_transfer))]),
+    "luxfer_transfer_get_image": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("which", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
+    "luxfer_transfer_get_scene": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("which", c_int32), ("scene", POINTER(POINTER(luxfer_scene)))]),
+    "luxfer_transfer_get_report": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("report", POINTER(luxfer_transfer_report))]),
+    "luxfer_transfer_get_view": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("view", POINTER(luxfer_rectify_report))]),
+    "luxfer_transfer_get_solution": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("solution", POINTER(luxfer_relight_report))]),
+    "luxfer_transfer_get_fixture": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("index", c_uint32), ("fixture", POINTER(luxfer_fixture))]),
+    "luxfer_guides_params_init": (c_int32, [("params", POINTER(luxfer_guides_params)), ("size", c_size_t)]),
+    "luxfer_guides_create": (c_int32, [("context", POINTER(luxfer_context)), ("guides", POINTER(POINTER(luxfer_guides)))]),
+    "luxfer_guides_set_scene": (c_int32, [("guides", POINTER(luxfer_guides)), ("scene", POINTER(luxfer_scene))]),
+    "luxfer_guides_start": (c_int32, [("guides", POINTER(luxfer_guides)), ("params", POINTER(luxfer_guides_params)), ("job", POINTER(POINTER(luxfer_job)))]),
+    "luxfer_guides_get_image": (c_int32, [("guides", POINTER(luxfer_guides)), ("which", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
+    "luxfer_guides_motion": (c_int32, [("guides", POINTER(luxfer_guides)), ("before", POINTER(luxfer_guides)), ("motion", POINTER(POINTER(luxfer_image)))]),
+    "luxfer_guides_retain": (c_int32, [("guides", POINTER(luxfer_guides))]),
+    "luxfer_guides_release": (c_int32, [("guides", POINTER(luxfer_guides))]),
+    "luxfer_stylize_params_init": (c_int32, [("params", POINTER(luxfer_stylize_params)), ("size", c_size_t)]),
+    "luxfer_stylize_params_preset": (c_int32, [("params", POINTER(luxfer_stylize_params)), ("preset", c_int32)]),
+    "luxfer_stylize_create": (c_int32, [("context", POINTER(luxfer_context)), ("stylize", POINTER(POINTER(luxfer_stylize)))]),
+    "luxfer_stylize_set_artwork": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("artwork", POINTER(luxfer_image))]),
+    "luxfer_stylize_add_guide": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("name", c_char_p), ("source", POINTER(luxfer_image)), ("target", POINTER(luxfer_image)), ("weight", c_float), ("range", c_int32)]),
+    "luxfer_stylize_add_guides": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("source", POINTER(luxfer_guides)), ("target", POINTER(luxfer_guides)), ("extras", c_uint32), ("extra_weight", c_float)]),
+    "luxfer_stylize_clear_guides": (c_int32, [("stylize", POINTER(luxfer_stylize))]),
+    "luxfer_stylize_set_source_mask": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("mask", POINTER(luxfer_image))]),
+    "luxfer_stylize_set_target_mask": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("mask", POINTER(luxfer_image)), ("known", POINTER(luxfer_image))]),
+    "luxfer_stylize_set_motion": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("motion", POINTER(luxfer_image))]),
+    "luxfer_stylize_start": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("params", POINTER(luxfer_stylize_params)), ("job", POINTER(POINTER(luxfer_job)))]),
+    "luxfer_stylize_update": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("artwork", POINTER(luxfer_image)), ("changed", POINTER(luxfer_image)), ("job", POINTER(POINTER(luxfer_job)))]),
+    "luxfer_stylize_set_painted": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("painted", POINTER(luxfer_image))]),
+    "luxfer_stylize_retain": (c_int32, [("stylize", POINTER(luxfer_stylize))]),
+    "luxfer_stylize_release": (c_int32, [("stylize", POINTER(luxfer_stylize))]),
+    "luxfer_stylize_get_image": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("which", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
+    "luxfer_stylize_get_report": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("report", POINTER(luxfer_stylize_report))]),
+    "luxfer_stylize_get_level": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("level", c_uint32), ("width", POINTER(c_uint32)), ("height", POINTER(c_uint32)), ("rounds", POINTER(c_uint32))]),
+    "luxfer_stylize_get_round": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("level", c_uint32), ("index", c_uint32), ("round", POINTER(luxfer_stylize_round))]),
+    "luxfer_stylize_get_pass": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("level", c_uint32), ("round", c_uint32), ("index", c_uint32), ("pass", POINTER(luxfer_stylize_pass))]),
+    "luxfer_sheet_params_init": (c_int32, [("params", POINTER(luxfer_sheet_params)), ("size", c_size_t)]),
+    "luxfer_sheet_print": (c_int32, [("picture", POINTER(luxfer_image)), ("params", POINTER(luxfer_sheet_params)), ("sheet", POINTER(POINTER(luxfer_image)))]),
+    "luxfer_sheet_align": (c_int32, [("photo", POINTER(luxfer_image)), ("width", c_uint32), ("height", c_uint32), ("params", POINTER(luxfer_sheet_params)), ("artwork", POINTER(POINTER(luxfer_image))), ("report", POINTER(luxfer_sheet_report))]),
+    "luxfer_demo_scene": (c_int32, [("context", POINTER(luxfer_context)), ("which", c_int32), ("scene", POINTER(POINTER(luxfer_scene)))]),
+    "luxfer_demo_artwork": (c_int32, [("guides", POINTER(luxfer_guides)), ("style", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
+    "luxfer_demo_photo_params_init": (c_int32, [("params", POINTER(luxfer_demo_photo_params)), ("size", c_size_t)]),
+    "luxfer_demo_photo_create": (c_int32, [("context", POINTER(luxfer_context)), ("demo", POINTER(POINTER(luxfer_demo_photo)))]),
+    "luxfer_demo_photo_start": (c_int32, [("demo", POINTER(luxfer_demo_photo)), ("params", POINTER(luxfer_demo_photo_params)), ("job", POINTER(POINTER(luxfer_job)))]),
+    "luxfer_demo_photo_get_image": (c_int32, [("demo", POINTER(luxfer_demo_photo)), ("which", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
+    "luxfer_demo_photo_retain": (c_int32, [("demo", POINTER(luxfer_demo_photo))]),
+    "luxfer_demo_photo_release": (c_int32, [("demo", POINTER(luxfer_demo_photo))]),
+}

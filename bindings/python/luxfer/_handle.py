@@ -1,0 +1,98 @@
+"""What all objects of the library have in common: they are released once, by close(), `with`, or the garbage collector."""
+
+from __future__ import annotations
+
+import ctypes
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+
+from . import _abi, _params
+from ._library import library
+from .errors import InvalidArgument, error
+
+if TYPE_CHECKING:
+    from .context import Context
+    from .image import Image
+
+H = TypeVar("H", bound="Handle")
+
+
+class Handle:
+    """An object of the library. Releasing it twice is fine; using it afterwards is an error."""
+
+    kind: ClassVar[str]
+    _pointer: Any = None
+    _context: Context
+
+    def close(self) -> None:
+        """Releases the object. A job that runs on it goes on; one that nobody holds any more is cancelled."""
+        pointer, self._pointer = self._pointer, None
+        if pointer:
+            getattr(library, f"luxfer_{self.kind}_release")(pointer)
+
+    @property
+    def context(self) -> Context:
+        """The context it was made in."""
+        return self._context
+
+    @property
+    def handle(self) -> Any:
+        """The C handle, for luxfer.library."""
+        if not self._pointer:
+            raise InvalidArgument(f"this {type(self).__name__} has been closed")
+        return self._pointer
+
+    def __enter__(self: H) -> H:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None) -> None:
+        self.close()
+
+    def __del__(self) -> None:
+        if library is not None:  # else the interpreter is ending
+            self.close()
+
+    def __copy__(self: H) -> H:
+        raise TypeError(f"a {type(self).__name__} cannot be copied")
+
+    def _check(self, status: int) -> None:
+        if status != _abi.LUXFER_OK:
+            raise error(status, self._context.last_error())
+
+    def _call(self, verb: str, *arguments: Any) -> None:
+        """luxfer_<kind>_<verb>(this, ...), whose failure is an exception."""
+        self._check(getattr(library, f"luxfer_{self.kind}_{verb}")(self.handle, *arguments))
+
+    def _read(self, verb: str, struct: Any, *arguments: Any) -> Any:
+        """A report, as its dataclass."""
+        out = _params.sized(struct)
+        self._call(verb, *arguments, out)
+        return _params.report(out)
+
+    def _get_image(self, verb: str, *arguments: Any) -> Image:
+        from .image import Image
+
+        pointer = ctypes.POINTER(_abi.luxfer_image)()
+        self._call(verb, *arguments, pointer)
+        return Image._adopt(self._context, pointer)
+
+    def _get_text(self, verb: str, *arguments: Any) -> str:
+        needed = ctypes.c_size_t()
+        self._call(verb, *arguments, None, 0, needed)
+        buffer = ctypes.create_string_buffer(needed.value)
+        self._call(verb, *arguments, buffer, needed.value, None)
+        return buffer.value.decode()
+
+    @classmethod
+    def _adopt(cls: type[H], context: Context, pointer: Any) -> H:
+        """Takes over a handle that the library has returned."""
+        out = cls.__new__(cls)
+        out._context, out._pointer = context, pointer
+        return out
+
+    def _create(self, context: Context) -> None:
+        """luxfer_<kind>_create."""
+        self._context = context
+        pointer = ctypes.POINTER(getattr(_abi, f"luxfer_{self.kind}"))()
+        self._check(getattr(library, f"luxfer_{self.kind}_create")(context.handle, pointer))
+        self._pointer = pointer

@@ -1,0 +1,161 @@
+"""Keyword arguments to the library's structs, and its structs to dataclasses. A name that is none is an error that names the nearest."""
+
+from __future__ import annotations
+
+import ctypes
+import difflib
+import operator
+from collections.abc import Mapping
+from enum import IntEnum, IntFlag
+from typing import Any, TypeVar
+
+from . import _abi
+from ._library import library
+
+E = TypeVar("E", IntEnum, IntFlag)
+
+INTEGERS = {
+    ctypes.c_int32: (-(2**31), 2**31 - 1),
+    ctypes.c_uint32: (0, 2**32 - 1),
+    ctypes.c_uint64: (0, 2**64 - 1),
+    ctypes.c_size_t: (0, 2 ** (8 * ctypes.sizeof(ctypes.c_size_t)) - 1),
+}
+
+
+def nearest(name: str, names: list[str]) -> str:
+    """A hint for who mistyped a name."""
+    close = difflib.get_close_matches(name, names, n=1, cutoff=0.5)
+    return (f"did you mean '{close[0]}'? " if close else "") + "There are " + ", ".join(names)
+
+
+def member(kind: type[E], value: E | str | int) -> E:
+    """A member of an enumeration by itself, its number, or its name in any case, with - for _; of flags also 'a|b'."""
+    if isinstance(value, str):
+        names = {name.lower().replace("_", "-"): m for name, m in kind.__members__.items()}
+        parts = value.lower().replace("_", "-").split("|") if issubclass(kind, IntFlag) else [value.lower().replace("_", "-")]
+        out = 0
+        for part in (p.strip() for p in parts):
+            if part not in names:
+                raise ValueError(f"'{value}' is no {kind.__name__}: {nearest(part, list(names))}")
+            out |= names[part]
+        return kind(out)
+    try:
+        return kind(operator.index(value))
+    except ValueError:
+        listed = ", ".join(f"{m.name.lower()} = {m.value}" for m in kind)
+        raise ValueError(f"{value} is no {kind.__name__}: there are {listed}") from None
+
+
+def is_array(kind: type) -> bool:
+    return isinstance(kind, type) and issubclass(kind, ctypes.Array)
+
+
+def _convert(kind: Any, value: Any, name: str, keep: list[Any]) -> Any:
+    """A value as a field of a ctypes type takes it; what it points to is kept alive in `keep`."""
+    if kind in INTEGERS:
+        low, high = INTEGERS[kind]
+        try:
+            number = operator.index(value)
+        except TypeError:
+            raise TypeError(f"{name} is a whole number, not {value!r}") from None
+        if not low <= number <= high:
+            raise ValueError(f"{name} = {number} is not in [{low}, {high}]")
+        return number
+    if kind in (ctypes.c_float, ctypes.c_double):
+        try:
+            return float(value)
+        except (TypeError, ValueError):
+            raise TypeError(f"{name} is a number, not {value!r}") from None
+    if kind is ctypes.c_char_p:
+        return None if value is None else text(value, name)
+    if is_array(kind):
+        try:
+            values = list(value)
+        except TypeError:
+            raise TypeError(f"{name} is {kind._length_} numbers, not {value!r}") from None
+        if len(values) != kind._length_:
+            raise ValueError(f"{name} is {kind._length_} numbers, not {len(values)}")
+        return kind(*(_convert(kind._type_, v, f"{name}[{i}]", keep) for i, v in enumerate(values)))
+    if kind is ctypes.c_void_p:
+        return value
+    # A pointer to settings of another stage.
+    if value is None:
+        return None
+    if not isinstance(value, Mapping):
+        raise TypeError(f"{name} is a dict of settings, not {value!r}")
+    inner = fill(kind._type_, value, keep, f"{name}.")
+    keep.append(inner)
+    return ctypes.pointer(inner)
+
+
+def text(value: Any, name: str) -> bytes:
+    """A string as the library takes it."""
+    if not isinstance(value, str):
+        raise TypeError(f"{name} is a str, not {value!r}")
+    if "\0" in value:
+        raise ValueError(f"{name} contains a zero character")
+    return value.encode()
+
+
+def fill(struct: type[ctypes.Structure], values: Mapping[str, Any], keep: list[Any], prefix: str = "") -> Any:
+    """A struct with the library's defaults, and `values` over them. Keep `keep` until the call that takes it is done."""
+    params = struct()
+    name = struct.__name__
+    status = getattr(library, f"{name}_init")(params, ctypes.sizeof(params))
+    if status != _abi.LUXFER_OK:
+        raise RuntimeError(f"{name}_init: the package and the library do not fit together")
+    update(params, values, keep, prefix)
+    return params
+
+
+def update(params: ctypes.Structure, values: Mapping[str, Any], keep: list[Any], prefix: str = "") -> None:
+    """Sets fields of a struct."""
+    kinds = {f[0]: f[1] for f in params._fields_ if f[0] not in ("struct_size", "reserved")}
+    enumerations: dict[str, Any] = getattr(params, "enumerations", {})
+    for key, value in values.items():
+        if key not in kinds:
+            raise TypeError(f"there is no setting '{prefix}{key}': {nearest(key, list(kinds))}")
+        if key in enumerations:
+            value = member(enumerations[key], value)
+        setattr(params, key, _convert(kinds[key], value, prefix + key, keep))
+
+
+def settings(params: ctypes.Structure) -> dict[str, Any]:
+    """A struct as the dict that would fill it; pointers are left out."""
+    return {
+        f[0]: plain(getattr(params, f[0]), params, f[0])
+        for f in params._fields_
+        if f[0] not in ("struct_size", "reserved") and (f[1] in INTEGERS or f[1] in (ctypes.c_float, ctypes.c_double) or is_array(f[1]))
+    }
+
+
+def defaults(struct: type[ctypes.Structure]) -> dict[str, Any]:
+    """What the library fills a struct with."""
+    return settings(fill(struct, {}, []))
+
+
+def sized(struct: type[ctypes.Structure]) -> Any:
+    """A struct for the library to write its answer into."""
+    out = struct()
+    if hasattr(out, "struct_size"):
+        out.struct_size = ctypes.sizeof(out)
+    return out
+
+
+def plain(value: Any, params: ctypes.Structure, name: str) -> Any:
+    """A field's value: arrays as tuples, enumerations as their members where the number is one."""
+    if isinstance(value, ctypes.Array):
+        return tuple(plain(v, params, name) for v in value)
+    kind = getattr(params, "enumerations", {}).get(name)
+    if kind is None:
+        return value
+    try:
+        return kind(value)
+    except ValueError:
+        return value
+
+
+def report(struct: Any) -> Any:
+    """A struct the library has written, as its dataclass."""
+    names = [f[0] for f in struct._fields_ if f[0] not in ("struct_size", "reserved")]
+    return struct.result(**{name: plain(getattr(struct, name), struct, name) for name in names})

@@ -1,0 +1,92 @@
+"""From the unwarped lights of a photo to an emissive texture of any size, and the list of its lamps."""
+
+from __future__ import annotations
+
+import ctypes
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+
+from . import _abi, _arrays, _params
+from .image import Image, _matrix, image_of
+from .job import Job, Progress, StageBase
+from .types import EmissionImage, EmissionReport, Luminaire
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+    from typing_extensions import Unpack
+
+    from .context import Context
+    from .image import ImageLike
+    from .types import EmissionParams
+
+
+class Emission(StageBase):
+    """Carries the pattern of the exemplar's lights on over a texture.
+
+    >>> lamps = np.zeros((64, 64, 3), np.float32)
+    >>> lamps[8::16, 8::16] = lamps[9::16, 8::16] = lamps[8::16, 9::16] = lamps[9::16, 9::16] = 1
+    >>> emission = Emission(context, lamps, lamps[:, :, 0], np.ones((64, 64)))
+    >>> emission.run(width=96, height=80).image("texture").size
+    (96, 80, 3)
+    >>> emission.report.luminaires == len(emission.luminaires)
+    True
+    """
+
+    kind = "emission"
+
+    def __init__(
+        self, context: Context, unwarped: ImageLike | None = None, light: ImageLike | None = None, valid: ImageLike | None = None
+    ) -> None:
+        super().__init__(context)
+        if unwarped is not None and light is not None and valid is not None:
+            self.set_exemplar(unwarped, light, valid)
+        elif not (unwarped is None and light is None and valid is None):
+            raise TypeError("an exemplar is three images: unwarped, light and valid")
+
+    def set_exemplar(self, unwarped: ImageLike, light: ImageLike, valid: ImageLike) -> None:
+        """Three images of one size: the unwarped photo, the unwarped confidence of the lights, where both are valid."""
+        images = [image_of(self._context, image) for image in (unwarped, light, valid)]
+        self._call("set_exemplar", *(image.handle for image in images))
+
+    def set_photo(self, photo: ImageLike | None, to_photo: ArrayLike | None = None) -> None:
+        """The photo from which full detail is recovered, and the 3 x 3 map to it (RectifyReport.to_photo); None: none."""
+        if photo is None:
+            return self._call("set_photo", None, None)
+        if to_photo is None:
+            raise TypeError("a photo needs to_photo, the map from unwarped to photo pixels")
+        matrix = _matrix(to_photo, "to_photo", 9)
+        return self._call("set_photo", image_of(self._context, photo).handle, _arrays.pointer(matrix, ctypes.c_double))
+
+    def start(self, **params: Unpack[EmissionParams]) -> Job[Emission]:
+        """Starts the work."""
+        return self._job("start", _params.fill(_abi.luxfer_emission_params, params, []))
+
+    def run(self, progress: Progress | None = None, **params: Unpack[EmissionParams]) -> Emission:
+        """Starts the work and waits for it."""
+        return self.start(**params).wait(progress)
+
+    def image(self, which: EmissionImage | str = EmissionImage.TEXTURE) -> Image:
+        """"texture", "mask", "exemplar-metadata" or "metadata"."""
+        return self._get_image("get_image", _params.member(EmissionImage, which))
+
+    @property
+    def report(self) -> EmissionReport:
+        """How good the texture is."""
+        return cast(EmissionReport, self._read("get_report", _abi.luxfer_emission_report))
+
+    @property
+    def luminaires(self) -> list[Luminaire]:
+        """The lamps of the texture."""
+        count = self.report.luminaires
+        return [cast(Luminaire, self._read("get_luminaire", _abi.luxfer_luminaire, i)) for i in range(count)]
+
+    def outline(self, index: int) -> NDArray[np.float64]:
+        """The corners (n, 2) of a lamp's outline, in texels."""
+        luminaire = self._read("get_luminaire", _abi.luxfer_luminaire, index)
+        out = np.empty((luminaire.corners, 2))
+        for corner, point in enumerate(out):
+            x, y = ctypes.c_double(), ctypes.c_double()
+            self._call("get_corner", index, corner, x, y)
+            point[:] = x.value, y.value
+        return out

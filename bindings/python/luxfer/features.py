@@ -1,0 +1,63 @@
+"""What segmentation knows of each pixel of a photo: colour, depth, position and normal."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, cast
+
+from . import _abi, _params
+from .image import Image, image_of
+from .job import Job, Progress, StageBase
+from .types import DepthKind, FeaturesImage, FeaturesReport
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from .context import Context
+    from .image import ImageLike
+    from .rectify import Rectify
+    from .types import FeaturesParams
+
+
+class Features(StageBase):
+    """Ten channels for each pixel: L*, a*, b*, depth, position x, y, z and normal x, y, z.
+
+    >>> Features(context, photo).run().image("channels").size[2]
+    10
+    """
+
+    kind = "features"
+
+    def __init__(self, context: Context, photo: ImageLike | None = None) -> None:
+        super().__init__(context)
+        if photo is not None:
+            self.set_photo(photo)
+
+    def set_photo(self, photo: ImageLike) -> None:
+        """Linear RGB, 1 = display white."""
+        self._call("set_photo", image_of(self._context, photo).handle)
+
+    def set_depth(self, depth: ImageLike | None, kind: DepthKind | str = DepthKind.ALONG_Z) -> None:
+        """A depth map of the photo's size in any unit, "along-z" or "along-ray"; None: none."""
+        handle = None if depth is None else image_of(self._context, depth).handle
+        self._call("set_depth", handle, _params.member(DepthKind, kind))
+
+    def set_view(self, rectify: Rectify | None) -> None:
+        """The lines and the camera found in the same photo; None: none."""
+        self._call("set_view", None if rectify is None else rectify.handle)
+
+    def start(self, **params: Unpack[FeaturesParams]) -> Job[Features]:
+        """Starts the work."""
+        return self._job("start", _params.fill(_abi.luxfer_features_params, params, []))
+
+    def run(self, progress: Progress | None = None, **params: Unpack[FeaturesParams]) -> Features:
+        """Starts the work and waits for it."""
+        return self.start(**params).wait(progress)
+
+    def image(self, which: FeaturesImage | str = FeaturesImage.CHANNELS) -> Image:
+        """"channels" or "depth-confidence"."""
+        return self._get_image("get_image", _params.member(FeaturesImage, which))
+
+    @property
+    def report(self) -> FeaturesReport:
+        """How good the features are."""
+        return cast(FeaturesReport, self._read("get_report", _abi.luxfer_features_report))

@@ -1,0 +1,62 @@
+"""What the light does in a scene, as images for a stylisation."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from . import _abi, _params
+from .image import Image
+from .job import Job, Progress, StageBase
+from .types import Artwork, GuidesImage
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from .context import Context
+    from .scene import Scene
+    from .types import GuidesParams
+
+
+class Guides(StageBase):
+    """Light by five light path expressions, normals, edges and materials of a scene.
+
+    >>> Guides(context, ball).run(width=48, height=36, samples=4).image("normals").size
+    (48, 36, 3)
+    """
+
+    kind = "guides"
+
+    def __init__(self, context: Context, scene: Scene | None = None) -> None:
+        super().__init__(context)
+        if scene is not None:
+            self.set_scene(scene)
+
+    def set_scene(self, scene: Scene) -> None:
+        """Each start renders the scene as it is then."""
+        self._call("set_scene", scene.handle)
+
+    def start(self, **params: Unpack[GuidesParams]) -> Job[Guides]:
+        """Starts the work."""
+        return self._job("start", _params.fill(_abi.luxfer_guides_params, params, []))
+
+    def run(self, progress: Progress | None = None, **params: Unpack[GuidesParams]) -> Guides:
+        """Starts the work and waits for it."""
+        return self.start(**params).wait(progress)
+
+    def image(self, which: GuidesImage | str = GuidesImage.FULL) -> Image:
+        """"full", "direct", "specular", "indirect", "two-bounces", "normals", "edges" or "materials"."""
+        return self._get_image("get_image", _params.member(GuidesImage, which))
+
+    def motion(self, before: Guides) -> Image:
+        """Where each pixel was in the frame before, for Stylize.set_motion."""
+        return self._get_image("motion", before.handle)
+
+    def demo_artwork(self, style: Artwork | str) -> Image:
+        """Draws an artwork of the scene in place of an artist: "pen", "stipple" or "paint"."""
+        import ctypes
+
+        from ._library import library
+
+        pointer = ctypes.POINTER(_abi.luxfer_image)()
+        self._check(library.luxfer_demo_artwork(self.handle, _params.member(Artwork, style), pointer))
+        return Image._adopt(self._context, pointer)

@@ -1,0 +1,165 @@
+"""Images: in from files and arrays, out to files and arrays."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+from typing import TYPE_CHECKING, Any, Union
+
+import numpy as np
+
+from . import _abi, _arrays, _params
+from ._handle import Handle
+from ._library import library
+from .types import ColourSpace
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, DTypeLike, NDArray
+
+    from .context import Context
+
+    ImageLike = Union["Image", ArrayLike]
+
+
+class Image(Handle):
+    """Pixels, as 32-bit floats: scene-linear Rec.709 colour, or data. It never changes.
+
+    `pixels` is an array of the shape (height, width) or (height, width, channels), of uint8, uint16, float16 or float32,
+    read once, from where it lies; integers stand for [0, 1]. `colour_space` says what they mean: "linear" or "srgb".
+
+    >>> image = Image(context, np.full((4, 6, 3), 128, np.uint8), "srgb")
+    >>> image.size
+    (6, 4, 3)
+    >>> print(np.asarray(image)[0, 0].round(3))
+    [0.216 0.216 0.216]
+    """
+
+    kind = "image"
+
+    def __init__(self, context: Context, pixels: ArrayLike, colour_space: ColourSpace | str = ColourSpace.LINEAR) -> None:
+        self._context = context
+        view, _keep = _arrays.view(_floats(pixels), colour_space)
+        handle = ctypes.POINTER(_abi.luxfer_image)()
+        self._check(library.luxfer_image_create(context.handle, view, handle))
+        self._pointer = handle
+
+    @classmethod
+    def load(cls, context: Context, path: str | os.PathLike[str], colour_space: ColourSpace | str = ColourSpace.SRGB) -> Image:
+        """Loads a PNG, JPEG, Radiance HDR or OpenEXR file. Pictures are "srgb"; give "linear" for data such as masks."""
+        out = cls._adopt(context, None)
+        handle = ctypes.POINTER(_abi.luxfer_image)()
+        space = _params.member(ColourSpace, colour_space)
+        out._check(library.luxfer_image_load(context.handle, _params.text(os.fspath(path), "path"), space, handle))
+        out._pointer = handle
+        return out
+
+    @classmethod
+    def from_bytes(cls, context: Context, data: bytes, colour_space: ColourSpace | str = ColourSpace.SRGB) -> Image:
+        """As load, from a file in memory."""
+        out = cls._adopt(context, None)
+        handle = ctypes.POINTER(_abi.luxfer_image)()
+        space = _params.member(ColourSpace, colour_space)
+        out._check(library.luxfer_image_load_memory(context.handle, data, len(data), space, handle))
+        out._pointer = handle
+        return out
+
+    def save(self, path: str | os.PathLike[str], exposure: float = 1.0) -> None:
+        """Saves as .png, multiplied by exposure and encoded as sRGB, or as .exr, as it is."""
+        self._call("save", _params.text(os.fspath(path), "path"), exposure)
+
+    @property
+    def size(self) -> tuple[int, int, int]:
+        """Width, height and the number of channels."""
+        numbers = [ctypes.c_uint32() for _ in range(3)]
+        self._call("size", *numbers)
+        return numbers[0].value, numbers[1].value, numbers[2].value
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """Height, width and channels: the shape of numpy()."""
+        width, height, channels = self.size
+        return height, width, channels
+
+    def read(self, out: NDArray[Any], first_channel: int = 0, colour_space: ColourSpace | str = ColourSpace.LINEAR) -> NDArray[Any]:
+        """Writes the channels from first_channel on into an array of uint8, uint16, float16 or float32, which may be a
+        part of a larger one as long as the channels of a pixel lie together; returns it.
+
+        >>> frame = np.zeros((2, 4, 4), np.float32)
+        >>> _ = Image(context, [[0.25, 1.0]]).read(frame[1:, 2:, 3])
+        >>> print(frame[1, :, 3])
+        [0.   0.   0.25 1.  ]
+        """
+        if not isinstance(out, np.ndarray):
+            raise TypeError("out is a numpy array")
+        if not out.flags.writeable:
+            raise ValueError("out is read-only")
+        if out.ndim not in (2, 3) or not _arrays.is_direct(out if out.ndim == 3 else out[:, :, None]):
+            raise ValueError(
+                f"out, {out.dtype} {out.shape} with strides {out.strides}, cannot be written where it lies: it must be of "
+                "uint8, uint16, float16 or float32, and the channels of a pixel must be neighbours"
+            )
+        view, _ = _arrays.view(out, colour_space)
+        self._call("read", first_channel, view)
+        return out
+
+    def numpy(self, dtype: DTypeLike = np.float32, colour_space: ColourSpace | str = ColourSpace.LINEAR) -> NDArray[Any]:
+        """A new array of the shape (height, width, channels); for a display take uint8 and "srgb". More than 4 channels are
+        float32."""
+        height, width, channels = self.shape
+        out = np.empty((height, width, channels), dtype)
+        for first in range(0, channels, 4):  # a view has four at most: each goes into its place
+            self.read(out[:, :, first : first + 4], first, colour_space)
+        return out
+
+    def __array__(self, dtype: DTypeLike | None = None, copy: bool | None = None) -> NDArray[Any]:
+        if copy is False:
+            raise ValueError("the pixels of an Image are always copied into a numpy array")
+        out = self.numpy()
+        return out if dtype is None else out.astype(dtype, copy=False)
+
+    def warp(self, to_source: ArrayLike, width: int, height: int) -> Image:
+        """An image whose pixel at p is this one's at to_source(p), a 3 x 3 matrix of homogeneous points; see homography."""
+        matrix = _matrix(to_source, "to_source", 9)
+        return self._get_image("warp", _arrays.pointer(matrix, ctypes.c_double), width, height)
+
+    def __repr__(self) -> str:
+        if not self._pointer:
+            return "<luxfer.Image, closed>"
+        width, height, channels = self.size
+        return f"<luxfer.Image {width} x {height}, {channels} channels>"
+
+
+def homography(context: Context, source: ArrayLike, target: ArrayLike) -> NDArray[np.float64]:
+    """The 3 x 3 matrix that takes four points, x and y of each, to four points.
+
+    >>> square = [[0, 0], [1, 0], [1, 1], [0, 1]]
+    >>> m = homography(context, square, np.multiply(square, 10))
+    >>> print((m / m[2, 2]).round(6) + 0.0)
+    [[10.  0.  0.]
+     [ 0. 10.  0.]
+     [ 0.  0.  1.]]
+    """
+    points = _matrix(source, "source", 8), _matrix(target, "target", 8)
+    out = np.empty((3, 3))
+    status = library.luxfer_homography_from_corners(
+        context.handle, *(_arrays.pointer(a, ctypes.c_double) for a in (*points, out))
+    )
+    context._check(status)
+    return out
+
+
+def image_of(context: Context, value: ImageLike, colour_space: ColourSpace | str = ColourSpace.LINEAR) -> Image:
+    """An Image by itself, or one made from an array."""
+    return value if isinstance(value, Image) else Image(context, value, colour_space)
+
+
+def _floats(pixels: ArrayLike) -> NDArray[Any]:
+    array = np.asarray(pixels)
+    return array.astype(np.float32) if not isinstance(pixels, np.ndarray) and array.dtype.kind in "iuf" else array
+
+
+def _matrix(values: ArrayLike, name: str, count: int) -> NDArray[np.float64]:
+    out = np.ascontiguousarray(values, np.float64)
+    if out.size != count:
+        raise ValueError(f"{name} is {count} numbers, not {out.size}")
+    return out

@@ -1,0 +1,119 @@
+"""Long work: progress, time-outs, and Ctrl-C."""
+
+from __future__ import annotations
+
+import ctypes
+import time
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, Generic, TypeVar, cast
+
+from . import _abi
+from ._handle import Handle
+from ._library import library
+from .types import Status
+
+if TYPE_CHECKING:
+    from .context import Context
+
+T = TypeVar("T")
+
+#: Told the share that is done: rises from 0, ends with exactly 1 after success. Returning False cancels.
+Progress = Callable[[float], Any]
+
+#: The library is waited for in slices, after each of which Python sees to its signals.
+SLICE_MS = 20
+
+NO_PROGRESS = _abi.luxfer_progress_fn()
+
+
+class Job(Handle, Generic[T]):
+    """Work in progress. wait() returns the object it is done for; closing the last reference to a job cancels it.
+
+    >>> seen = []
+    >>> stage = DemoPhoto(context).start(width=48, height=32, samples=2).wait(seen.append)
+    >>> seen == sorted(seen) and seen[-1] == 1.0
+    True
+    """
+
+    kind = "job"
+    _owner: T
+
+    @classmethod
+    def _of(cls, owner: T, context: Context, pointer: Any) -> Job[T]:
+        out = cls._adopt(context, pointer)
+        out._owner = owner
+        return out
+
+    def wait(self, progress: Progress | None = None, timeout: float | None = None) -> T:
+        """Waits until the job has ended; other Python threads run meanwhile. `timeout` in seconds: NotReady, and the job goes
+        on. An exception while waiting, be it from progress or Ctrl-C, cancels the job, waits for it to end, and goes on."""
+        end = None if timeout is None else time.monotonic() + timeout
+        finished, told = False, -1.0
+        try:
+            while True:
+                left = SLICE_MS if end is None else max(0, min(SLICE_MS, round(1000 * (end - time.monotonic()))))
+                status = library.luxfer_job_wait(self.handle, left, NO_PROGRESS, None)
+                if status != Status.NOT_READY or finished:  # a job may also end so, if an input is missing
+                    break
+                fraction, finished = self.poll()
+                if finished:
+                    continue  # meanwhile: the next wait tells how
+                if end is not None and time.monotonic() >= end:
+                    break
+                fraction = min(fraction, 1 - 2.0**-52)  # 1 is for after success
+                if progress is not None and fraction > told:
+                    told = fraction
+                    if progress(fraction) is False:
+                        self.cancel()
+        except BaseException:
+            self._stop()
+            raise
+        self._check(status)
+        if progress is not None:
+            progress(1.0)
+        return self._owner
+
+    def _stop(self) -> None:
+        """Cancels and waits, so that nothing runs on behind an exception."""
+        if not self._pointer:
+            return
+        self.cancel()
+        while not self.poll()[1]:
+            time.sleep(0.002)
+
+    def poll(self) -> tuple[float, bool]:
+        """The share that is done, and whether the job has ended, well or not."""
+        fraction, finished = ctypes.c_double(), ctypes.c_int32()
+        self._call("poll", fraction, finished)
+        return fraction.value, bool(finished.value)
+
+    @property
+    def finished(self) -> bool:
+        """Whether the job has ended, well or not."""
+        return self.poll()[1]
+
+    @property
+    def status(self) -> Status:
+        """How it has ended: Status.OK, or why not; Status.NOT_READY while it runs."""
+        return Status(library.luxfer_job_status(self.handle))
+
+    def cancel(self) -> None:
+        """Asks it to end early, which takes about 100 ms at most; any thread."""
+        self._call("cancel")
+
+    def __exit__(self, *_: Any) -> None:
+        self._stop()
+        self.close()
+
+
+class StageBase(Handle):
+    """What the stages have in common: they are started, and work on in a job."""
+
+    def __init__(self, context: Context) -> None:
+        self._create(context)
+
+    def _job(self: T, verb: str, *arguments: Any) -> Job[T]:
+        handle = cast(Handle, self)
+        pointer = ctypes.POINTER(_abi.luxfer_job)()
+        handle._call(verb, *arguments, pointer)
+        return Job._of(self, handle._context, pointer)

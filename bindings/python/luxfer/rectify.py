@@ -1,0 +1,65 @@
+"""From the straight lines of a photo to vanishing points and the camera, and a plane of it seen straight on."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, cast
+
+from . import _abi, _params
+from .image import Image, image_of
+from .job import Job, Progress, StageBase
+from .types import RectifyImage, RectifyReport
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from .context import Context
+    from .image import ImageLike
+    from .types import RectifyParams
+
+
+class Rectify(StageBase):
+    """Finds lines, vanishing points and the camera; with a mask, unwarps the plane it marks.
+
+    >>> rectify = Rectify(context, photo).run(max_side=256)
+    >>> [len(axis) for axis in rectify.report.vanishing_points]
+    [3, 3, 3]
+    """
+
+    kind = "rectify"
+
+    def __init__(self, context: Context, photo: ImageLike | None = None, mask: ImageLike | None = None) -> None:
+        super().__init__(context)
+        if photo is not None:
+            self.set_photo(photo)
+        if mask is not None:
+            self.set_mask(mask)
+
+    def set_photo(self, photo: ImageLike) -> None:
+        """Linear RGB."""
+        self._call("set_photo", image_of(self._context, photo).handle)
+
+    def set_mask(self, mask: ImageLike | None) -> None:
+        """1 on the plane to unwarp, 0 elsewhere, of the photo's size; None: only lines and vanishing points are found."""
+        self._call("set_mask", None if mask is None else image_of(self._context, mask).handle)
+
+    def start(self, **params: Unpack[RectifyParams]) -> Job[Rectify]:
+        """Starts the work."""
+        keep: list[object] = []
+        return self._job("start", _params.fill(_abi.luxfer_rectify_params, params, keep))
+
+    def run(self, progress: Progress | None = None, **params: Unpack[RectifyParams]) -> Rectify:
+        """Starts the work and waits for it."""
+        return self.start(**params).wait(progress)
+
+    def image(self, which: RectifyImage | str) -> Image:
+        """"unwarped" or "valid"."""
+        return self._get_image("get_image", _params.member(RectifyImage, which))
+
+    def warp(self, source: ImageLike) -> Image:
+        """Unwarps another image of the photo's size as the plane was."""
+        return self._get_image("warp", image_of(self._context, source).handle)
+
+    @property
+    def report(self) -> RectifyReport:
+        """What was found, and how sure it is."""
+        return cast(RectifyReport, self._read("get_report", _abi.luxfer_rectify_report))

@@ -1,0 +1,55 @@
+"""Solves for the colour and intensity of an emission, so that a surface gets the colour it is to have."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, cast
+
+from . import _abi, _params
+from .job import Job, Progress, StageBase
+from .types import RelightReport
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from .context import Context
+    from .scene import Scene
+    from .types import RelightParams
+
+
+class Relight(StageBase):
+    """What to multiply an emission with, per channel, with a 95 % interval.
+
+    >>> room = Scene.demo(context, "target-room")
+    >>> mesh, material = room.place_emission("Ceiling", np.eye(8).repeat(3).reshape(8, 8, 3), (100, 100, 100))
+    >>> relight = Relight(context)
+    >>> relight.set_scene(room, material, mesh)
+    >>> relight.set_target((12, 10, 8))
+    >>> [round(ours / other, 2) for ours, other in zip(relight.run().report.scale, (12, 10, 8))][0] > 0
+    True
+    """
+
+    kind = "relight"
+
+    def set_scene(self, scene: Scene, material: int, mesh: int) -> None:
+        """The scene, the emitting material to solve for, and the mesh whose mean colour is to match, as
+        Scene.place_emission returns them."""
+        self._call("set_scene", scene.handle, material, mesh)
+
+    def set_target(self, radiance: Sequence[float]) -> None:
+        """The mean radiance the mesh should have, in cd/m² per channel."""
+        red, green, blue = (float(v) for v in radiance)
+        self._call("set_target", red, green, blue)
+
+    def start(self, **params: Unpack[RelightParams]) -> Job[Relight]:
+        """Starts the work."""
+        return self._job("start", _params.fill(_abi.luxfer_relight_params, params, []))
+
+    def run(self, progress: Progress | None = None, **params: Unpack[RelightParams]) -> Relight:
+        """Starts the work and waits for it."""
+        return self.start(**params).wait(progress)
+
+    @property
+    def report(self) -> RelightReport:
+        """The solution, and how sure it is."""
+        return cast(RelightReport, self._read("get_report", _abi.luxfer_relight_report))

@@ -1,0 +1,112 @@
+"""A path tracer of a scene's light, in cd/m², with layers by light path expressions and of surfaces."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, cast
+
+from . import _abi, _params
+from .image import Image
+from .job import Job, Progress, StageBase
+from .types import Aov, EmitterAs, RenderImage, RenderReport
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from .context import Context
+    from .scene import Scene
+    from .types import CameraParams, RenderParams
+
+
+class Render(StageBase):
+    """Gets better pass by pass: while its job runs, and after a cancel, the image so far can be read.
+
+    >>> render = Render(context, lit_room, expressions={"direct": "LDE"}, aovs="depth|normal")
+    >>> render.run(width=32, height=24, samples=4).image().size
+    (32, 24, 3)
+    >>> sorted(render.layers)
+    ['Depth', 'Normal', 'direct']
+    """
+
+    kind = "render"
+
+    def __init__(
+        self,
+        context: Context,
+        scene: Scene | None = None,
+        *,
+        expressions: Mapping[str, str] | None = None,
+        aovs: Aov | str | int = 0,
+    ) -> None:
+        super().__init__(context)
+        if scene is not None:
+            self.set_scene(scene)
+        for name, expression in (expressions or {}).items():
+            self.add_expression(name, expression)
+        if aovs:
+            self.set_aovs(aovs)
+
+    def set_scene(self, scene: Scene) -> None:
+        """Each start renders the scene as it is then."""
+        self._call("set_scene", scene.handle)
+
+    def set_camera_index(self, camera: int) -> None:
+        """Renders from a camera of the scene; the default is 0."""
+        self._call("set_camera_index", camera)
+
+    def set_camera(self, **params: Unpack[CameraParams]) -> None:
+        """Renders from a camera of its own."""
+        self._call("set_camera", _params.fill(_abi.luxfer_camera_params, params, []))
+
+    def add_expression(self, name: str, expression: str) -> None:
+        """Adds a layer of the light that a light path expression describes, as "LDE" or "C<RD>L"."""
+        self._call("add_expression", _params.text(name, "name"), _params.text(expression, "expression"))
+
+    def clear_expressions(self) -> None:
+        """Forgets all expressions."""
+        self._call("clear_expressions")
+
+    def set_emitter_as(self, emitter_as: EmitterAs | str) -> None:
+        """Which letters emissive surfaces and the environment answer to: "both", "light" or "object"."""
+        self._call("set_emitter_as", _params.member(EmitterAs, emitter_as))
+
+    def set_aovs(self, flags: Aov | str | int) -> None:
+        """Which layers of surfaces are made, as "depth|normal|albedo"."""
+        self._call("set_aovs", _params.member(Aov, flags))
+
+    def start(self, **params: Unpack[RenderParams]) -> Job[Render]:
+        """Starts the work."""
+        return self._job("start", _params.fill(_abi.luxfer_render_params, params, []))
+
+    def run(self, progress: Progress | None = None, **params: Unpack[RenderParams]) -> Render:
+        """Starts the work and waits for it."""
+        return self.start(**params).wait(progress)
+
+    def image(self, which: RenderImage | str = RenderImage.BEAUTY) -> Image:
+        """"beauty", "variance", "paths" or "interval", as far as it is."""
+        return self._get_image("get_image", _params.member(RenderImage, which))
+
+    @property
+    def layers(self) -> dict[str, Image]:
+        """The layers by name, those of the expressions first, as far as they are."""
+        count = ctypes.c_uint32()
+        self._call("get_layer_count", count)
+        names = [self._get_text("get_layer_name", i) for i in range(count.value)]
+        return {name: self._get_image("get_layer", i) for i, name in enumerate(names)}
+
+    def layer(self, name: str) -> Image:
+        """The layer of that name."""
+        index = ctypes.c_uint32()
+        self._call("find_layer", _params.text(name, "name"), index)
+        return self._get_image("get_layer", index)
+
+    def write_exr(self, path: str | os.PathLike[str]) -> None:
+        """Writes the image and all layers into one OpenEXR file, named as Blender and Nuke read them."""
+        self._call("write_exr", _params.text(os.fspath(path), "path"))
+
+    @property
+    def report(self) -> RenderReport:
+        """How good the rendering is so far."""
+        return cast(RenderReport, self._read("get_report", _abi.luxfer_render_report))

@@ -1,0 +1,267 @@
+"""Scenes: from files and arrays, read back, changed, and written."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+
+from . import _abi, _arrays, _params
+from ._handle import Handle
+from ._library import library
+from .image import Image, image_of
+from .types import (
+    CameraParams, MaterialParams, MeshInfo, Requirements, SceneCounts, Surface, TextureRole, TextureUse,
+)
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+    from typing_extensions import Unpack
+
+    from .context import Context
+    from .image import ImageLike
+    from .types import LightParams
+
+#: What intersect() returns of each ray; a miss has t = inf and mesh = triangle = 2**32 - 1.
+HIT = np.dtype([("t", "f4"), ("mesh", "u4"), ("triangle", "u4"), ("u", "f4"), ("v", "f4")])
+
+
+class Scene(Handle):
+    """Meshes, materials, textures, lights and cameras; metres, Y up, emission in cd/m².
+
+    >>> scene = Scene(context)
+    >>> lamp = scene.add_material(name="lamp", emission=(100, 90, 80))
+    >>> corners = [[0, 2, 0], [1, 2, 0], [1, 2, 1], [0, 2, 1]]
+    >>> scene.add_mesh(corners, [[0, 1, 2], [0, 2, 3]], name="Lamp", material=lamp)
+    0
+    >>> scene.counts.triangles
+    2
+    """
+
+    kind = "scene"
+
+    def __init__(self, context: Context) -> None:
+        self._create(context)
+
+    # -- files
+
+    @classmethod
+    def load(cls, context: Context, path: str | os.PathLike[str]) -> Scene:
+        """Loads a glTF 2.0 file, .glb or .gltf with the files it names."""
+        return cls._made(context, library.luxfer_scene_load, _params.text(os.fspath(path), "path"))
+
+    @classmethod
+    def from_bytes(cls, context: Context, data: bytes, base_path: str | os.PathLike[str] | None = None) -> Scene:
+        """Loads a glTF file in memory; files that it names are looked up in base_path."""
+        base = None if base_path is None else _params.text(os.fspath(base_path), "base_path")
+        return cls._made(context, library.luxfer_scene_load_memory, data, len(data), base)
+
+    @classmethod
+    def _made(cls, context: Context, function: Any, *arguments: Any) -> Scene:
+        out = cls._adopt(context, None)
+        handle = ctypes.POINTER(_abi.luxfer_scene)()
+        out._check(function(context.handle, *arguments, handle))
+        out._pointer = handle
+        return out
+
+    def export(self, path: str | os.PathLike[str]) -> None:
+        """Saves as a GLB file with its textures inside."""
+        self._call("export", _params.text(os.fspath(path), "path"))
+
+    def to_bytes(self) -> bytes:
+        """The GLB file in memory."""
+        parts: list[bytes] = []
+
+        def write(_: Any, data: int, size: int) -> int:
+            parts.append(ctypes.string_at(data, size))
+            return 0
+
+        self._call("export_memory", _abi.luxfer_write_fn(write), None)
+        return b"".join(parts)
+
+    # -- description
+
+    def add_material(self, **params: Unpack[MaterialParams]) -> int:
+        """Adds a material; returns its index."""
+        return self._add("add_material", _params.fill(_abi.luxfer_material_params, params, []))
+
+    def add_mesh(
+        self,
+        positions: ArrayLike,
+        indices: ArrayLike,
+        *,
+        normals: ArrayLike | None = None,
+        uvs: ArrayLike | None = None,
+        material: int = 0,
+        name: str | None = None,
+    ) -> int:
+        """Adds a mesh; returns its index. positions (n, 3), indices (m, 3) and, if given, normals (n, 3) and uvs (n, 2) are
+        read from where they lie if they are float32 and uint32, with any distance from row to row."""
+        params = _params.fill(_abi.luxfer_mesh_params, {"material": material, "name": name}, [])
+        arrays = []  # kept until the call is done
+        for field, stride, values, width, dtype in (
+            ("positions", "position_stride", positions, 3, np.float32),
+            ("normals", "normal_stride", normals, 3, np.float32),
+            ("uvs", "uv_stride", uvs, 2, np.float32),
+            ("indices", "index_stride", indices, 3, np.uint32),
+        ):
+            if values is None:
+                continue
+            array = _rows(values, width, dtype, field)
+            arrays.append(array)
+            if field in ("normals", "uvs") and len(array) != params.vertex_count:
+                raise ValueError(f"there are {len(array)} {field} for {params.vertex_count} positions")
+            if field == "positions":
+                params.vertex_count = len(array)
+            elif field == "indices":
+                params.triangle_count = len(array)
+            setattr(params, field, array.ctypes.data)
+            setattr(params, stride, array.strides[0] if len(array) > 1 else 0)
+        return self._add("add_mesh", params)
+
+    def add_camera(self, **params: Unpack[CameraParams]) -> int:
+        """Adds a camera; returns its index."""
+        return self._add("add_camera", _params.fill(_abi.luxfer_camera_params, params, []))
+
+    def set_camera(self, index: int, **params: Unpack[CameraParams]) -> None:
+        """Replaces a camera; what is not given gets its default."""
+        self._call("set_camera", index, _params.fill(_abi.luxfer_camera_params, params, []))
+
+    def add_light(self, **params: Unpack[LightParams]) -> int:
+        """Adds a light without a surface: kind "point", "spot" or "directional"; returns its index."""
+        return self._add("add_light", _params.fill(_abi.luxfer_light_params, params, []))
+
+    def _add(self, verb: str, params: Any) -> int:
+        index = ctypes.c_uint32()
+        self._call(verb, params, index)
+        return index.value
+
+    # -- light
+
+    def set_environment(self, colour: Sequence[float]) -> None:
+        """Surrounds the scene with light of one colour, in cd/m²."""
+        self._call("set_environment", *_colour(colour))
+
+    def set_emission(self, material: int, colour: Sequence[float]) -> None:
+        """Sets what a material emits, in cd/m²; multiplies its emission texture."""
+        self._call("set_emission", material, *_colour(colour))
+
+    def find_surface(self, name: str) -> Surface:
+        """The planar surface, of the object or material of that name, that faces the room."""
+        return cast(Surface, self._read("find_surface", _abi.luxfer_surface, _params.text(name, "name")))
+
+    def place_emission(self, name: str, texture: ImageLike, scale: Sequence[float] = (1, 1, 1)) -> tuple[int, int]:
+        """Lays an emissive texture over a surface, which becomes a mesh of its own that emits texture * scale in cd/m²;
+        returns the indices of the mesh and of its material."""
+        mesh, material = ctypes.c_uint32(), ctypes.c_uint32()
+        image = image_of(self._context, texture)
+        self._call("place_emission", _params.text(name, "name"), image.handle, *_colour(scale), mesh, material)
+        return mesh.value, material.value
+
+    # -- what it holds
+
+    @property
+    def counts(self) -> SceneCounts:
+        """How many meshes, materials, textures, lights, cameras and triangles there are."""
+        return cast(SceneCounts, self._read("get_counts", _abi.luxfer_scene_counts))
+
+    def camera(self, index: int = 0) -> CameraParams:
+        """A camera, as the settings that would add it."""
+        params = _params.sized(_abi.luxfer_camera_params)
+        self._call("get_camera", index, params)
+        return cast(CameraParams, _params.settings(params))
+
+    def material(self, index: int) -> MaterialParams:
+        """A material, as the settings that would add it, without its name."""
+        params = _params.sized(_abi.luxfer_material_params)
+        self._call("get_material", index, params)
+        return cast(MaterialParams, _params.settings(params))
+
+    def material_texture(self, index: int, role: TextureRole | str) -> TextureUse:
+        """Which texture a material uses for a purpose, and how."""
+        use = self._read("get_material_texture", _abi.luxfer_texture_use, index, _params.member(TextureRole, role))
+        return cast(TextureUse, use)
+
+    def texture(self, index: int) -> Image:
+        """A texture, linear."""
+        return self._get_image("get_texture", index)
+
+    def mesh(self, index: int) -> MeshInfo:
+        """What a mesh has."""
+        return cast(MeshInfo, self._read("get_mesh", _abi.luxfer_mesh_info, index))
+
+    def mesh_name(self, index: int) -> str:
+        """The name of a mesh."""
+        return self._get_text("get_mesh_name", index)
+
+    def mesh_arrays(self, index: int) -> dict[str, NDArray[Any]]:
+        """Copies of a mesh's "positions", "indices", and, where it has them, "normals", "uvs" and "uvs1"."""
+        info = self.mesh(index)
+        out: dict[str, NDArray[Any]] = {"positions": np.empty((info.vertex_count, 3), np.float32)}
+        if info.has_normals:
+            out["normals"] = np.empty((info.vertex_count, 3), np.float32)
+        out["indices"] = np.empty((info.triangle_count, 3), np.uint32)
+        self._call(
+            "read_mesh", index,
+            info.vertex_count, *(_arrays.pointer(out.get(k), ctypes.c_float) for k in ("positions", "normals")),
+            info.triangle_count, _arrays.pointer(out["indices"], ctypes.c_uint32),
+        )
+        for uv_set, name in enumerate(("uvs", "uvs1")):
+            if info.uv_sets >> uv_set & 1:
+                out[name] = np.empty((info.vertex_count, 2), np.float32)
+                pointer = _arrays.pointer(out[name], ctypes.c_float)
+                self._call("read_mesh_uvs", index, uv_set, info.vertex_count, pointer)
+        return out
+
+    # -- questions
+
+    def intersect(self, origins: ArrayLike, directions: ArrayLike, t_max: ArrayLike = np.inf) -> NDArray[Any]:
+        """The nearest hits of rays, (n, 3) and (n, 3): a structured array with the fields t, mesh, triangle, u, v.
+
+        >>> Scene.demo(context, "target-room").intersect([[0, 1.5, 0]], [[0, 1, 0]])["t"].round(2).item() > 0
+        True
+        """
+        start, towards = _rows(origins, 3, np.float32, "origins"), _rows(directions, 3, np.float32, "directions")
+        rays = np.empty((max(len(start), len(towards)), 7), np.float32)
+        rays[:, :3], rays[:, 3:6], rays[:, 6] = start, towards, t_max
+        hits = np.empty(len(rays), HIT)
+        pointer = _arrays.pointer(rays, _abi.luxfer_ray)
+        self._call("intersect", pointer, len(rays), _arrays.pointer(hits, _abi.luxfer_hit))
+        return hits
+
+    def requirements(self, error: float = 0.01) -> Requirements:
+        """What the scene requires of the renderer; error is the share of light for bounces."""
+        out = _params.sized(_abi.luxfer_requirements)
+        self._call("requirements", error, out)
+        return cast(Requirements, _params.report(out))
+
+    def requirements_text(self) -> str:
+        """In words, what rendering the scene leaves out: one sentence per line."""
+        return self._get_text("requirements_text")
+
+    @classmethod
+    def demo(cls, context: Context, which: Any) -> Scene:
+        """A scene that the library makes itself: "target-room", "exemplar-room", "sphere-on-table" or "still-life"."""
+        from .types import Demo
+
+        return cls._made(context, library.luxfer_demo_scene, _params.member(Demo, which))
+
+
+def _rows(values: ArrayLike, width: int, dtype: Any, name: str) -> NDArray[Any]:
+    """An array (n, width) whose rows are packed; the values' own memory if it is already."""
+    raw = np.asarray(values)
+    if dtype == np.uint32 and raw.size and (raw.dtype.kind not in "iu" or raw.min() < 0):
+        raise ValueError(f"{name} are whole numbers from 0 on")
+    out = np.asarray(raw, dtype)
+    if out.ndim != 2 or out.shape[1] != width:
+        raise ValueError(f"{name} has the shape (n, {width}), not {out.shape}")
+    packed = out.strides[1] == out.itemsize and (len(out) < 2 or out.strides[0] >= width * out.itemsize)
+    return out if packed else np.ascontiguousarray(out)
+
+
+def _colour(values: Sequence[float]) -> tuple[float, float, float]:
+    red, green, blue = (float(v) for v in values)
+    return red, green, blue

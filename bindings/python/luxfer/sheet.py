@@ -1,0 +1,45 @@
+"""Print sheets: the exemplar printed pale between marks, and a photo of the painted sheet brought back onto it."""
+
+from __future__ import annotations
+
+import ctypes
+from typing import TYPE_CHECKING, cast
+
+from . import _abi, _params
+from ._library import library
+from .image import Image, image_of
+from .types import SheetReport
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from .context import Context
+    from .image import ImageLike
+    from .types import SheetParams
+
+
+def print_sheet(context: Context, picture: ImageLike, **params: Unpack[SheetParams]) -> Image:
+    """The sheet to print for a picture (linear, 1 is white): save it as PNG and print it at `dpi` without scaling.
+
+    >>> sheet = print_sheet(context, np.full((90, 120, 3), 0.5), dpi=60)
+    >>> artwork, report = align_sheet(context, sheet, 120, 90, dpi=60)
+    >>> artwork.size, report.marks
+    ((120, 90, 3), 10)
+    """
+    pointer = ctypes.POINTER(_abi.luxfer_image)()
+    settings = _params.fill(_abi.luxfer_sheet_params, params, [])
+    context._check(library.luxfer_sheet_print(image_of(context, picture).handle, settings, pointer))
+    return Image._adopt(context, pointer)
+
+
+def align_sheet(
+    context: Context, photo: ImageLike, width: int, height: int, **params: Unpack[SheetParams]
+) -> tuple[Image, SheetReport]:
+    """Finds the marks in a photo of a sheet, printed with the same settings for a picture of width x height, and resamples
+    it onto that picture: the artwork, and how well it was aligned."""
+    pointer = ctypes.POINTER(_abi.luxfer_image)()
+    settings = _params.fill(_abi.luxfer_sheet_params, params, [])
+    report = _params.sized(_abi.luxfer_sheet_report)
+    image = image_of(context, photo)
+    context._check(library.luxfer_sheet_align(image.handle, width, height, settings, pointer, report))
+    return Image._adopt(context, pointer), cast(SheetReport, _params.report(report))

@@ -1,0 +1,154 @@
+"""Paints a target scene as an artist has painted an exemplar scene (StyLit)."""
+
+from __future__ import annotations
+
+import ctypes
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, cast
+
+from . import _abi, _params
+from ._library import library
+from .image import Image, image_of
+from .job import Job, Progress, StageBase
+from .types import GuideRange, GuidesWith, StylizeImage, StylizePass, StylizePreset, StylizeReport, StylizeRound
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from .context import Context
+    from .guides import Guides
+    from .image import ImageLike
+    from .types import StylizeParams
+
+
+@dataclass(frozen=True)
+class Level:
+    """A resolution level of a stylisation, and what was done on it."""
+
+    width: int
+    height: int
+    rounds: tuple[StylizeRound, ...]
+
+
+class Stylize(StageBase):
+    """Artwork and guides in, a picture out.
+
+    >>> exemplar = Guides(context, ball).run(width=48, height=36, samples=4)
+    >>> target = Guides(context, still_life).run(width=48, height=36, samples=4)
+    >>> stylize = Stylize(context, exemplar.demo_artwork("pen"))
+    >>> stylize.add_guides(exemplar, target, "materials")
+    >>> stylize.run(preset="fast", levels=2).image().size
+    (48, 36, 3)
+    """
+
+    kind = "stylize"
+
+    def __init__(self, context: Context, artwork: ImageLike | None = None) -> None:
+        super().__init__(context)
+        if artwork is not None:
+            self.set_artwork(artwork)
+
+    # -- inputs
+
+    def set_artwork(self, artwork: ImageLike) -> None:
+        """The exemplar scene as painted: linear, 1, 3 or 4 channels, aligned with the sources of the guides."""
+        self._call("set_artwork", image_of(self._context, artwork).handle)
+
+    def add_guide(
+        self,
+        name: str,
+        source: ImageLike,
+        target: ImageLike | None,
+        weight: float = 1.0,
+        range: GuideRange | str = GuideRange.LIGHT,
+    ) -> None:
+        """Adds a guide: source shows the exemplar, target what is to be painted; "light" or "data". None as target: the same
+        image, for a half-painted picture."""
+        first = image_of(self._context, source)
+        second = None if target is None else image_of(self._context, target)
+        handle = None if second is None else second.handle
+        self._call("add_guide", _params.text(name, "name"), first.handle, handle, weight, _params.member(GuideRange, range))
+
+    def add_guides(self, source: Guides, target: Guides, extras: GuidesWith | str | int = 0, extra_weight: float = 1.0) -> None:
+        """Adds the guides of two scenes: the five of light, and the extras, as "normals|edges|materials"."""
+        self._call("add_guides", source.handle, target.handle, _params.member(GuidesWith, extras), extra_weight)
+
+    def clear_guides(self) -> None:
+        """Removes all guides."""
+        self._call("clear_guides")
+
+    def set_source_mask(self, mask: ImageLike | None) -> None:
+        """Where the artwork may be copied from, above 0.5; None: everywhere."""
+        self._call("set_source_mask", None if mask is None else image_of(self._context, mask).handle)
+
+    def set_target_mask(self, mask: ImageLike | None, known: ImageLike | None = None) -> None:
+        """Which pixels to paint, above 0.5; the others are those of known, or black. None: everything."""
+        images = [None if image is None else image_of(self._context, image) for image in (mask, known)]
+        self._call("set_target_mask", *(None if image is None else image.handle for image in images))
+
+    def set_motion(self, motion: ImageLike | None) -> None:
+        """Makes each start go on from the result before; see Guides.motion. None: each start begins anew."""
+        self._call("set_motion", None if motion is None else image_of(self._context, motion).handle)
+
+    def set_painted(self, painted: ImageLike) -> None:
+        """Has the rest of a half-painted picture painted, which is the artwork; painted is above 0.5 where it is done."""
+        self._call("set_painted", image_of(self._context, painted).handle)
+
+    # -- work
+
+    def start(self, preset: StylizePreset | str = StylizePreset.FULL, **params: Unpack[StylizeParams]) -> Job[Stylize]:
+        """Starts the work with a preset, "full", "fast", "preview" or "paper", and settings over it."""
+        settings = _params.fill(_abi.luxfer_stylize_params, {}, [])
+        self._check(library.luxfer_stylize_params_preset(settings, _params.member(StylizePreset, preset)))
+        _params.update(settings, params, [])
+        return self._job("start", settings)
+
+    def run(
+        self, progress: Progress | None = None, preset: StylizePreset | str = StylizePreset.FULL, **params: Unpack[StylizeParams]
+    ) -> Stylize:
+        """Starts the work and waits for it."""
+        return self.start(preset, **params).wait(progress)
+
+    def update(self, artwork: ImageLike, changed: ImageLike) -> Job[Stylize]:
+        """Starts a job that follows new paint in the artwork, where changed is above 0.5; needs keep_for_update=1."""
+        images = [image_of(self._context, image) for image in (artwork, changed)]
+        return self._job("update", *(image.handle for image in images))
+
+    # -- results
+
+    def image(self, which: StylizeImage | str = StylizeImage.PICTURE) -> Image:
+        """"picture", "guide-error" or "sources"."""
+        return self._get_image("get_image", _params.member(StylizeImage, which))
+
+    @property
+    def report(self) -> StylizeReport:
+        """How good the result is so far."""
+        return cast(StylizeReport, self._read("get_report", _abi.luxfer_stylize_report))
+
+    @property
+    def levels(self) -> list[Level]:
+        """What was done, from the coarsest level on."""
+        out = []
+        for level in range(self.report.levels):
+            numbers = [ctypes.c_uint32() for _ in range(3)]
+            self._call("get_level", level, *numbers)
+            width, height, rounds = (n.value for n in numbers)
+            read: Any = (self._read("get_round", _abi.luxfer_stylize_round, level, i) for i in range(rounds))
+            out.append(Level(width, height, tuple(read)))
+        return out
+
+    def passes(self, level: int, round: int) -> list[StylizePass]:
+        """The passes of matching under the budget in a round."""
+        count = self.levels[level].rounds[round].passes
+        return [cast(StylizePass, self._read("get_pass", _abi.luxfer_stylize_pass, level, round, i)) for i in range(count)]
+
+
+def preset(which: StylizePreset | str) -> StylizeParams:
+    """All settings of a preset.
+
+    >>> preset("preview")["preview"]
+    1
+    """
+    settings = _params.fill(_abi.luxfer_stylize_params, {}, [])
+    library.luxfer_stylize_params_preset(settings, _params.member(StylizePreset, which))
+    return cast("StylizeParams", _params.settings(settings))

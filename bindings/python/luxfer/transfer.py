@@ -1,0 +1,162 @@
+"""The lighting transfer from end to end: a photo, a few strokes and a scene in, that scene lit as in the photo out."""
+
+from __future__ import annotations
+
+import ctypes
+from typing import TYPE_CHECKING, Any, cast
+
+from . import _abi, _params
+from .image import Image, image_of
+from .job import Job, Progress, StageBase
+from .scene import Scene
+from .segment import stroke_arguments
+from .types import DepthKind, Fixture, Phase, RectifyReport, RelightReport, Stage, TransferImage, TransferReport, TransferScene
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+    from typing_extensions import Unpack
+
+    from .context import Context
+    from .features import Features
+    from .image import ImageLike
+    from .rectify import Rectify
+    from .segment import Segment
+    from .types import CameraParams, TransferParams
+
+
+class Transfer(StageBase):
+    """Runs the stages in order. Every result can be read as soon as its stage has ended, replaced, and the run taken up
+    again from any stage. Settings of the stages are dicts: run(render={"width": 640}, rectify={"max_side": 1024}).
+
+    >>> transfer = Transfer(context, photo, room, "Ceiling")
+    >>> transfer.add_strokes_image(strokes)
+    >>> transfer.run(last="lights").image("lights-mask").size == photo.size[:2] + (1,)
+    True
+    """
+
+    kind = "transfer"
+
+    def __init__(
+        self, context: Context, photo: ImageLike | None = None, scene: Scene | None = None, surface: str | None = None
+    ) -> None:
+        super().__init__(context)
+        if photo is not None:
+            self.set_photo(photo)
+        if scene is not None and surface is not None:
+            self.set_scene(scene, surface)
+        elif scene is not surface:
+            raise TypeError("scene and surface, the name of what receives the lights, go together")
+
+    # -- inputs
+
+    def set_photo(self, photo: ImageLike) -> None:
+        """Linear RGB, 1 = display white."""
+        self._call("set_photo", image_of(self._context, photo).handle)
+
+    def set_depth(self, depth: ImageLike | None, kind: DepthKind | str = DepthKind.ALONG_Z) -> None:
+        """A depth map of the photo, "along-z" or "along-ray"; None: none."""
+        handle = None if depth is None else image_of(self._context, depth).handle
+        self._call("set_depth", handle, _params.member(DepthKind, kind))
+
+    def set_scene(self, scene: Scene, surface: str) -> None:
+        """The scene to light, never changed, and the object or material of its surface that receives the lights."""
+        self._call("set_scene", scene.handle, _params.text(surface, "surface"))
+
+    def set_texture(self, texture: ImageLike | None) -> None:
+        """An emissive texture to use instead of making one from the photo; None: one is made."""
+        self._call("set_texture", None if texture is None else image_of(self._context, texture).handle)
+
+    def set_camera(self, camera: CameraParams | None = None, **params: Unpack[CameraParams]) -> None:
+        """The camera of the picture; without arguments the scene's first, or one chosen in a corner of the room."""
+        values = {**(camera or {}), **params}
+        self._call("set_camera", _params.fill(_abi.luxfer_camera_params, values, []) if values else None)
+
+    def add_stroke(self, phase: Phase | str, points: ArrayLike, radius: float, positive: bool) -> None:
+        """Adds a stroke along points (n, 2) of the photo, about the "plane" or the "lights"; positive for what is sought."""
+        self._call("add_stroke", _params.member(Phase, phase), *stroke_arguments(points, radius, positive))
+
+    def add_strokes_image(self, drawing: ImageLike) -> None:
+        """Adds the strokes of a drawing of the photo's size: green plane, red not plane, yellow light, blue not light. An
+        array of uint8 is taken as sRGB."""
+        self._call("add_strokes_image", image_of(self._context, drawing, "srgb").handle)
+
+    def add_strokes_text(self, description: str) -> None:
+        """Adds the strokes that a text describes, one a line: "light 3 310.5 30 320 31"."""
+        self._call("add_strokes_text", _params.text(description, "description"))
+
+    def clear_strokes(self) -> None:
+        """Removes all strokes."""
+        self._call("clear_strokes")
+
+    # -- results of the caller's own
+
+    def use_rectify(self, rectify: Rectify) -> None:
+        """In the place of the results of the stages VIEW and UNWARP."""
+        self._call("use_rectify", rectify.handle)
+
+    def use_features(self, features: Features) -> None:
+        """In the place of the result of the stage FEATURES."""
+        self._call("use_features", features.handle)
+
+    def use_segment(self, phase: Phase | str, segment: Segment) -> None:
+        """In the place of the result of the stage PLANE or LIGHTS."""
+        self._call("use_segment", _params.member(Phase, phase), segment.handle)
+
+    def use_mask(self, phase: Phase | str, mask: ImageLike) -> None:
+        """A mask of the photo's size in the place of the result of the stage PLANE or LIGHTS."""
+        self._call("use_mask", _params.member(Phase, phase), image_of(self._context, mask).handle)
+
+    # -- work
+
+    def start(
+        self, first: Stage | str = Stage.VIEW, last: Stage | str = Stage.RENDER, **params: Unpack[TransferParams]
+    ) -> Job[Transfer]:
+        """Starts the stages from first to last, both included: "view", "features", "plane", "lights", "unwarp", "emission",
+        "relight", "render"."""
+        keep: list[Any] = []
+        settings = _params.fill(_abi.luxfer_transfer_params, params, keep)
+        return self._job("start", _params.member(Stage, first), _params.member(Stage, last), settings)
+
+    def run(
+        self,
+        first: Stage | str = Stage.VIEW,
+        last: Stage | str = Stage.RENDER,
+        progress: Progress | None = None,
+        **params: Unpack[TransferParams],
+    ) -> Transfer:
+        """Starts the stages and waits for them."""
+        return self.start(first, last, **params).wait(progress)
+
+    # -- results
+
+    def image(self, which: TransferImage | str = TransferImage.RENDER) -> Image:
+        """"features", "plane-mask", "plane-confidence", "lights-mask", "lights-confidence", "unwarped", "unwarped-valid",
+        "emission", "emission-mask", "render" or "render-variance"."""
+        return self._get_image("get_image", _params.member(TransferImage, which))
+
+    def scene(self, which: TransferScene | str = TransferScene.LIT) -> Scene:
+        """"lit", the result; "unsolved", before its strength is solved for; "white", its colour taken away."""
+        pointer = ctypes.POINTER(_abi.luxfer_scene)()
+        self._call("get_scene", _params.member(TransferScene, which), pointer)
+        return Scene._adopt(self._context, pointer)
+
+    @property
+    def report(self) -> TransferReport:
+        """What each stage took, and how good its result is."""
+        return cast(TransferReport, self._read("get_report", _abi.luxfer_transfer_report))
+
+    @property
+    def view(self) -> RectifyReport:
+        """What the lines of the photo say about its camera, and how the plane is unwarped."""
+        return cast(RectifyReport, self._read("get_view", _abi.luxfer_rectify_report))
+
+    @property
+    def solution(self) -> RelightReport:
+        """The solved colour and intensity, and how sure they are."""
+        return cast(RelightReport, self._read("get_solution", _abi.luxfer_relight_report))
+
+    @property
+    def fixtures(self) -> list[Fixture]:
+        """The lamps of the lit scene, in metres, cd/m² and lumens."""
+        count = self.report.fixtures
+        return [cast(Fixture, self._read("get_fixture", _abi.luxfer_fixture, i)) for i in range(count)]

@@ -1,0 +1,62 @@
+"""Puts the library into the wheel, which so fits one platform but any Python; builds it first if it is not there yet.
+
+The version and the licences are those of the library's own source tree, in which this folder lies.
+"""
+
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+from setuptools import setup
+from setuptools.command.bdist_wheel import bdist_wheel
+from setuptools.command.build_py import build_py
+from setuptools.dist import Distribution
+
+HERE = Path(__file__).resolve().parent
+ROOT = HERE.parent.parent
+NAME = {"darwin": "libluxfer.dylib", "win32": "luxfer.dll"}.get(sys.platform, "libluxfer.so")
+LIBRARY = ROOT / "target" / "release" / NAME
+
+
+def version() -> str:
+    header = (ROOT / "include" / "luxfer.h").read_text()
+    return ".".join(re.search(rf"#define LUXFER_VERSION_{part} (\d+)", header)[1] for part in ("MAJOR", "MINOR", "PATCH"))
+
+
+class BuildPy(build_py):
+    """The modules and the library; an editable install finds the library in target/release."""
+
+    def run(self) -> None:
+        if not LIBRARY.exists():
+            subprocess.run(["cargo", "build", "--release", "--lib"], cwd=ROOT, check=True)
+        super().run()
+        if not self.editable_mode:
+            self.copied().parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(LIBRARY, self.copied())
+            if strip := shutil.which("strip"):  # nine tenths of it are debug information
+                subprocess.run([strip, "-S" if sys.platform == "darwin" else "--strip-debug", self.copied()], check=True)
+
+    def copied(self) -> Path:
+        return Path(self.build_lib) / "luxfer" / NAME
+
+    def get_outputs(self, include_bytecode: bool = True) -> list:
+        return super().get_outputs(include_bytecode) + ([] if self.editable_mode else [str(self.copied())])
+
+
+class Wheel(bdist_wheel):
+    """py3-none-<platform>: no part of it is compiled for one version of Python."""
+
+    def get_tag(self):
+        return "py3", "none", super().get_tag()[2]
+
+
+class HasLibrary(Distribution):
+    """A distribution that is not the same on every platform."""
+
+    def has_ext_modules(self) -> bool:
+        return True
+
+
+setup(version=version(), cmdclass={"build_py": BuildPy, "bdist_wheel": Wheel}, distclass=HasLibrary)
