@@ -140,21 +140,6 @@ static luxfer_image *preview(const options *o, luxfer_scene *scene, const luxfer
     return image;
 }
 
-static void write_luminaires(const options *o, luxfer_transfer *transfer, unsigned count) {
-    FILE *file = fopen(path(o, "luminaires.csv"), "w");
-    unsigned i;
-    if (!file) exit(1);
-    fprintf(file, "x_m,y_m,z_m,length_m,width_m,area_m2,red_cd_m2,green_cd_m2,blue_cd_m2,flux_lm\n");
-    for (i = 0; i < count; i++) {
-        luxfer_fixture f;
-        f.struct_size = sizeof f;
-        check(luxfer_transfer_get_fixture(transfer, i, &f), "fixture");
-        fprintf(file, "%.4f,%.4f,%.4f,%.4f,%.4f,%.5f,%.2f,%.2f,%.2f,%.2f\n", f.position[0], f.position[1], f.position[2],
-                f.size[0], f.size[1], f.area, f.radiance[0], f.radiance[1], f.radiance[2], f.flux);
-    }
-    fclose(file);
-}
-
 /* NaN, which JSON lacks, stands for an error that is not known. */
 static void write_number(FILE *file, double value) {
     if (value == value && value - value == 0) fprintf(file, "%.6g", value);
@@ -232,7 +217,7 @@ int main(int argc, char **argv) {
     check(luxfer_image_save(lit, path(&o, "render.png"), 1 / params.white_luminance), "render.png");
     check(luxfer_image_save(emission, path(&o, "emission.exr"), 1), "emission.exr");
     check(luxfer_scene_export(lit_scene, path(&o, "lit.glb")), "lit.glb");
-    write_luminaires(&o, transfer, report.fixtures);
+    check(luxfer_transfer_save_fixtures(transfer, path(&o, "luminaires.csv")), "luminaires.csv");
     write_report(&o, &report, &solution);
 
     /* What to compare it with: the scene before, under its own lights or a lamp before the camera, and in white light. */

@@ -2561,6 +2561,16 @@ luxfer_status luxfer_transfer_get_fixture(luxfer_transfer *transfer,
                                           uint32_t index,
                                           luxfer_fixture *fixture);
 
+/**
+ * Writes the luminaire schedule, every lamp of the lit scene, to a file whose name ends in .csv or .json: position, normal,
+ * axis, size, area, luminance and flux, their units in the names of the columns; in .json also the corners of the outline
+ * in metres, as "outline_m". Any thread.
+ * LUXFER_NOT_READY before the stage RELIGHT has ended; LUXFER_INVALID_ARGUMENT for another ending; LUXFER_IO if
+ * the file cannot be written.
+ */
+luxfer_status luxfer_transfer_save_fixtures(luxfer_transfer *transfer,
+                                            const char *path);
+
 /* ====================================================================================================================
  * Guides
  *

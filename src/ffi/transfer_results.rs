@@ -6,14 +6,17 @@ use super::guard::enter;
 use super::handle::{self, Owned};
 use super::image::{Pixels, luxfer_image};
 use super::params::{Report, Versioned};
-use super::pointer::Out;
+use super::pointer::{Out, text};
 use super::rectify::luxfer_rectify_report;
 use super::relight::luxfer_relight_report;
 use super::scene::{SceneObject, luxfer_scene, missing};
 use super::status::luxfer_status;
 use super::transfer::luxfer_transfer;
 use crate::error::{Error, ErrorKind, Result};
-use crate::transfer::{Results, Transfer};
+use crate::image::io;
+use crate::transfer::{Results, to_csv, to_json};
+use std::ffi::c_char;
+use std::path::Path;
 use std::sync::Arc;
 
 /// An image of the transfer: a LUXFER_TRANSFER_ value.
@@ -304,8 +307,7 @@ pub unsafe extern "C" fn luxfer_transfer_get_fixture(
 ) -> luxfer_status {
     enter(transfer, |stage| {
         let out = Report::new(fixture)?;
-        let results = (*stage.output()?).clone();
-        let fixtures = Transfer { results, ..Transfer::default() }.fixtures()?;
+        let fixtures = stage.output()?.fixtures()?;
         let lamp = fixtures.get(index as usize).ok_or_else(|| missing("fixture", index, fixtures.len()))?;
         out.set(luxfer_fixture {
             position: lamp.position.to_array(),
@@ -318,5 +320,26 @@ pub unsafe extern "C" fn luxfer_transfer_get_fixture(
             ..luxfer_fixture::defaults()
         });
         Ok(())
+    })
+}
+
+/// Writes the luminaire schedule, every lamp of the lit scene, to a file whose name ends in .csv or .json: position, normal,
+/// axis, size, area, luminance and flux, their units in the names of the columns; in .json also the corners of the outline
+/// in metres, as "outline_m". Any thread.
+/// LUXFER_NOT_READY before the stage RELIGHT has ended; LUXFER_INVALID_ARGUMENT for another ending; LUXFER_IO if
+/// the file cannot be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_transfer_save_fixtures(
+    transfer: *mut luxfer_transfer,
+    path: *const c_char,
+) -> luxfer_status {
+    enter(transfer, |stage| {
+        let path = Path::new(text(path, "path")?);
+        let encode = match path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase().as_str() {
+            "csv" => to_csv,
+            "json" => to_json,
+            _ => return Err(Error::argument(format!("{} ends neither in .csv nor in .json", path.display()))),
+        };
+        io::write_file(path, encode(&stage.output()?.fixtures()?).as_bytes())
     })
 }

@@ -8,11 +8,13 @@
 mod colour;
 mod placement;
 mod schedule;
+mod schedule_file;
 mod stages;
 mod viewpoint;
 
 pub use colour::TargetColour;
 pub use schedule::Fixture;
+pub use schedule_file::{to_csv, to_json};
 
 use crate::emission::{self, Emission};
 use crate::error::{Error, ErrorKind, Result, check_range};

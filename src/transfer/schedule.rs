@@ -1,6 +1,6 @@
 //! The luminaire schedule: every lamp of the solved texture as a fixture in the room.
 
-use super::{LitScene, Transfer, need};
+use super::{LitScene, Results, Transfer, need};
 use crate::emission::Emission;
 use crate::error::Result;
 use crate::image::colour::luminance;
@@ -24,13 +24,22 @@ pub struct Fixture {
     pub radiance: Vec3,
     /// Luminous flux in lumens: a Lambertian lamp sends out π × luminance × area.
     pub flux: f64,
+    /// Corners of the outline in metres.
+    pub outline: Vec<Vec3>,
 }
 
 impl Transfer {
     /// The lamps of the lit scene; all of the texture counts, also where an irregular surface leaves parts of it out.
     pub fn fixtures(&self) -> Result<Vec<Fixture>> {
-        let emission = need(&self.results.emission, "run stage Emission")?;
-        let lit = need(&self.results.lit, "run stage Relight")?;
+        self.results.fixtures()
+    }
+}
+
+impl Results {
+    /// See [`Transfer::fixtures`].
+    pub fn fixtures(&self) -> Result<Vec<Fixture>> {
+        let emission = need(&self.emission, "run stage Emission")?;
+        let lit = need(&self.lit, "run stage Relight")?;
         Ok(emission.luminaires.iter().map(|lamp| fixture(emission, lit, lamp)).collect())
     }
 }
@@ -40,17 +49,21 @@ fn fixture(emission: &Emission, lit: &LitScene, lamp: &crate::emission::Luminair
     let (width, height) = (emission.texture.width as f64, emission.texture.height as f64);
     let strength = lit.scene.materials[lit.placed.material].emission;
     let texel = DVec2::new(f64::from(surface.size.x) / width, f64::from(surface.size.y) / height);
-    let on_surface = lamp.centre * texel;
+    let on_surface = |texels: DVec2| {
+        let p = (texels * texel).as_vec2();
+        surface.origin + surface.u_axis * p.x + surface.v_axis * p.y
+    };
     let axis = DVec2::from_angle(lamp.orientation);
     let area = lamp.area * texel.x * texel.y;
     let radiance = lamp.colour * strength;
     Fixture {
-        position: surface.origin + surface.u_axis * on_surface.x as f32 + surface.v_axis * on_surface.y as f32,
+        position: on_surface(lamp.centre),
         normal: surface.normal,
         axis: surface.u_axis * axis.x as f32 + surface.v_axis * axis.y as f32,
         size: DVec2::new(lamp.size.x * (axis * texel).length(), lamp.size.y * (axis.perp() * texel).length()),
         area,
         radiance,
         flux: PI * f64::from(luminance(radiance)) * area,
+        outline: lamp.outline.iter().map(|&corner| on_surface(corner)).collect(),
     }
 }

@@ -86,6 +86,9 @@ public:
     Result<luxfer_fixture> fixture(std::uint32_t index) const {
         return value<luxfer_fixture>(luxfer_transfer_get_fixture, index);
     }
+
+    /// Writes all fixtures to a .csv or .json file.
+    Result<> save_fixtures(Text path) const { return call(luxfer_transfer_save_fixtures, path.get()); }
 };
 
 /// A photo of a generated office, and the strokes a user would paint on it. See luxfer_demo_photo.

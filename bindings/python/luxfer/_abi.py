@@ -31,6 +31,16 @@ LUXFER_SAMPLE_F16 = 2
 LUXFER_SAMPLE_F32 = 3
 LUXFER_COLOUR_LINEAR = 0
 LUXFER_COLOUR_SRGB = 1
+LUXFER_ALPHA_OPAQUE = 0
+LUXFER_ALPHA_MASK = 1
+LUXFER_ALPHA_BLEND = 2
+LUXFER_TEXTURE_BASE_COLOR = 0
+LUXFER_TEXTURE_METALLIC_ROUGHNESS = 1
+LUXFER_TEXTURE_NORMAL = 2
+LUXFER_TEXTURE_EMISSION = 3
+LUXFER_WRAP_REPEAT = 0
+LUXFER_WRAP_CLAMP = 1
+LUXFER_WRAP_MIRROR = 2
 LUXFER_LIGHT_POINT = 0
 LUXFER_LIGHT_SPOT = 1
 LUXFER_LIGHT_DIRECTIONAL = 2
@@ -46,13 +56,6 @@ LUXFER_LIGHTS_POINT = 4
 LUXFER_LIGHTS_SPOT = 8
 LUXFER_LIGHTS_DIRECTIONAL = 16
 LUXFER_LIGHTS_ENVIRONMENT = 32
-LUXFER_TEXTURE_BASE_COLOR = 0
-LUXFER_TEXTURE_METALLIC_ROUGHNESS = 1
-LUXFER_TEXTURE_NORMAL = 2
-LUXFER_TEXTURE_EMISSION = 3
-LUXFER_WRAP_REPEAT = 0
-LUXFER_WRAP_CLAMP = 1
-LUXFER_WRAP_MIRROR = 2
 LUXFER_LINES_REGIONS = 0
 LUXFER_LINES_HOUGH = 1
 LUXFER_SEARCH_MANHATTAN = 0
@@ -84,6 +87,7 @@ LUXFER_RENDER_BEAUTY = 0
 LUXFER_RENDER_VARIANCE = 1
 LUXFER_RENDER_PATHS = 2
 LUXFER_RENDER_INTERVAL = 3
+LUXFER_RENDER_PREVIEW = 4
 LUXFER_AOV_DEPTH = 1
 LUXFER_AOV_DISTANCE = 2
 LUXFER_AOV_POSITION = 4
@@ -312,8 +316,27 @@ class luxfer_material_params(Structure):
         ("emission", c_float * 3),
         ("transmission", c_float),
         ("ior", c_float),
+        ("alpha", c_float),
+        ("alpha_mode", c_int32),
+        ("alpha_cutoff", c_float),
+        ("normal_scale", c_float),
     ]
-    enumerations = {}
+    enumerations = {"alpha_mode": types.AlphaMode}
+
+
+class luxfer_texture_use(Structure):
+    """A texture as a material uses it."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("texture", c_uint32),
+        ("uv_set", c_uint32),
+        ("wrap_u", c_int32),
+        ("wrap_v", c_int32),
+        ("transform", c_float * 6),
+    ]
+    enumerations = {"wrap_u": types.Wrap, "wrap_v": types.Wrap}
+    result = types.TextureUse
 
 
 class luxfer_mesh_params(Structure):
@@ -422,21 +445,6 @@ class luxfer_mesh_info(Structure):
     ]
     enumerations = {}
     result = types.MeshInfo
-
-
-class luxfer_texture_use(Structure):
-    """A texture as a material uses it."""
-
-    _fields_ = [
-        ("struct_size", c_uint32),
-        ("texture", c_uint32),
-        ("uv_set", c_uint32),
-        ("wrap_u", c_int32),
-        ("wrap_v", c_int32),
-        ("transform", c_float * 6),
-    ]
-    enumerations = {"wrap_u": types.Wrap, "wrap_v": types.Wrap}
-    result = types.TextureUse
 
 
 class luxfer_rectify_params(Structure):
@@ -597,6 +605,8 @@ class luxfer_render_params(Structure):
         ("time_budget_ms", c_uint32),
         ("seed", c_uint64),
         ("pixel_error", c_float),
+        ("bounce_error", c_float),
+        ("preview", c_float),
         ("reserved", c_uint32),
     ]
     enumerations = {}
@@ -610,6 +620,7 @@ class luxfer_render_report(Structure):
         ("samples", c_uint32),
         ("error", c_double),
         ("discarded", c_uint64),
+        ("preview_bias", c_double),
     ]
     enumerations = {}
     result = types.RenderReport
@@ -915,15 +926,22 @@ FUNCTIONS = {
     "luxfer_scene_export_memory": (c_int32, [("scene", POINTER(luxfer_scene)), ("write", luxfer_write_fn), ("user", c_void_p)]),
     "luxfer_scene_get_counts": (c_int32, [("scene", POINTER(luxfer_scene)), ("counts", POINTER(luxfer_scene_counts))]),
     "luxfer_scene_set_environment": (c_int32, [("scene", POINTER(luxfer_scene)), ("red", c_float), ("green", c_float), ("blue", c_float)]),
+    "luxfer_scene_set_environment_image": (c_int32, [("scene", POINTER(luxfer_scene)), ("image", POINTER(luxfer_image)), ("red", c_float), ("green", c_float), ("blue", c_float)]),
     "luxfer_scene_set_emission": (c_int32, [("scene", POINTER(luxfer_scene)), ("material", c_uint32), ("red", c_float), ("green", c_float), ("blue", c_float)]),
     "luxfer_scene_find_surface": (c_int32, [("scene", POINTER(luxfer_scene)), ("name", c_char_p), ("found", POINTER(luxfer_surface))]),
     "luxfer_scene_place_emission": (c_int32, [("scene", POINTER(luxfer_scene)), ("name", c_char_p), ("texture", POINTER(luxfer_image)), ("red", c_float), ("green", c_float), ("blue", c_float), ("mesh", POINTER(c_uint32)), ("material", POINTER(c_uint32))]),
     "luxfer_scene_retain": (c_int32, [("scene", POINTER(luxfer_scene))]),
     "luxfer_scene_release": (c_int32, [("scene", POINTER(luxfer_scene))]),
     "luxfer_material_params_init": (c_int32, [("params", POINTER(luxfer_material_params)), ("size", c_size_t)]),
+    "luxfer_scene_add_material": (c_int32, [("scene", POINTER(luxfer_scene)), ("params", POINTER(luxfer_material_params)), ("index", POINTER(c_uint32))]),
+    "luxfer_scene_set_material": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("params", POINTER(luxfer_material_params))]),
+    "luxfer_scene_get_material": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("params", POINTER(luxfer_material_params))]),
+    "luxfer_scene_add_texture": (c_int32, [("scene", POINTER(luxfer_scene)), ("image", POINTER(luxfer_image)), ("wrap_u", c_int32), ("wrap_v", c_int32), ("index", POINTER(c_uint32))]),
+    "luxfer_scene_set_material_texture": (c_int32, [("scene", POINTER(luxfer_scene)), ("material", c_uint32), ("role", c_int32), ("texture", c_uint32), ("uv_set", c_uint32), ("transform", POINTER(c_float))]),
+    "luxfer_scene_get_material_texture": (c_int32, [("scene", POINTER(luxfer_scene)), ("material_index", c_uint32), ("role", c_int32), ("texture_use", POINTER(luxfer_texture_use))]),
+    "luxfer_scene_get_texture": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("image", POINTER(POINTER(luxfer_image)))]),
     "luxfer_mesh_params_init": (c_int32, [("params", POINTER(luxfer_mesh_params)), ("size", c_size_t)]),
     "luxfer_camera_params_init": (c_int32, [("params", POINTER(luxfer_camera_params)), ("size", c_size_t)]),
-    "luxfer_scene_add_material": (c_int32, [("scene", POINTER(luxfer_scene)), ("params", POINTER(luxfer_material_params)), ("index", POINTER(c_uint32))]),
     "luxfer_scene_add_mesh": (c_int32, [("scene", POINTER(luxfer_scene)), ("params", POINTER(luxfer_mesh_params)), ("index", POINTER(c_uint32))]),
     "luxfer_scene_add_camera": (c_int32, [("scene", POINTER(luxfer_scene)), ("params", POINTER(luxfer_camera_params)), ("index", POINTER(c_uint32))]),
     "luxfer_scene_set_camera": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("params", POINTER(luxfer_camera_params))]),
@@ -937,9 +955,6 @@ FUNCTIONS = {
     "luxfer_scene_get_mesh_name": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
     "luxfer_scene_read_mesh": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("vertex_capacity", c_size_t), ("positions", POINTER(c_float)), ("normals", POINTER(c_float)), ("triangle_capacity", c_size_t), ("indices", POINTER(c_uint32))]),
     "luxfer_scene_read_mesh_uvs": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("uv_set", c_uint32), ("capacity", c_size_t), ("uvs", POINTER(c_float))]),
-    "luxfer_scene_get_material": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("params", POINTER(luxfer_material_params))]),
-    "luxfer_scene_get_material_texture": (c_int32, [("scene", POINTER(luxfer_scene)), ("material_index", c_uint32), ("role", c_int32), ("texture_use", POINTER(luxfer_texture_use))]),
-    "luxfer_scene_get_texture": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("image", POINTER(POINTER(luxfer_image)))]),
     "luxfer_homography_from_corners": (c_int32, [("context", POINTER(luxfer_context)), ("from", POINTER(c_double)), ("to", POINTER(c_double)), ("homography", POINTER(c_double))]),
     "luxfer_image_warp": (c_int32, [("source", POINTER(luxfer_image)), ("to_source", POINTER(c_double)), ("width", c_uint32), ("height", c_uint32), ("warped", POINTER(POINTER(luxfer_image)))]),
     "luxfer_rectify_params_init": (c_int32, [("params", POINTER(luxfer_rectify_params)), ("size", c_size_t)]),
@@ -1047,6 +1062,7 @@ FUNCTIONS = {
     "luxfer_transfer_get_view": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("view", POINTER(luxfer_rectify_report))]),
     "luxfer_transfer_get_solution": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("solution", POINTER(luxfer_relight_report))]),
     "luxfer_transfer_get_fixture": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("index", c_uint32), ("fixture", POINTER(luxfer_fixture))]),
+    "luxfer_transfer_save_fixtures": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("path", c_char_p)]),
     "luxfer_guides_params_init": (c_int32, [("params", POINTER(luxfer_guides_params)), ("size", c_size_t)]),
     "luxfer_guides_create": (c_int32, [("context", POINTER(luxfer_context)), ("guides", POINTER(POINTER(luxfer_guides)))]),
     "luxfer_guides_set_scene": (c_int32, [("guides", POINTER(luxfer_guides)), ("scene", POINTER(luxfer_scene))]),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import os
 from typing import TYPE_CHECKING, Any, cast
 
 from . import _abi, _params
@@ -160,3 +161,7 @@ class Transfer(StageBase):
         """The lamps of the lit scene, in metres, cd/m² and lumens."""
         count = self.report.fixtures
         return [cast(Fixture, self._read("get_fixture", _abi.luxfer_fixture, i)) for i in range(count)]
+
+    def save_fixtures(self, path: str | os.PathLike[str]) -> None:
+        """Writes the lamps to a .csv or .json file."""
+        self._call("save_fixtures", _params.text(os.fspath(path), "path"))

@@ -66,28 +66,15 @@ class ColourSpace(IntEnum):
     linear."""
 
 
-class LightKind(IntEnum):
-    """A kind of light."""
+class AlphaMode(IntEnum):
+    """What the alpha of a surface means."""
 
-    POINT = 0
-    """Shines the same in every direction."""
-    SPOT = 1
-    """Shines in a cone."""
-    DIRECTIONAL = 2
-    """Shines from infinitely far away."""
-
-
-class TextureRole(IntEnum):
-    """What a material uses a texture for."""
-
-    BASE_COLOR = 0
-    """Multiplies the base colour."""
-    METALLIC_ROUGHNESS = 1
-    """Green multiplies the roughness, blue the metallic share."""
-    NORMAL = 2
-    """Normals in tangent space."""
-    EMISSION = 3
-    """Multiplies the emission; looked up without interpolation."""
+    OPAQUE = 0
+    """Nothing: it is there everywhere."""
+    MASK = 1
+    """It is there where alpha is at least alpha_cutoff."""
+    BLEND = 2
+    """That share of light meets it, the rest finds nothing in its way."""
 
 
 class Wrap(IntEnum):
@@ -99,6 +86,30 @@ class Wrap(IntEnum):
     """Its border goes on."""
     MIRROR = 2
     """It repeats, every other one mirrored."""
+
+
+class TextureRole(IntEnum):
+    """What a material uses a texture for."""
+
+    BASE_COLOR = 0
+    """Multiplies the base colour; its alpha multiplies the material's."""
+    METALLIC_ROUGHNESS = 1
+    """Green multiplies the roughness, blue the metallic share."""
+    NORMAL = 2
+    """Normals in tangent space."""
+    EMISSION = 3
+    """Multiplies the emission; looked up without interpolation."""
+
+
+class LightKind(IntEnum):
+    """A kind of light."""
+
+    POINT = 0
+    """Shines the same in every direction."""
+    SPOT = 1
+    """Shines in a cone."""
+    DIRECTIONAL = 2
+    """Shines from infinitely far away."""
 
 
 class Lines(IntEnum):
@@ -225,6 +236,9 @@ class RenderImage(IntEnum):
     INTERVAL = 3
     """Half the width of the interval around each pixel of the beauty that holds the true radiance with a
     probability of 95 %, in cd/m²; 3 channels; infinite where a pixel has less than two paths."""
+    PREVIEW = 4
+    """The beauty with its noise filtered out, guided by surfaces: what it does not see, such as soft shadows,
+    it blurs. How far, the report tells as preview_bias. Only if RenderParams.preview is not 0."""
 
 
 class EmitterAs(IntEnum):
@@ -627,6 +641,30 @@ class MaterialParams(TypedDict, total=False):
     """Share of light that passes through instead of being reflected diffusely, in [0, 1]; default 0."""
     ior: float
     """Index of refraction in [1, 4]; default 1.5."""
+    alpha: float
+    """In [0, 1], multiplies the alpha of the base colour's texture; default 1."""
+    alpha_mode: AlphaMode | str | int
+    """AlphaMode; default AlphaMode.OPAQUE."""
+    alpha_cutoff: float
+    """For AlphaMode.MASK, >= 0; default 0.5."""
+    normal_scale: float
+    """How far the normal texture bends: multiplies its x and y; finite; default 1."""
+
+
+@dataclass(frozen=True)
+class TextureUse:
+    """A texture as a material uses it."""
+
+    texture: int
+    """Index of the texture; LUXFER_NONE if there is none, and what follows is 0."""
+    uv_set: int
+    """Which of the mesh's sets of texture coordinates it is looked up with, 0 or 1."""
+    wrap_u: Wrap
+    """Wrap, along u."""
+    wrap_v: Wrap
+    """Wrap, along v."""
+    transform: tuple[float, ...]
+    """Two rows of three, applied to (u, v, 1) before the look-up."""
 
 
 class MeshParams(TypedDict, total=False):
@@ -730,8 +768,8 @@ class Requirements:
     """Textures that vary what surfaces scatter, emit, or how they are bent."""
     bounces: int
     """How many times light can scatter and still matter: light that was scattered more often is at most the
-    share error, given in the call, of all light that surfaces scatter. 0 if albedos set no bound. Only told:
-    rendering stays without bias."""
+    share error, given in the call, of all light that surfaces scatter. 0 if albedos set no bound. Rendering
+    ends paths there only if RenderParams.bounce_error asks for it."""
     brightest_material: int
     """Index of the material that sends on most of the light it receives; LUXFER_NONE if there are no
     surfaces."""
@@ -753,22 +791,6 @@ class MeshInfo:
     """1 if it has a normal for each vertex, 0 if its faces are flat."""
     uv_sets: int
     """Sum of 1 if it has the first set of texture coordinates and 2 if it has the second."""
-
-
-@dataclass(frozen=True)
-class TextureUse:
-    """A texture as a material uses it."""
-
-    texture: int
-    """Index of the texture; LUXFER_NONE if there is none, and what follows is 0."""
-    uv_set: int
-    """Which of the mesh's sets of texture coordinates it is looked up with, 0 or 1."""
-    wrap_u: Wrap
-    """Wrap, along u."""
-    wrap_v: Wrap
-    """Wrap, along v."""
-    transform: tuple[float, ...]
-    """Two rows of three, applied to (u, v, 1) before the look-up."""
 
 
 class RectifyParams(TypedDict, total=False):
@@ -958,6 +980,13 @@ class RenderParams(TypedDict, total=False):
     """Stop when every part of the image (8 x 8 pixels, root mean square) is known to this, >= 0: half the width
     of the 95 % interval of a pixel's luminance, relative to that luminance or to a tenth of the image's mean,
     whichever is more. 0.1 means within 10 % of its value, 19 times out of 20. Default 0: never."""
+    bounce_error: float
+    """End every path where what is left is at most this share of all light that surfaces scatter, in [0, 1):
+    the image is too dark by up to that share. After how many bounces, luxfer_scene_requirements tells. Default
+    0: never; paths end by chance alone, and the image is right on the average."""
+    preview: float
+    """Strength of the filter for RenderImage.PREVIEW, in [0, 10]; 1 is usual, more blurs more. Default 0: no
+    preview, as final images are made. The other images are the same with and without it."""
 
 
 @dataclass(frozen=True)
@@ -971,6 +1000,9 @@ class RenderReport:
     pixel has less than two paths."""
     discarded: int
     """Paths that were left out because their radiance was no finite number."""
+    preview_bias: float
+    """How far the filter of the preview has moved the image beyond what noise explains: root mean square over
+    squares of 8 x 8 pixels, relative to the image's mean. 0 without a preview."""
 
 
 class IlluminanceParams(TypedDict, total=False):
