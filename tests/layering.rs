@@ -37,6 +37,7 @@ const ARROWS: &[(&str, &[&str])] = &[
 /// Files that may contain `unsafe` beside `ffi`: SIMD kernels, chosen at run time, and the memory they work on.
 const UNSAFE: &[&str] = &[
     "scene/accel/lanes.rs",
+    "scene/accel/lines.rs",
     "scene/accel/mod.rs",
     "scene/accel/node.rs",
     "scene/accel/packet.rs",

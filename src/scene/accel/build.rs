@@ -1,6 +1,7 @@
 //! From triangles to the finished structure.
 
 use super::collapse::{self, Source};
+use super::lines::Lines;
 use super::node::Child;
 use super::{Accel, SHORT_STACK, units};
 use crate::error::{Error, Result};
@@ -17,8 +18,7 @@ pub(super) fn build(triangles: &[[Vec3; 3]], job: Job) -> Result<Accel> {
     }
     let units = units::gather(triangles, job)?;
     let mut accel = Accel {
-        nodes: Vec::new(),
-        packets: Vec::new(),
+        lines: Lines::default(),
         root: Child::EMPTY,
         low: Vec3::ZERO,
         high: Vec3::ZERO,

@@ -7,11 +7,12 @@
 //!
 //! The tree is cut into parts near its root, which are done in parallel. Where it is cut depends on the tree alone.
 
+use super::lines::Lines;
 use super::node::{Child, Node};
 use super::packet::{Packet, WIDTH};
 use super::units::Unit;
 use super::{Accel, pages};
-use crate::error::Result;
+use crate::error::{Error, ErrorKind, Result};
 use crate::job::Job;
 use glam::Vec3;
 use obvhs::bvh2::Bvh2;
@@ -47,29 +48,27 @@ pub(super) fn run(source: &Source, accel: &mut Accel, job: Job) -> Result<()> {
     let below = |task: &Left| job.check().map(|()| choice.widen(task.at, false));
     let mut done: Vec<Wide> = tasks.par_iter().map(below).collect::<Result<_>>()?;
     drop(binaries);
-    // Put one after the other in memory what was found, the top first.
-    let (mut nodes, mut packets) = (top.nodes.len(), top.packets.len());
-    let mut bases = vec![(0, 0)];
+    // Find where each comes to lie, the top first, and tell it.
+    let mut len = top.lines.len();
+    let mut bases = Vec::with_capacity(tasks.len());
     for (task, wide) in tasks.iter().zip(&done) {
-        top.nodes[task.node].children[task.lane] = wide.root.shifted(nodes, packets).bits();
+        top.lines.get_mut::<Node>(task.node).children[task.lane] = wide.root.moved(len).bits();
         top.stack_need = top.stack_need.max(task.waiting + wide.stack_need);
-        bases.push((nodes, packets));
-        nodes += wide.nodes.len();
-        packets += wide.packets.len();
+        bases.push(len);
+        len += wide.lines.len();
     }
+    if len > Child::LINES {
+        return Err(Error::new(
+            ErrorKind::OutOfMemory,
+            "the scene's acceleration structure would be larger than 128 GiB",
+        ));
+    }
+    done.par_iter_mut().zip(bases).for_each(|(wide, base)| wide.move_by(base));
     accel.root = top.root;
     accel.stack_need = accel.stack_need.max(top.stack_need);
     done.insert(0, top);
-    let (nodes, packets) = done.into_iter().map(|wide| (wide.nodes, wide.packets)).unzip();
-    accel.nodes = pages::join(nodes, |i, mut node: Node| {
-        // The top is in place, and knows where the others are.
-        if i > 0 {
-            let (nodes, packets) = bases[i];
-            node.children.iter_mut().for_each(|c| *c = Child::from_bits(*c).shifted(nodes, packets).bits());
-        }
-        node
-    })?;
-    accel.packets = pages::join(packets, |_, packet: Packet| packet)?;
+    let parts: Vec<_> = done.iter().map(|wide| wide.lines.as_slice()).collect();
+    accel.lines = Lines::of(pages::join(&parts)?);
     Ok(())
 }
 
@@ -221,12 +220,24 @@ impl Binary {
 type Place = (usize, usize);
 
 /// Wide nodes of a subtree.
+#[derive(Default)]
 struct Wide {
+    lines: Lines,
     root: Child,
-    nodes: Vec<Node>,
-    packets: Vec<Packet>,
+    /// Where each node is.
+    nodes: Vec<usize>,
     stack_need: usize,
     left: Vec<Left>,
+}
+
+impl Wide {
+    /// Where the lines come to lie a number of lines later.
+    fn move_by(&mut self, lines: usize) {
+        for &node in &self.nodes {
+            let children = &mut self.lines.get_mut::<Node>(node).children;
+            children.iter_mut().for_each(|c| *c = Child::from_bits(*c).moved(lines).bits());
+        }
+    }
 }
 
 /// A child that is left to be done, and where it belongs.
@@ -251,40 +262,42 @@ impl Choice<'_> {
 
     /// The wide subtree of a place; within other parts than its own, children are left to be done if `leave`.
     fn widen(&self, root: Place, leave: bool) -> Wide {
-        let mut wide =
-            Wide { root: Child::EMPTY, nodes: Vec::new(), packets: Vec::new(), stack_need: 0, left: Vec::new() };
-        // (place, its node, entries that wait when it is visited)
-        let mut open = Vec::new();
-        wide.root = self.child(root, 0, &mut wide, &mut open);
-        while let Some((place, node, waiting)) = open.pop() {
+        let mut wide = Wide::default();
+        if self.is_packet(root) {
+            wide.root = Child::of_packet(wide.lines.push(self.packet(root)));
+            return wide;
+        }
+        // Nodes to be made: the place, whose child it is, and the entries that wait when it is visited.
+        let mut open = vec![(root, None, 0)];
+        while let Some((place, parent, waiting)) = open.pop() {
+            let node = wide.lines.push(Node::empty());
+            wide.nodes.push(node);
+            match parent {
+                Some((parent, lane)) => wide.lines.get_mut::<Node>(parent).children[lane] = Child::of_node(node).bits(),
+                None => wide.root = Child::of_node(node),
+            }
             let mut members = [root; 8];
             let len = self.members(place, &mut members);
             wide.stack_need = wide.stack_need.max(waiting + len);
+            let waiting = waiting + len - 1;
             for (lane, &at) in members[..len].iter().enumerate() {
-                let waiting = waiting + len - 1;
-                let child = if leave && at.0 != root.0 {
+                let mut child = Child::EMPTY;
+                if leave && at.0 != root.0 {
                     wide.left.push(Left { at, node, lane, waiting });
-                    Child::EMPTY
+                } else if self.is_packet(at) {
+                    child = Child::of_packet(wide.lines.push(self.packet(at)));
                 } else {
-                    self.child(at, waiting, &mut wide, &mut open)
-                };
+                    open.push((at, Some((node, lane)), waiting));
+                }
                 let branch = self.branch(at);
-                wide.nodes[node].set(lane, branch.low, branch.high, child);
+                wide.lines.get_mut::<Node>(node).set(lane, branch.low, branch.high, child);
             }
         }
         wide
     }
 
-    /// A packet, or a node that is yet to be filled.
-    fn child(&self, at: Place, waiting: usize, wide: &mut Wide, open: &mut Vec<(Place, usize, usize)>) -> Child {
-        if self.binaries[at.0].is_packet(at.1) {
-            wide.packets.push(self.packet(at));
-            Child::of_packet(wide.packets.len() - 1)
-        } else {
-            open.push((at, wide.nodes.len(), waiting));
-            wide.nodes.push(Node::empty());
-            Child::of_node(wide.nodes.len() - 1)
-        }
+    fn is_packet(&self, (binary, at): Place) -> bool {
+        self.binaries[binary].is_packet(at)
     }
 
     /// The children of a branch that becomes a node.

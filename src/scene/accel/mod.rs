@@ -13,6 +13,7 @@ mod aligned;
 mod build;
 mod collapse;
 mod lanes;
+mod lines;
 mod node;
 mod packet;
 mod pages;
@@ -24,6 +25,7 @@ use crate::job::Job;
 use aligned::Aligned;
 use glam::{Vec3, Vec4};
 use lanes::{Baseline, Lanes};
+use lines::Lines;
 use node::{Child, Node, NodeRay};
 use packet::{Packet, TriangleRay};
 use stack::{SLACK, Stack, Waiting};
@@ -60,8 +62,7 @@ pub struct Hit {
 
 /// The built structure; it keeps its own copy of the triangles.
 pub struct Accel {
-    nodes: Vec<Node>,
-    packets: Vec<Packet>,
+    lines: Lines,
     root: Child,
     low: Vec3,
     high: Vec3,
@@ -105,7 +106,7 @@ impl Accel {
 
     /// Memory held, in bytes.
     pub fn bytes(&self) -> usize {
-        self.nodes.len() * size_of::<Node>() + self.packets.len() * size_of::<Packet>()
+        self.lines.bytes()
     }
 
     /// The nearest hit, or, if `ANY`, the first that is found.
@@ -163,10 +164,10 @@ impl Accel {
         let mut stack = Stack::new(stack);
         let mut child = self.root;
         loop {
-            if let Some(index) = child.packet() {
+            if child.is_packet() {
                 // Test eight triangles; only a hit that is accepted shortens the ray.
-                // SAFETY: children point into the lists they were built with.
-                let packet = unsafe { self.packets.get_unchecked(index) };
+                // SAFETY: children tell where nodes and packets were put.
+                let packet = unsafe { self.lines.get::<Packet>(child.line()) };
                 let (mut mask, hits) = packet.intersect::<L>(&triangle_ray, t_max);
                 if mask != 0 {
                     let hits = hits.store();
@@ -184,7 +185,7 @@ impl Accel {
             } else {
                 // Test eight boxes; go on with one of those that are hit, the nearest if that matters.
                 // SAFETY: as above.
-                let node = unsafe { self.nodes.get_unchecked(child.node()) };
+                let node = unsafe { self.lines.get::<Node>(child.line()) };
                 let (mut mask, near) = node.intersect(&node_ray, t_max);
                 if mask != 0 {
                     let first = take_lowest(&mut mask);
@@ -199,7 +200,7 @@ impl Accel {
                         stack.push_all_but_nearest(&near.store(), &node.children, first, mask)
                     };
                     if let Some((_, next)) = stack.top() {
-                        self.prefetch(next);
+                        self.lines.prefetch(next.line());
                     }
                     continue;
                 }
@@ -212,26 +213,6 @@ impl Accel {
                 }
             };
         }
-    }
-
-    /// Asks memory for a child that may be visited after the next one.
-    #[inline(always)]
-    fn prefetch(&self, child: Child) {
-        #[cfg(target_arch = "x86_64")]
-        {
-            use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
-            let start = match child.packet() {
-                Some(index) => self.packets.as_ptr().wrapping_add(index).cast::<i8>(),
-                None => self.nodes.as_ptr().wrapping_add(child.node()).cast::<i8>(),
-            };
-            // A node, or all of a packet but the indices, which only hits need.
-            for line in 0..4 {
-                // SAFETY: a hint; it reads nothing, whatever the address.
-                unsafe { _mm_prefetch::<_MM_HINT_T0>(start.wrapping_add(64 * line)) };
-            }
-        }
-        #[cfg(not(target_arch = "x86_64"))]
-        let _ = child;
     }
 }
 

@@ -4,20 +4,28 @@ use super::aligned::Aligned;
 use super::lanes::{Lanes, Row};
 use glam::{Vec3, Vec4};
 
-/// What a node points to: another node, a packet of triangles, or nothing.
+/// What a node points to: another node, a packet of triangles, or nothing. Both are told by the line they start at.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Child(u32);
 
+impl Default for Child {
+    fn default() -> Self {
+        Self::EMPTY
+    }
+}
+
 impl Child {
     pub const EMPTY: Self = Self(u32::MAX);
+    /// Lines that can be told from one another, and from an empty child.
+    pub const LINES: usize = (1 << 31) - 1;
     const PACKET: u32 = 1 << 31;
 
-    pub fn of_node(index: usize) -> Self {
-        Self(index as u32)
+    pub fn of_node(line: usize) -> Self {
+        Self(line as u32)
     }
 
-    pub fn of_packet(index: usize) -> Self {
-        Self(index as u32 | Self::PACKET)
+    pub fn of_packet(line: usize) -> Self {
+        Self(line as u32 | Self::PACKET)
     }
 
     pub fn bits(self) -> u32 {
@@ -32,21 +40,19 @@ impl Child {
         self == Self::EMPTY
     }
 
-    pub fn packet(self) -> Option<usize> {
-        (self.0 & Self::PACKET != 0).then_some((self.0 & !Self::PACKET) as usize)
+    #[inline(always)]
+    pub fn is_packet(self) -> bool {
+        self.0 & Self::PACKET != 0
     }
 
-    /// The same child where indices of nodes and packets start at the given ones.
-    pub fn shifted(self, nodes: usize, packets: usize) -> Self {
-        match self.packet() {
-            _ if self.is_empty() => self,
-            Some(packet) => Self::of_packet(packet + packets),
-            None => Self::of_node(self.node() + nodes),
-        }
+    #[inline(always)]
+    pub fn line(self) -> usize {
+        (self.0 & !Self::PACKET) as usize
     }
 
-    pub fn node(self) -> usize {
-        self.0 as usize
+    /// The same child, where all lines are moved by a number of them.
+    pub fn moved(self, lines: usize) -> Self {
+        if self.is_empty() { self } else { Self(self.0 + lines as u32) }
     }
 }
 
@@ -59,13 +65,15 @@ pub(super) struct Node {
     pub children: [u32; 8],
     /// `bounds[2 * axis]` are the low ends, `bounds[2 * axis + 1]` the high ends.
     pub bounds: [Row; 6],
+    /// Fills the last line.
+    unused: [u32; 8],
 }
 
 impl Node {
     /// No children: every box is inside out, so no ray hits it.
     pub fn empty() -> Self {
         let (low, high) = (Row([f32::INFINITY; 8]), Row([f32::NEG_INFINITY; 8]));
-        Self { bounds: [low, high, low, high, low, high], children: [Child::EMPTY.0; 8] }
+        Self { bounds: [low, high, low, high, low, high], children: [Child::EMPTY.0; 8], unused: [0; 8] }
     }
 
     pub fn set(&mut self, lane: usize, low: Vec3, high: Vec3, child: Child) {

@@ -8,22 +8,18 @@ use crate::error::{Error, ErrorKind, Result};
 use rayon::prelude::*;
 use std::mem::MaybeUninit;
 
-/// All parts one after the other, copied in parallel; `place(i, item)` adapts an item of part `i` to where it comes to lie.
-pub(super) fn join<T: Send + Sync + Clone>(parts: Vec<Vec<T>>, place: impl Fn(usize, T) -> T + Sync) -> Result<Vec<T>> {
-    let len = parts.iter().map(Vec::len).sum();
+/// All parts one after the other, copied in parallel.
+pub(super) fn join<T: Send + Sync + Copy>(parts: &[&[T]]) -> Result<Vec<T>> {
+    let len = parts.iter().map(|part| part.len()).sum();
     let mut all = room(len)?;
     let mut rest: &mut [MaybeUninit<T>] = &mut all.spare_capacity_mut()[..len];
     let mut targets = Vec::with_capacity(parts.len());
-    for (i, part) in parts.into_iter().enumerate() {
+    for &part in parts {
         let (target, after) = rest.split_at_mut(part.len());
-        targets.push((i, part, target));
+        targets.push((part, target));
         rest = after;
     }
-    targets.into_par_iter().for_each(|(i, part, target)| {
-        for (to, item) in target.iter_mut().zip(part) {
-            to.write(place(i, item));
-        }
-    });
+    targets.into_par_iter().for_each(|(part, target)| _ = target.write_copy_of_slice(part));
     // SAFETY: the targets make up the first `len` items and each of them was written.
     unsafe { all.set_len(len) };
     Ok(all)

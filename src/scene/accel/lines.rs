@@ -1,0 +1,91 @@
+//! Nodes and packets in one list of cache lines.
+//!
+//! Below the levels that stay in the caches each step of a ray waits for memory, and longer where the step leads to
+//! another page. So a node is followed by its packets, and those by the nodes below it, the first of them first.
+
+use super::node::Node;
+use super::packet::Packet;
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C, align(64))]
+pub(super) struct Line([u32; 16]);
+
+#[derive(Default)]
+pub(super) struct Lines {
+    list: Vec<Line>,
+}
+
+/// What may lie in lines: whole ones, of plain numbers, any bits of which are valid.
+///
+/// # Safety
+/// All fields are of `u32` and `f32`, without padding, and the alignment is that of a line.
+pub(super) unsafe trait Plain {}
+// SAFETY: `Node` and `Packet` are rows of eight such numbers, an even number of rows each.
+unsafe impl Plain for Node {}
+// SAFETY: as above.
+unsafe impl Plain for Packet {}
+
+const fn lines_of<T>() -> usize {
+    assert!(align_of::<T>() == align_of::<Line>());
+    size_of::<T>() / size_of::<Line>()
+}
+
+impl Lines {
+    pub fn of(list: Vec<Line>) -> Self {
+        Self { list }
+    }
+
+    pub fn as_slice(&self) -> &[Line] {
+        &self.list
+    }
+
+    pub fn len(&self) -> usize {
+        self.list.len()
+    }
+
+    /// Memory held.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&*self.list)
+    }
+
+    /// Appends a node or a packet; gives its line.
+    pub fn push<T: Plain>(&mut self, item: T) -> usize {
+        let line = self.list.len();
+        self.list.resize(line + lines_of::<T>(), Line([0; 16]));
+        *self.get_mut(line) = item;
+        line
+    }
+
+    pub fn get_mut<T: Plain>(&mut self, line: usize) -> &mut T {
+        let lines = &mut self.list[line..line + lines_of::<T>()];
+        // SAFETY: `T` is plain, and as large and aligned as these.
+        unsafe { &mut *lines.as_mut_ptr().cast() }
+    }
+
+    /// # Safety
+    /// The same was put at this line.
+    #[inline(always)]
+    pub unsafe fn get<T: Plain>(&self, line: usize) -> &T {
+        debug_assert!(line + lines_of::<T>() <= self.list.len());
+        // SAFETY: the lines are in the list, and `T` is plain.
+        unsafe { &*self.at(line).cast() }
+    }
+
+    /// Asks memory for what starts at a line: a node, or all of a packet but the indices, which only hits need.
+    #[inline(always)]
+    pub fn prefetch(&self, line: usize) {
+        #[cfg(target_arch = "x86_64")]
+        for next in 0..4 {
+            use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+            // SAFETY: a hint; it reads nothing, whatever the address.
+            unsafe { _mm_prefetch::<_MM_HINT_T0>(self.at(line).wrapping_add(next).cast()) };
+        }
+        #[cfg(not(target_arch = "x86_64"))]
+        let _ = line;
+    }
+
+    #[inline(always)]
+    fn at(&self, line: usize) -> *const Line {
+        self.list.as_ptr().wrapping_add(line)
+    }
+}
