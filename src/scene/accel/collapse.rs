@@ -278,6 +278,7 @@ impl Choice<'_> {
             }
             let mut members = [root; 8];
             let len = self.members(place, &mut members);
+            members[..len].sort_by(|&a, &b| self.area(a).total_cmp(&self.area(b)));
             wide.stack_need = wide.stack_need.max(waiting + len);
             let waiting = waiting + len - 1;
             for (lane, &at) in members[..len].iter().enumerate() {
@@ -294,6 +295,11 @@ impl Choice<'_> {
             }
         }
         wide
+    }
+
+    fn area(&self, place: Place) -> f32 {
+        let branch = self.branch(place);
+        self.binaries[place.0].scale.area(branch.low, branch.high)
     }
 
     fn is_packet(&self, (binary, at): Place) -> bool {

@@ -188,7 +188,7 @@ impl Accel {
                 let node = unsafe { self.lines.get::<Node>(child.line()) };
                 let (mut mask, near) = node.intersect(&node_ray, t_max);
                 if mask != 0 {
-                    let first = take_lowest(&mut mask);
+                    let first = if ANY { take_highest(&mut mask) } else { take_lowest(&mut mask) };
                     if mask == 0 {
                         child = node.child(first);
                         continue;
@@ -221,6 +221,14 @@ impl Accel {
 fn take_lowest(mask: &mut u32) -> usize {
     let lane = mask.trailing_zeros() as usize & 7;
     *mask &= *mask - 1;
+    lane
+}
+
+/// The highest lane of a mask that is not empty, which is then taken from it.
+#[inline(always)]
+fn take_highest(mask: &mut u32) -> usize {
+    let lane = mask.ilog2() as usize & 7;
+    *mask ^= 1 << lane;
     lane
 }
 
