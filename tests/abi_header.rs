@@ -342,7 +342,8 @@ layouts! {
     luxfer_emission_params: struct_size width height block scale working_side metadata_weight seed;
     luxfer_emission_report: struct_size luminaires error regularity;
     luxfer_luminaire: struct_size corners centre size orientation area flux_share colour reserved;
-    luxfer_requirements: struct_size scattering lights textures bounces brightest_material albedo;
+    luxfer_requirements: struct_size scattering lights textures bounces brightest_material albedo
+        flat_triangles;
     luxfer_render_params: struct_size width height samples target_error time_budget_ms seed pixel_error bounce_error
         preview reserved;
     luxfer_render_report: struct_size samples error discarded preview_bias;

@@ -61,21 +61,24 @@ pub struct luxfer_requirements {
     pub brightest_material: u32,
     /// The most that any surface sends on, per channel, in [0, 1].
     pub albedo: [f32; 3],
+    /// Triangles without an area, which are left out.
+    pub flat_triangles: u32,
 }
 
 // SAFETY: plain numbers.
 unsafe impl Versioned for luxfer_requirements {
     const NAME: &'static str = "luxfer_requirements";
-    const SIZES: &'static [usize] = &[36];
+    const SIZES: &'static [usize] = &[40];
     fn defaults() -> Self {
         Self {
-            struct_size: 36,
+            struct_size: 40,
             scattering: 0,
             lights: 0,
             textures: 0,
             bounces: 0,
             brightest_material: LUXFER_NONE,
             albedo: [0.0; 3],
+            flat_triangles: 0,
         }
     }
 }
@@ -111,6 +114,7 @@ pub unsafe extern "C" fn luxfer_scene_requirements(
             bounces: found.bounces(error).unwrap_or(0),
             brightest_material: found.brightest.map_or(LUXFER_NONE, |material| material as u32),
             albedo: found.albedo.to_array(),
+            flat_triangles: u32::try_from(found.flat_triangles).unwrap_or(u32::MAX),
             ..luxfer_requirements::defaults()
         });
         Ok(())

@@ -15,6 +15,7 @@ use crate::error::{Error, Result, check_range};
 use crate::exec;
 use crate::image::{Image, colour, try_vec};
 use crate::job::Job;
+use crate::rng;
 use glam::Vec3;
 
 #[derive(Clone, Debug, PartialEq)]
@@ -47,7 +48,8 @@ pub struct Input<'a> {
 pub struct Output {
     pub image: Image,
     /// How far the filter has moved the image beyond what noise explains: root mean square over squares of 8 × 8 pixels,
-    /// relative to the mean of the image. Blur finer than a square does not show in it.
+    /// relative to the mean of the image. Blur finer than a square does not show in it, and little that is far below what
+    /// noise is left in a square.
     pub bias: f64,
 }
 
@@ -68,8 +70,9 @@ const LEAST_ALBEDO: f32 = 0.02;
 /// Side of the squares in which the bias is measured.
 const SQUARE: usize = 8;
 
-/// Planes of a row of the light being filtered: red, green, blue, variance of the luminance.
-const LIGHT: usize = 4;
+/// Planes of a row of the light being filtered: red, green, blue, variance of the luminance, and a probe: noise of that
+/// variance that is filtered by the same weights.
+const LIGHT: usize = 5;
 /// Planes of a row of features: albedo, normal, position.
 const GUIDE: usize = 9;
 
@@ -83,10 +86,14 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Output> {
     let (width, height) = (input.beauty.width, input.beauty.height);
     let guide = guides(input, job.part(0.0, 0.05))?;
     let mut light = light(input, job.part(0.05, 0.15))?;
+    let mut noise = try_vec(width * height, 0.0f32)?;
+    exec::for_rows(&mut noise, width, job.part(0.15, 0.16), |y, row| {
+        row.copy_from_slice(&light[(y * LIGHT + 4) * width..][..width]);
+    })?;
     if params.strength > 0.0 {
         let mut next = try_vec(light.len(), 0.0f32)?;
         for (level, &step) in STEPS.iter().enumerate() {
-            let part = job.part(0.15 + 0.12 * level as f64, 0.15 + 0.12 * (level + 1) as f64);
+            let part = job.part(0.16 + 0.118 * level as f64, 0.16 + 0.118 * (level + 1) as f64);
             let level = Level { light: &light, guide: &guide, width, height, step, range: RANGE * params.strength };
             exec::for_rows(&mut next, LIGHT * width, part, |y, row| level.row(y, row))?;
             std::mem::swap(&mut light, &mut next);
@@ -100,7 +107,13 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Output> {
             (0..3).for_each(|c| out[c] = light[c * width + x] * guide[c * width + x].max(LEAST_ALBEDO));
         }
     })?;
-    let bias = bias(input, &image, job.part(0.95, 1.0))?;
+    let probe = |x: usize, y: usize| {
+        let albedo = colour::luminance(Vec3::from_array(std::array::from_fn(|c| {
+            guide[(y * GUIDE + c) * width + x].max(LEAST_ALBEDO)
+        })));
+        [light[(y * LIGHT + 4) * width + x], noise[y * width + x]].map(|v| v * albedo)
+    };
+    let bias = bias(input, &image, probe, job.part(0.95, 1.0))?;
     Ok(Output { image, bias })
 }
 
@@ -134,11 +147,16 @@ fn light(input: &Input, job: Job) -> Result<Vec<f32>> {
             let error = variance.rgb(x, y).map(f32::sqrt) / albedo;
             let luminance = colour::luminance(colour);
             let error = if error.is_finite() { colour::luminance(error) } else { luminance };
-            let values = [colour.x, colour.y, colour.z, error * error];
+            let values = [colour.x, colour.y, colour.z, error * error, error * sign(x, y)];
             values.into_iter().enumerate().for_each(|(c, v)| row[c * width + x] = v);
         }
     })?;
     Ok(out)
+}
+
+/// 1 or -1 at random for each pixel.
+fn sign(x: usize, y: usize) -> f32 {
+    if rng::hash(0x7072_6f62, &[x as u64, y as u64]) & 1 == 0 { 1.0 } else { -1.0 }
 }
 
 /// One level of the filter.
@@ -182,13 +200,14 @@ impl Level<'_> {
             let guide_that: [&[f32]; GUIDE] = std::array::from_fn(|p| &guide[far(GUIDE, p)]);
             let (red, rest) = out.split_at_mut(width);
             let (green, rest) = rest.split_at_mut(width);
-            let (blue, variance) = rest.split_at_mut(width);
-            let sums = [&mut red[from..to], &mut green[from..to], &mut blue[from..to], &mut variance[from..to]];
+            let (blue, rest) = rest.split_at_mut(width);
+            let (variance, probe) = rest.split_at_mut(width);
+            let sums = [red, green, blue, variance, probe].map(|plane| &mut plane[from..to]);
             self.mix(tap, here, that, guide_here, guide_that, sums, &mut weights[from..to]);
         }
         for (x, weight) in weights.iter().enumerate() {
             let scale = 1.0 / weight;
-            (0..3).for_each(|c| out[c * width + x] *= scale);
+            [0, 1, 2, 4].into_iter().for_each(|p| out[p * width + x] *= scale);
             out[3 * width + x] *= scale * scale;
         }
     }
@@ -207,11 +226,11 @@ impl Level<'_> {
     ) {
         let n = weights.len();
         // Slices of one length: no bounds to check in the loop.
-        let [h0, h1, h2, h3] = here.map(|s| &s[..n]);
-        let [t0, t1, t2, t3] = that.map(|s| &s[..n]);
+        let [h0, h1, h2, h3, _] = here.map(|s| &s[..n]);
+        let [t0, t1, t2, t3, t4] = that.map(|s| &s[..n]);
         let a = guide_here.map(|s| &s[..n]);
         let b = guide_that.map(|s| &s[..n]);
-        let [s0, s1, s2, s3] = sums.map(|s| &mut s[..n]);
+        let [s0, s1, s2, s3, s4] = sums.map(|s| &mut s[..n]);
         let square = |v: f32| v * v;
         for i in 0..n {
             let (lh, lt) = (luminance(h0[i], h1[i], h2[i]), luminance(t0[i], t1[i], t2[i]));
@@ -230,6 +249,7 @@ impl Level<'_> {
             s1[i] += w * t1[i];
             s2[i] += w * t2[i];
             s3[i] += w * w * t3[i];
+            s4[i] += w * t4[i];
             weights[i] += w;
         }
     }
@@ -244,25 +264,26 @@ fn luminance(r: f32, g: f32, b: f32) -> f32 {
     0.2126 * r + 0.7152 * g + 0.0722 * b
 }
 
-/// Squares of pixels: the noise of the input averages out in them, what the filter has moved does not.
-fn bias(input: &Input, image: &Image, job: Job) -> Result<f64> {
+/// What the filter has moved the means of squares of pixels by, less what noise explains: that much it has moved the probe,
+/// which is noise alone. (How much of the noise of a square leaves it depends on the weights; a probe of random signs
+/// measures it without bias, as that of Hutchinson 1990 does a trace.)
+fn bias(input: &Input, image: &Image, probe: impl Fn(usize, usize) -> [f32; 2] + Sync, job: Job) -> Result<f64> {
     let (width, height) = (image.width, image.height);
     let across = width.div_ceil(SQUARE);
     let squares = exec::map(across * height.div_ceil(SQUARE), job, |square| {
         let (left, top) = (square % across * SQUARE, square / across * SQUARE);
-        let (mut moved, mut noise, mut light, mut count) = (0.0, 0.0, 0.0, 0.0);
+        let (mut moved, mut probed, mut light, mut count) = (0.0, 0.0, 0.0, 0.0);
         for y in top..(top + SQUARE).min(height) {
             for x in left..(left + SQUARE).min(width) {
                 let before = colour::luminance(input.beauty.rgb(x, y));
-                let variance = colour::luminance(input.variance.rgb(x, y).map(f32::sqrt)).powi(2);
                 moved += f64::from(colour::luminance(image.rgb(x, y)) - before);
-                noise += f64::from(if variance.is_finite() { variance } else { before * before });
+                let [filtered, noise] = probe(x, y);
+                probed += f64::from(filtered - noise);
                 light += f64::from(before);
                 count += 1.0;
             }
         }
-        // The square of the mean, less what the noise of that mean is expected to add.
-        ((moved * moved - noise) / count, light, count)
+        ((moved * moved - probed * probed) / count, light, count)
     })?;
     let (squared, light, count) = squares.iter().fold((0.0, 0.0, 0.0), |a, s| (a.0 + s.0, a.1 + s.1, a.2 + s.2));
     Ok(if light > 0.0 { f64::max(squared / count, 0.0).sqrt() * count / light } else { 0.0 })

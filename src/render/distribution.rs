@@ -94,5 +94,12 @@ mod tests {
         assert_eq!(table.probability(4), 0.5);
         assert_eq!(table.sample(0.0).0, 1);
         assert_eq!(table.sample(1.0 - 1e-16).0, 4);
+        // There and back.
+        for i in 0..1000 {
+            let u = f64::from(i) / 1000.0;
+            let (index, rest) = table.sample(u);
+            let before: f64 = (0..index).map(|j| table.probability(j)).sum();
+            assert!((before + rest * table.probability(index) - u).abs() < 1e-12, "{u}");
+        }
     }
 }

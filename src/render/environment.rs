@@ -135,6 +135,7 @@ fn neighbourhood(image: &Image, x: usize, y: usize) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::render::tests::chi2::assert_follows;
     use crate::rng::Rng;
     use glam::DVec3;
 
@@ -176,23 +177,56 @@ mod tests {
                 let at = |u: f32, size: usize| ((u * size as f32) as usize).min(size - 1);
                 counts[at(uv.y, height) * width + at(uv.x, width)] += 1.0;
             }
-            let (mut chi2, mut degrees, mut pool) = (0.0, -1.0, (0.0, 0.0));
-            for (i, count) in counts.into_iter().enumerate() {
-                let (x, y) = (i % width, i / width);
-                let solid_angle = band_solid_angle(y, height) / width as f64;
-                pool.0 += count;
-                pool.1 += f64::from(sampler.pixel_density(x, y)) * solid_angle * f64::from(n);
-                if pool.1 >= 20.0 {
-                    chi2 += (pool.0 - pool.1) * (pool.0 - pool.1) / pool.1;
-                    degrees += 1.0;
-                    pool = (0.0, 0.0);
-                }
-            }
-            // Upper quantile of chi-squared (Wilson and Hilferty 1931); significance 1e-3 over three images (Šidák).
-            let a = 2.0 / (9.0 * f64::max(degrees, 1.0));
-            let limit = f64::max(degrees, 1.0) * (1.0 - a + 3.4 * a.sqrt()).powi(3);
-            assert!(chi2 < limit, "{chi2} of {limit}, {degrees} degrees");
+            let expected: Vec<f64> = (0..width * height)
+                .map(|i| {
+                    let solid_angle = band_solid_angle(i / width, height) / width as f64;
+                    f64::from(sampler.pixel_density(i % width, i / width)) * solid_angle * f64::from(n)
+                })
+                .collect();
+            assert_follows(&expected, &counts, 4, &format!("{width} x {height}"));
         }
+        // Of constant light, bins of equal solid angle.
+        let (mut counts, mut rng) = (vec![0.0; 16 * 16], Rng::new(34, &[]));
+        for _ in 0..50_000 {
+            let d = EnvironmentSampler::Constant.sample(rng.next_f64(), rng.next_f32()).0;
+            let row = ((d.y + 1.0) / 2.0 * 16.0) as usize;
+            let column = ((0.5 + d.z.atan2(d.x) / TAU) * 16.0) as usize;
+            counts[row.min(15) * 16 + column.min(15)] += 1.0;
+        }
+        assert_follows(&vec![50_000.0 / 256.0; 256], &counts, 4, "constant");
+    }
+
+    #[test]
+    fn the_way_to_a_direction_has_a_way_back() {
+        let mut rng = Rng::new(35, &[]);
+        for image in images() {
+            let (sampler, _) = EnvironmentSampler::build(&Environment::Image(image)).unwrap().unwrap();
+            let EnvironmentSampler::Image { rows, columns } = &sampler else { panic!("an image") };
+            for _ in 0..2000 {
+                let (u, v) = (rng.next_f64(), rng.next_f32());
+                let d = sampler.sample(u, v).0.as_dvec3();
+                // The pixel, and where in it, evenly in solid angle.
+                let height = columns.len();
+                let row = (d.y.clamp(-1.0, 1.0).acos() / std::f64::consts::PI * height as f64).min(height as f64 - 1.0);
+                let (top, bottom) = polar_cosines(row as usize, height);
+                let within = (d.y - top) / (bottom - top);
+                let back = running(rows, row as usize) + within * rows.probability(row as usize);
+                let table = &columns[row as usize];
+                let column = (0.5 + d.x.atan2(-d.z) / std::f64::consts::TAU) * table.len() as f64;
+                let at = (column as usize).min(table.len() - 1);
+                let across = running(table, at) + (column - at as f64) * table.probability(at);
+                // As far as a direction in f32 tells; one within rounding of a border counts for the next pixel.
+                let tolerance = 1e-4;
+                assert!((back - u).abs() < tolerance, "{u} became {d}, and that {back}");
+                let near_pole = d.x.hypot(d.z) < 0.02;
+                assert!(near_pole || (across - f64::from(v)).abs() < tolerance, "{v} became {d}, and that {across}");
+            }
+        }
+    }
+
+    /// The share of a table's weight before an entry.
+    fn running(table: &Distribution, entry: usize) -> f64 {
+        (0..entry).map(|i| table.probability(i)).sum()
     }
 
     #[test]

@@ -164,6 +164,7 @@ fn directional_albedo(cosine: f32, alpha: f32) -> Vec2 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::render::tests::chi2::assert_follows;
 
     /// The way back (Shirley and Chiu 1997), in f64.
     fn square(p: Vec2) -> Vec2 {
@@ -202,6 +203,73 @@ mod tests {
             let slope = |step: Vec2| (disc(u + step).0 - disc(u - step).0) / (2.0 * h);
             let determinant = slope(Vec2::X * h).perp_dot(slope(Vec2::Y * h));
             assert!((determinant - PI).abs() < 5e-3, "{u}: {determinant}");
+        }
+    }
+
+    fn view(cosine: f32) -> Vec3 {
+        let sine = (1.0 - cosine * cosine).sqrt();
+        Vec3::new(0.8 * sine, 0.6 * sine, cosine)
+    }
+
+    /// The stretch that makes facets of any roughness those of a hemisphere.
+    fn stretched(w: Vec3, alpha: f32) -> Vec3 {
+        Vec3::new(w.x / alpha, w.y / alpha, w.z).normalize()
+    }
+
+    #[test]
+    fn facets_are_chosen_as_often_as_they_are_seen_at_any_roughness() {
+        let (side, n, fine) = (10usize, 20_000, 16);
+        let mut rng = crate::rng::Rng::new(14, &[]);
+        let cases: Vec<(f32, f32)> =
+            [1e-3f32, 0.03, 0.1, 0.5, 1.0].into_iter().flat_map(|r| [1.0, 0.7, 0.2, 0.02].map(|c| (r, c))).collect();
+        for &(roughness, cosine) in &cases {
+            let alpha = roughness * roughness;
+            let wo = view(cosine);
+            let lobe = Lobe::new(wo, alpha);
+            let v = Vec3::new(alpha * wo.x, alpha * wo.y, wo.z).normalize();
+            // Of a hemisphere, the facets seen from v have the density 2 (v h)+ / (pi (1 + v.z)), in bins of equal solid
+            // angle.
+            let mut expected = vec![0.0; side * side];
+            let cells = side * fine;
+            for i in 0..cells * cells {
+                let z = (i / cells) as f32 + 0.5;
+                let (z, angle) = (z / cells as f32, ((i % cells) as f32 + 0.5) / cells as f32 * 2.0 * PI);
+                let r = (1.0 - z * z).sqrt();
+                let seen = v.dot(Vec3::new(r * angle.cos(), r * angle.sin(), z)).max(0.0);
+                let density = f64::from(2.0 * seen / (PI * (1.0 + v.z)));
+                expected[i / cells / fine * side + i % cells / fine] +=
+                    density * f64::from(2.0 * PI) / (cells * cells) as f64 * f64::from(n);
+            }
+            let mut counts = vec![0.0; side * side];
+            for _ in 0..n {
+                let h = stretched(lobe.sample_normal(Vec2::new(rng.next_f32(), rng.next_f32())), alpha);
+                let row = ((h.z * side as f32) as usize).min(side - 1);
+                let column = (h.y.atan2(h.x).rem_euclid(2.0 * PI) / (2.0 * PI) * side as f32) as usize;
+                counts[row * side + column.min(side - 1)] += 1.0;
+            }
+            assert_follows(&expected, &counts, cases.len(), &format!("roughness {roughness}, cosine {cosine}"));
+        }
+    }
+
+    #[test]
+    fn the_way_to_a_facet_has_a_way_back() {
+        for roughness in [0.03f32, 0.3, 1.0] {
+            for cosine in [0.9, 0.3] {
+                let (alpha, wo) = (roughness * roughness, view(cosine));
+                let lobe = Lobe::new(wo, alpha);
+                let v = Vec3::new(alpha * wo.x, alpha * wo.y, wo.z).normalize();
+                let t1 = Vec3::new(-v.y, v.x, 0.0).normalize();
+                let t2 = v.cross(t1);
+                for i in 0..64 * 64 {
+                    let u = (Vec2::new((i % 64) as f32, (i / 64) as f32) + 0.5) / 64.0;
+                    let n = stretched(lobe.sample_normal(u), alpha);
+                    // The projection along the view, then the part of the disc that the hemisphere hides drawn out again.
+                    let (p1, p2) = (n.dot(t1), n.dot(t2));
+                    let s = 0.5 * (1.0 + v.z);
+                    let p = Vec2::new(p1, (p2 - (1.0 - s) * (1.0 - p1 * p1).max(0.0).sqrt()) / s);
+                    assert!((square(p) - u).abs().max_element() < 2e-3, "roughness {roughness}: {u} became {n}");
+                }
+            }
         }
     }
 }

@@ -37,6 +37,8 @@ pub struct Requirements {
     pub albedo: Vec3,
     /// The material that sends on that much.
     pub brightest: Option<usize>,
+    /// Triangles without an area, which no ray can meet.
+    pub flat_triangles: usize,
 }
 
 impl Requirements {
@@ -81,6 +83,9 @@ impl Requirements {
         if self.textures < self.textures_given {
             let idle = self.textures_given - self.textures;
             sentences.push(format!("{idle} of {} textures vary nothing and are not looked up.", self.textures_given));
+        }
+        if self.flat_triangles > 0 {
+            sentences.push(format!("{} triangles have no area: no ray meets them.", self.flat_triangles));
         }
         sentences
     }

@@ -86,7 +86,8 @@ impl World {
         // Find out what can be left out.
         let has_top = |m: &Material| m.ior > 1.0 || m.metallic > 0.0;
         let albedo_table = scene.materials.iter().any(has_top).then(AlbedoTable::new);
-        let (requirements, finishes) = requirements::analyse(&scene, albedo_table.as_ref());
+        let (mut requirements, finishes) = requirements::analyse(&scene, albedo_table.as_ref());
+        requirements.flat_triangles = accel.dropped();
         let any_see_through = requirements.glass || requirements.alpha;
         job.report(1.0);
         Ok(Self { scene, accel, centre, first, facets, finishes, lights, albedo_table, requirements, any_see_through })

@@ -1,6 +1,7 @@
 //! Every way of sampling against its density, every density against one, light both ways, and no light made.
 
 use super::*;
+use crate::render::tests::chi2::assert_follows;
 use crate::rng::Rng;
 use std::f32::consts::TAU;
 
@@ -43,49 +44,6 @@ fn seen<'a>(substance: &Substance, wo: Vec3, table: &'a AlbedoTable) -> Bsdf<'a>
 fn direction(cosine: f32, angle: f32) -> Vec3 {
     let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
     Vec3::new(sine * angle.cos(), sine * angle.sin(), cosine)
-}
-
-/// The chance that a standard normal deviate is larger, for positive `z` (continued fraction of Mills' ratio).
-fn tail(z: f64) -> f64 {
-    let ratio = (1..=60).rev().fold(z, |f, k| z + f64::from(k) / f);
-    (-z * z / 2.0).exp() / (std::f64::consts::TAU.sqrt() * ratio)
-}
-
-/// The limit of chi-squared that one of `tests` true hypotheses exceeds with a chance of 1/1000 in all: each may with
-/// 1 - (1 - 1/1000)^(1/tests) (Šidák 1967); its quantile by Wilson and Hilferty (1931).
-fn chi2_limit(degrees: f64, tests: usize) -> f64 {
-    let chance = 1.0 - (1.0f64 - 1e-3).powf(1.0 / tests as f64);
-    let (mut low, mut high) = (1.0, 10.0);
-    for _ in 0..60 {
-        let z = (low + high) / 2.0;
-        if tail(z) > chance { low = z } else { high = z }
-    }
-    degrees * (1.0 - 2.0 / (9.0 * degrees) + low * (2.0 / (9.0 * degrees)).sqrt()).powi(3)
-}
-
-/// Chi-squared and its degrees of freedom; bins of small expectation are taken together.
-fn chi2(expected: &[f64], observed: &[f64]) -> (f64, f64) {
-    let (mut sum, mut degrees, mut rest) = (0.0, -1.0, (0.0, 0.0));
-    for (&e, &o) in expected.iter().zip(observed) {
-        if e < 10.0 {
-            rest = (rest.0 + e, rest.1 + o);
-        } else {
-            sum += (o - e) * (o - e) / e;
-            degrees += 1.0;
-        }
-    }
-    if rest.0 >= 10.0 {
-        sum += (rest.1 - rest.0) * (rest.1 - rest.0) / rest.0;
-        degrees += 1.0;
-    }
-    (sum, degrees)
-}
-
-#[test]
-fn limits_of_chi_squared_are_those_of_tables() {
-    // 1/1000 of 10 degrees: 29.588; of 100 degrees: 149.449. The approximation is 0.6 % off at few degrees.
-    assert!((chi2_limit(10.0, 1) - 29.588).abs() < 0.2 && (chi2_limit(100.0, 1) - 149.449).abs() < 0.1);
-    assert!((tail(1.959964) - 0.025).abs() < 1e-6);
 }
 
 #[test]
@@ -132,9 +90,7 @@ fn directions_come_with_the_density_that_is_stated() {
                 });
                 observed[bin] += 1.0;
             }
-            let (sum, degrees) = chi2(&expected, &observed);
-            let limit = chi2_limit(degrees, tests);
-            assert!(sum < limit, "substance {number}, view {view}: {sum} over {limit} ({degrees} degrees)");
+            assert_follows(&expected, &observed, tests, &format!("substance {number}, view {view}"));
         }
     }
 }

@@ -117,3 +117,50 @@ pub fn uniform_in_triangle(v: Vec2) -> Vec2 {
     let root = v.x.sqrt();
     Vec2::new(root * (1.0 - v.y), root * v.y)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::tests::chi2::assert_follows;
+    use crate::rng::Rng;
+
+    #[test]
+    fn the_way_to_the_triangle_and_back_is_the_identity() {
+        for i in 1..256 * 256 {
+            let v = Vec2::new((i % 256) as f32, (i / 256) as f32) / 256.0;
+            let b = uniform_in_triangle(v);
+            let along = b.x + b.y;
+            let back = Vec2::new(along * along, if along > 0.0 { b.y / along } else { v.y });
+            assert!(b.min_element() >= 0.0 && along <= 1.0 + 1e-6 && (back - v).abs().max_element() < 1e-6, "{v}: {b}");
+        }
+    }
+
+    #[test]
+    fn points_of_a_clipped_triangle_are_even_by_area() {
+        let whole = Rectangle { low: DVec2::ZERO, high: DVec2::ONE };
+        let triangles = [
+            [DVec2::new(0.5, -0.3), DVec2::new(1.2, 1.1), DVec2::new(-0.3, 0.9)],
+            [DVec2::new(0.1, 0.1), DVec2::new(0.2, 0.9), DVec2::new(0.9, 0.5)],
+            [DVec2::new(-9.0, -8.0), DVec2::new(9.5, 0.3), DVec2::new(0.2, 7.0)],
+        ];
+        let mut rng = Rng::new(26, &[]);
+        let (side, n) = (12, 50_000);
+        for triangle in &triangles {
+            let polygon = Polygon::clipped(triangle, &whole);
+            // What is expected of a bin is the area of the triangle clipped to it.
+            let bin = |i: usize| DVec2::new((i % side) as f64, (i / side) as f64) / side as f64;
+            let area = |i: usize| {
+                Polygon::clipped(triangle, &Rectangle { low: bin(i), high: bin(i) + 1.0 / side as f64 }).area()
+            };
+            let share = f64::from(n) / polygon.area();
+            let expected: Vec<f64> = (0..side * side).map(|i| area(i) * share).collect();
+            let mut counts = vec![0.0; side * side];
+            for _ in 0..n {
+                let p = polygon.sample(rng.next_f64(), Vec2::new(rng.next_f32(), rng.next_f32())).unwrap();
+                let at = |x: f64| ((x * side as f64) as usize).min(side - 1);
+                counts[at(p.y) * side + at(p.x)] += 1.0;
+            }
+            assert_follows(&expected, &counts, triangles.len(), &format!("{triangle:?}"));
+        }
+    }
+}

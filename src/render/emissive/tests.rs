@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::image::Image;
-use crate::render::tests::chi_squared_quantile;
+use crate::render::tests::chi2::assert_follows;
 use crate::rng::Rng;
 use crate::scene::{Material, Mesh, Texture, TextureRef, Wrap};
 use glam::Vec3;
@@ -128,19 +128,7 @@ fn chosen_points_fall_as_often_as_the_density_says() {
                 expected[bin(b)] += density * f64::from(samples) / (cells * cells) as f64;
             }
         }
-        // Bins where little is expected are pooled.
-        let (mut chi2, mut degrees, mut pool) = (0.0, -1.0, (0.0, 0.0));
-        for (&count, &mean) in counts.iter().zip(&expected) {
-            pool = (pool.0 + count, pool.1 + mean);
-            if pool.1 >= 20.0 {
-                chi2 += (pool.0 - pool.1).powi(2) / pool.1;
-                degrees += 1.0;
-                pool = (0.0, 0.0);
-            }
-        }
-        // Significance 1e-3 over all cases (Šidák): 3.7 deviations for each of nine.
-        let limit = chi_squared_quantile(degrees, 3.7);
-        assert!(chi2 < limit, "{chi2} of {limit}, {wrap:?}, {uvs:?}");
+        assert_follows(&expected, &counts, cases.len(), &format!("{wrap:?}, {uvs:?}"));
     }
 }
 

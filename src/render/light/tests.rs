@@ -5,7 +5,8 @@ use crate::exec::Pool;
 use crate::image::Image;
 use crate::job::Monitor;
 use crate::render::sampler::Sampler;
-use crate::render::tests::{chi_squared_quantile, quad};
+use crate::render::tests::chi2::assert_follows;
+use crate::render::tests::quad;
 use crate::render::{PathSink, SurfacePoint, World, irradiance};
 use crate::rng::Rng;
 use crate::scene::{Environment, Material, Mesh, PunctualLight, Texture, TextureRef};
@@ -75,20 +76,99 @@ fn lights_are_chosen_as_often_as_the_tree_states() {
                     }
                 }
             }
-            let expected = stated.iter().copied().chain([(1.0 - total).max(0.0)]).map(|p| p * f64::from(n));
-            let (mut chi2, mut degrees, mut pool) = (0.0, 0.0, (0.0, 0.0));
-            for (&count, mean) in counts.iter().zip(expected) {
-                pool = (pool.0 + count, pool.1 + mean);
-                if pool.1 >= 10.0 {
-                    chi2 += (pool.0 - pool.1).powi(2) / pool.1;
-                    degrees += 1.0;
-                    pool = (0.0, 0.0);
-                }
-            }
-            // Significance 1e-3 over all 40 cases (Šidák).
-            assert!(chi2 < chi_squared_quantile(degrees, 4.06), "{chi2} for {count} lights, {degrees} degrees");
+            let absent = (1.0 - total).max(0.0);
+            let expected: Vec<f64> = stated.iter().chain([&absent]).map(|p| p * f64::from(n)).collect();
+            assert_follows(&expected, &counts, 40, &format!("{count} lights, {receiver:?}"));
         }
     }
+}
+
+#[test]
+fn the_way_down_the_tree_has_a_way_back() {
+    // A light's numbers are an interval as long as its probability, and the rest says where in it a number lies.
+    let mut rng = Rng::new(44, &[]);
+    for count in [2, 9, 300] {
+        let tree = tree(&lights(count, Vec3::ZERO, &mut rng));
+        for receiver in receivers(8, Vec3::ZERO, &mut rng) {
+            let mut starts = vec![None; count];
+            for _ in 0..5000 {
+                let u = rng.next_f64();
+                let Some((light, probability, rest)) = tree.sample(&receiver, u) else { continue };
+                let start = u - rest * f64::from(probability);
+                let first = *starts[light].get_or_insert(start);
+                assert!((start - first).abs() < 1e-6, "light {light} of {count}: {start} and {first}");
+            }
+        }
+    }
+}
+
+#[test]
+fn every_kind_of_light_is_chosen_as_often_as_its_density_says() {
+    // Without a place to be chosen on, a punctual light has a density that is a probability times a squared distance.
+    let mut scene = over_floor(vec![quad(Vec3::new(-0.5, 2.0, -0.5), Vec3::X, Vec3::Z, 1)], vec![matt(0.0, 3.0)]);
+    let intensity = |i: usize| Vec3::splat(1.0 + i as f32);
+    let place = |i: usize| Vec3::new(i as f32 - 2.0, 1.5, 0.3);
+    scene.lights = (0..6)
+        .map(|i| match i % 3 {
+            0 => PunctualLight::Point { position: place(i), intensity: intensity(i) },
+            1 => PunctualLight::Spot {
+                position: place(i),
+                direction: -place(i).normalize(),
+                intensity: intensity(i),
+                inner_angle: 0.1,
+                outer_angle: 0.6,
+            },
+            _ => PunctualLight::Directional { direction: -place(i).normalize(), illuminance: intensity(i) },
+        })
+        .collect();
+    scene.environment = Some(Environment::Constant(Vec3::splat(0.5)));
+    let world = world(scene);
+    let receiver = Receiver { position: Vec3::new(0.1, 0.0, 0.0), normal: Vec3::Y };
+    // The punctual lights, the surface, the environment, and choices that come to nothing.
+    let (mut counts, mut stated) = ([0.0; 9], [0.0; 9]);
+    let (mut surface, n) = (0.0, 100_000);
+    let mut rng = Rng::new(45, &[]);
+    for i in 0..n {
+        let block = Sampler::new(rng.next_u64(), i).next();
+        let Some(sample) = world.lights().sample(world.scene(), &receiver, &block) else {
+            counts[8] += 1.0;
+            continue;
+        };
+        match sample.source {
+            LightSource::Punctual(index) => {
+                let distance2 = match sample.end {
+                    Some(LightEnd::Point(p)) => p.distance_squared(receiver.position),
+                    _ => 1.0,
+                };
+                counts[index as usize] += 1.0;
+                stated[index as usize] = f64::from(sample.density / distance2) * f64::from(n);
+            }
+            LightSource::Surface { .. } => {
+                counts[6] += 1.0;
+                // The mean of the reciprocal density is the solid angle over the probability of finding it.
+                surface += f64::from(1.0 / sample.density) / f64::from(n);
+            }
+            LightSource::Environment => {
+                counts[7] += 1.0;
+                stated[7] = f64::from(sample.density * 4.0 * std::f32::consts::PI) * f64::from(n);
+            }
+        }
+    }
+    assert!(counts[..8].iter().all(|&c| c > 100.0), "{counts:?}");
+    // The lamp is all of the tree that is no point: what remains after the others and what comes to nothing.
+    stated[8] = counts[8];
+    stated[6] = f64::from(n) - stated.iter().sum::<f64>();
+    assert_follows(&stated, &counts, 1, "kinds of lights");
+    // A square of 1 m² at 2 m, a little off the middle, seen from below; found or not, as if by the toss of a coin.
+    let (expected, share) = (solid_angle_of_lamp(), counts[6] / f64::from(n));
+    let error = expected * ((1.0 - share) / (share * f64::from(n))).sqrt();
+    assert!((surface - expected).abs() < 4.0 * error + 1e-3 * expected, "{surface} ± {error}, expected {expected}");
+}
+
+/// Of the square of 1 × 1 m at a height of 2 m, seen from 10 cm off its middle: four rectangles (Khadjavi 1968).
+fn solid_angle_of_lamp() -> f64 {
+    let corner = |a: f64, b: f64, d: f64| (a * b / (d * (a * a + b * b + d * d).sqrt())).atan();
+    2.0 * (corner(0.4, 0.5, 2.0) + corner(0.6, 0.5, 2.0))
 }
 
 #[test]
@@ -258,7 +338,7 @@ fn many_triangles_light_as_their_closed_forms_add_up_to() {
         }
         let measured = measure(over_floor(meshes, materials));
         assert_close(measured, expected, 1e-5, "triangles");
-        // Clusters hold lights that face away as well, so that some choices come to nothing.
+        // Clusters hold lights that face away as well, half of all, so that some choices come to nothing; measured 1.5 %.
         assert!(measured.1 < 0.02 * expected, "{measured:?}");
     }
 }
@@ -374,7 +454,7 @@ fn point_and_spot_lights_add_up() {
     }
     let measured = measure(scene);
     assert_close(measured, expected, 1e-5, "points");
-    assert!(measured.1 < 0.02 * expected, "{measured:?}");
+    assert!(measured.1 < 0.01 * expected, "{measured:?}");
 }
 
 #[test]

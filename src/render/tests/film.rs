@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::exec::Pool;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 #[test]
 fn any_number_of_threads_gives_the_same_bits() {
@@ -101,7 +101,7 @@ fn a_target_sends_paths_to_where_the_error_is_and_darkens_little() {
             assert!(low >= 16.0 && high <= 1024.0 && film.samples < 512);
             spread = spread.max(high / low);
         }
-        assert!(spread >= 2.0, "{spread}");
+        assert!(spread >= 4.0, "{target_error} {pixel_error}: {spread}");
         let bias = sum / count as f64;
         let error = ((square / count as f64 - bias * bias) / count as f64).sqrt();
         assert!(bias.abs() < 0.01 + 3.0 * error, "bias {bias} ± {error}");
@@ -159,17 +159,43 @@ fn a_render_stops_when_it_is_good_enough_or_out_of_time() {
     let base = Params { width: 16, height: 16, samples: 1 << 20, ..Params::default() };
     let film = render(&world, &viewer(), &Params { target_error: 0.3, ..base.clone() });
     assert!(film.error <= 0.3 && film.samples < 1 << 20);
-    // More pixels than there is time for, and more paths of one pixel. Time itself is measured by the bench, alone.
-    for (width, height) in [(2048, 512), (1, 1)] {
-        for target_error in [0.0, 1e-6] {
-            let start = Instant::now();
-            let params = Params { width, height, time_budget_ms: 40, target_error, ..base.clone() };
-            let film = render(&world, &viewer(), &params);
-            assert!(film.samples < 1 << 20 && film.paths.data.iter().any(|&n| n > 0.0));
-            assert!(film.beauty.data.iter().all(|v| v.is_finite()));
-            assert!(start.elapsed() < Duration::from_secs(20), "{params:?}: {:?}", start.elapsed());
+}
+
+/// Time that this thread has had a processor: other programs do not count.
+fn processor_time() -> Duration {
+    let text = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
+    Duration::from_nanos(text.split(' ').next().and_then(|n| n.parse().ok()).unwrap_or(0))
+}
+
+#[test]
+fn a_time_budget_is_kept_but_for_the_first_image() {
+    let world = world(everything());
+    // More pixels than there is time for, and more paths of one pixel. One thread does it all, and its processor time is no
+    // more than the time that passes.
+    Pool::new(1).unwrap().run(|| {
+        for (width, height) in [(2048, 512), (1, 1)] {
+            for target_error in [0.0, 1e-6] {
+                let timed = |time_budget_ms| {
+                    let start = processor_time();
+                    let params =
+                        Params { width, height, samples: 1 << 20, time_budget_ms, target_error, ..Params::default() };
+                    let film = render(&world, &viewer(), &params);
+                    (film, processor_time() - start)
+                };
+                // The least there is: a path for one pixel in many, and an image of them.
+                let (film, least) = timed(1);
+                let paths: f32 = film.paths.data.iter().sum();
+                assert!(paths > 0.0 && (paths <= 1024.0 || width == 1), "{width} x {height}: {paths}");
+                assert_eq!(film.beauty.count_non_finite(), 0);
+                for budget in [40, 300] {
+                    let (film, taken) = timed(budget);
+                    assert!(film.samples < 1 << 20 && film.beauty.count_non_finite() == 0);
+                    let allowed = least.max(Duration::from_millis(budget.into())) + Duration::from_millis(50);
+                    assert!(taken < allowed + least, "{width} x {height}, {budget} ms: {taken:?}, at least {least:?}");
+                }
+            }
         }
-    }
+    });
 }
 
 #[test]

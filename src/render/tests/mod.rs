@@ -1,5 +1,6 @@
 //! Closed forms, invariants and statistics of the whole renderer: what the tests share.
 
+pub(super) mod chi2;
 mod denoise;
 mod energy;
 mod extremes;
@@ -31,12 +32,6 @@ pub(super) fn quad(corner: Vec3, u: Vec3, v: Vec3, material: usize) -> Mesh {
         triangles: vec![[0, 1, 2], [0, 2, 3]],
         ..Mesh::default()
     }
-}
-
-/// Upper quantile of chi-squared for a standard normal deviate `z` (Wilson and Hilferty 1931).
-pub(super) fn chi_squared_quantile(degrees: f64, z: f64) -> f64 {
-    let a = 2.0 / (9.0 * degrees);
-    degrees * (1.0 - a + z * a.sqrt()).powi(3)
 }
 
 /// A closed sphere of triangles that faces its centre.
