@@ -168,11 +168,11 @@ impl<'a> Bsdf<'a> {
         }
     }
 
-    /// Chooses where a path goes on: `choice` the layer, `u` the direction. None where the light is absorbed.
+    /// Chooses where a path goes on, by a point of the unit square. None where the light is absorbed.
     #[inline]
-    pub fn sample(&self, choice: f32, u: Vec2) -> Option<Scattered> {
+    pub fn sample(&self, u: Vec2) -> Option<Scattered> {
         if let Some(layers) = &self.layers {
-            return layers.sample(self, choice, u);
+            return layers.sample(self, u);
         }
         let local = cosine_hemisphere(u);
         let (t, b) = self.normal.any_orthonormal_pair();
@@ -254,14 +254,16 @@ impl<'a> Layers<'a> {
         }
     }
 
-    fn sample(&self, bsdf: &Bsdf, choice: f32, u: Vec2) -> Option<Scattered> {
+    fn sample(&self, bsdf: &Bsdf, u: Vec2) -> Option<Scattered> {
         let [diffuse, top] = self.shares;
         let frame = [self.tangents[0], self.tangents[1], bsdf.normal];
-        let local = if choice < diffuse {
-            cosine_hemisphere(u)
-        } else if choice < diffuse + top {
+        // A part of the square for each layer, stretched to the whole.
+        let part = |from: f32, share: f32| Vec2::new(((u.x - from) / share).min(1.0 - f32::EPSILON), u.y);
+        let local = if u.x < diffuse {
+            cosine_hemisphere(part(0.0, diffuse))
+        } else if u.x < diffuse + top {
             let Some((lobe, _)) = &self.lobe else { return self.reflect(&frame, bsdf.geometric) };
-            let h = lobe.sample_normal(u);
+            let h = lobe.sample_normal(part(diffuse, top));
             h * (2.0 * self.wo.dot(h)) - self.wo
         } else {
             return self.pass_through(&frame);

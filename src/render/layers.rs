@@ -109,8 +109,7 @@ impl<'a> Layers<'a> {
             layers: self,
             beauty: Vec3::ZERO,
             trail: Trail::new(&self.table),
-            path: vec![Vec3::ZERO; self.outputs.expressions.len()],
-            sums: vec![DVec3::ZERO; self.outputs.expressions.len()],
+            sums: vec![DVec3::ZERO; self.table.lists().len()],
             surfaces: Surfaces::default(),
         }
     }
@@ -118,9 +117,14 @@ impl<'a> Layers<'a> {
     /// Adds what a recorder has gathered to a pixel's sums, and leaves it empty.
     pub fn keep(&self, recorder: &mut Recorder, tile: usize, pixel: usize) {
         let mut tile = self.tiles[tile].lock().unwrap_or_else(PoisonError::into_inner);
-        let (colours, surfaces) = tile[pixel * self.width..][..self.width].split_at_mut(3 * recorder.sums.len());
-        for (kept, sum) in colours.chunks_exact_mut(3).zip(&mut recorder.sums) {
-            kept.iter_mut().zip(sum.as_vec3().to_array()).for_each(|(k, s)| *k += s);
+        let (colours, surfaces) = tile[pixel * self.width..][..self.width].split_at_mut(3 * self.outputs.expressions.len());
+        // What a list of expressions shares is added to each of them.
+        let lists = self.table.lists().iter().zip(&mut recorder.sums);
+        for (list, sum) in lists.filter(|(_, sum)| **sum != DVec3::ZERO) {
+            for &expression in list {
+                let kept = &mut colours[3 * usize::from(expression)..][..3];
+                kept.iter_mut().zip(sum.as_vec3().to_array()).for_each(|(k, s)| *k += s);
+            }
             *sum = DVec3::ZERO;
         }
         if let Some((hits, mut rest)) = surfaces.split_first_mut() {
@@ -189,25 +193,24 @@ pub struct Recorder<'a> {
     /// Sum of the contributions of one path, as the main image has it.
     beauty: Vec3,
     trail: Trail<'a>,
-    /// The same for each expression.
-    path: Vec<Vec3>,
-    /// Sums over the paths.
+    /// Sums over the paths, for each list of expressions that accept the same.
     sums: Vec<DVec3>,
     surfaces: Surfaces,
 }
 
 impl Recorder<'_> {
     /// A new path begins.
+    #[inline]
     pub fn start(&mut self) {
         self.beauty = Vec3::ZERO;
-        self.path.fill(Vec3::ZERO);
         self.trail.start();
     }
 
     /// Ends the path; returns what it has brought to the main image. One that is no finite number counts nowhere.
+    #[inline]
     pub fn finish(&mut self) -> Vec3 {
         if self.beauty.is_finite() {
-            self.sums.iter_mut().zip(&self.path).for_each(|(sum, path)| *sum += path.as_dvec3());
+            self.trail.brought().iter().for_each(|&(list, light)| self.sums[usize::from(list)] += light.as_dvec3());
         }
         self.beauty
     }
@@ -218,9 +221,10 @@ impl Observer for Recorder<'_> {
     fn add(&mut self, source: LightSource, importance: Vec3, emission: Vec3, found: Found) {
         let contribution = importance * emission;
         self.beauty += contribution;
-        self.trail.add(self.world, contribution, source, found, &mut self.path);
+        self.trail.add(self.world, contribution, source, found);
     }
 
+    #[inline]
     fn meet(&mut self, seen: Seen) {
         if self.layers.outputs.aovs.is_empty() {
             return;

@@ -14,8 +14,11 @@ use super::{LightSource, PathSink};
 use crate::scene::accel::Ray;
 use glam::{Vec2, Vec3};
 
-/// Vertices of a path from which on it may end by chance.
-const ROULETTE_FROM: u32 = 3;
+/// Bounce from which on a path may end by chance.
+const ROULETTE_FROM: u32 = 2;
+/// Paths go on for sure that promise this share of what the others bring. Ending them sooner would save less time than
+/// its scatter costs: measured on rooms, the product of time and variance is least about here.
+const ENOUGH: f32 = 0.5;
 /// The surest a path can be to go on: in a room of white walls it must end some time.
 const SUREST: f32 = 0.98;
 
@@ -81,27 +84,48 @@ struct Leg {
     /// For what the light was last sampled, and the density of the direction then chosen; none if only scattering could
     /// find what lies ahead.
     rival: Option<(Receiver, f32)>,
-    /// Uniform in `[0, 1)`: decides whether the path ends by chance at the next vertex.
-    fate: f32,
+    /// Uniform in the unit square: chooses the light for the next vertex.
+    lighting: (f64, f32),
 }
 
-/// Makes one estimate of the radiance that arrives along a ray (of unit direction) after `most` scatterings at most.
-pub fn trace<O: Observer>(world: &World, ray: Ray, most: u32, sampler: &mut Sampler, observer: &mut O) {
-    walk(world, Leg { ray, from: NONE, throughput: Vec3::ONE, rival: None, fate: 0.0 }, 1.0, most, sampler, observer);
+/// What decides how long paths are.
+#[derive(Clone, Copy)]
+pub struct Length {
+    /// They scatter so often at most.
+    pub most: u32,
+    /// What light of middling brightness means to the sum of all paths, relative to it. Without it the colour of the first
+    /// surface is what counts.
+    pub worth: Option<Vec3>,
+}
+
+/// Makes one estimate of the radiance that arrives along a ray (of unit direction). A point of the unit square chooses the
+/// first light.
+pub fn trace<O: Observer>(
+    world: &World,
+    ray: Ray,
+    lighting: (f64, f32),
+    length: Length,
+    sampler: &mut Sampler,
+    observer: &mut O,
+) {
+    walk(world, Leg { ray, from: NONE, throughput: Vec3::ONE, rival: None, lighting }, length, sampler, observer);
 }
 
 /// Makes one estimate of the irradiance at a point.
 pub fn gather<O: Observer>(world: &World, vertex: &Vertex, front: bool, sampler: &mut Sampler, observer: &mut O) {
     let normal = if front { vertex.normal } else { -vertex.normal };
     let receiver = Bsdf::receiver(normal);
-    if let Some(leg) = scatter(world, vertex, &receiver, Vec3::ONE, None, sampler, observer) {
-        let scale = leg.throughput.max_element();
-        walk(world, leg, scale, MOST_SCATTERINGS, sampler, observer);
+    let block = sampler.next();
+    let lighting = (block.fine(0), block.get(1));
+    if let Some(leg) = scatter(world, vertex, &receiver, Vec3::ONE, None, lighting, sampler, observer) {
+        let length = Length { most: MOST_SCATTERINGS, worth: Some(reciprocal(leg.throughput)) };
+        walk(world, leg, length, sampler, observer);
     }
 }
 
-/// Follows a path to its end. `scale` is what counts as full throughput.
-fn walk<O: Observer>(world: &World, mut leg: Leg, scale: f32, most: u32, sampler: &mut Sampler, observer: &mut O) {
+/// Follows a path to its end.
+fn walk<O: Observer>(world: &World, mut leg: Leg, length: Length, sampler: &mut Sampler, observer: &mut O) {
+    let Length { most, mut worth } = length;
     for bounce in 0.. {
         let Some(hit) = world.closest(&leg.ray, leg.from, || sampler.ray_seed()) else {
             return add_environment(world, &leg, observer);
@@ -111,11 +135,16 @@ fn walk<O: Observer>(world: &World, mut leg: Leg, scale: f32, most: u32, sampler
         if bounce == most {
             return;
         }
-        // End by chance what can no longer add much.
+        // End by chance what can no longer add much (Vorba and Křivánek 2016, "Adjoint-driven Russian roulette and
+        // splitting in light transport simulation", with a single value for the light that may still be found).
         let mut throughput = leg.throughput;
-        if bounce + 1 >= ROULETTE_FROM {
-            let survival = (throughput.max_element() / scale).min(SUREST);
-            if !(leg.fate < survival) {
+        if bounce >= ROULETTE_FROM
+            && let Some(worth) = worth
+        {
+            // Of little promise, more go on than it says: where bright light is rare, it says too little.
+            let promise = (throughput * worth).max_element();
+            let survival = (promise / ENOUGH).max(promise.sqrt()).min(SUREST);
+            if !(sampler.chance() < survival) {
                 return;
             }
             throughput /= survival;
@@ -132,8 +161,11 @@ fn walk<O: Observer>(world: &World, mut leg: Leg, scale: f32, most: u32, sampler
                 distance: hit.t,
             });
         }
-        let Some(next) = scatter(world, &vertex, &bsdf, throughput, leg.rival, sampler, observer) else { return };
+        let Some(next) = scatter(world, &vertex, &bsdf, throughput, leg.rival, leg.lighting, sampler, observer) else {
+            return;
+        };
         leg = next;
+        worth.get_or_insert_with(|| reciprocal(leg.throughput));
     }
 }
 
@@ -144,18 +176,18 @@ fn scatter<O: Observer>(
     bsdf: &Bsdf,
     throughput: Vec3,
     rival: Option<(Receiver, f32)>,
+    lighting: (f64, f32),
     sampler: &mut Sampler,
     observer: &mut O,
 ) -> Option<Leg> {
-    let lighting = sampler.next();
     let receiver = Receiver { position: vertex.position, normal: bsdf.normal() };
     if bsdf.spreads()
-        && let Some(light) = world.lights().sample(world.scene(), &receiver, &lighting)
+        && let Some(light) = world.lights().sample(world.scene(), &receiver, lighting)
     {
         add_light(world, vertex, bsdf, throughput, &light, observer);
     }
-    let choice = sampler.next();
-    let scattered = bsdf.sample(choice.get(2), Vec2::new(choice.get(0), choice.get(1)))?;
+    let block = sampler.next();
+    let scattered = bsdf.sample(Vec2::new(block.get(0), block.get(1)))?;
     let throughput = throughput * scattered.weight;
     if throughput == Vec3::ZERO || !throughput.is_finite() {
         return None;
@@ -166,7 +198,8 @@ fn scatter<O: Observer>(
         Kind::Mirrored => None,
         Kind::Through => rival,
     };
-    Some(Leg { ray: vertex.ray(scattered.direction), from: vertex.id, throughput, rival, fate: choice.get(3) })
+    let lighting = (block.fine(2), block.get(3));
+    Some(Leg { ray: vertex.ray(scattered.direction), from: vertex.id, throughput, rival, lighting })
 }
 
 fn add_light<O: Observer>(
@@ -234,6 +267,11 @@ fn add_environment<O: Observer>(world: &World, leg: &Leg, observer: &mut O) {
         .rival
         .map_or(1.0, |(_, density)| power_heuristic(density, world.lights().environment_density(leg.ray.direction)));
     observer.add(LightSource::Environment, leg.throughput * weight, emission, Found::Met);
+}
+
+/// Of each channel; 0 where there is nothing.
+fn reciprocal(v: Vec3) -> Vec3 {
+    Vec3::select(v.cmpgt(Vec3::ZERO), v.recip(), Vec3::ZERO)
 }
 
 /// The weight of a strategy of density `own` against another of density `other`.

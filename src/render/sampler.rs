@@ -2,6 +2,7 @@
 //!
 //! A path draws its numbers in blocks of four, which are one four-dimensional Sobol' point; successive blocks are padded,
 //! that is, the same sequence shuffled and scrambled anew. So every 2^k samples of a pixel are stratified in each block.
+//! A block goes to numbers that act together: a direction, and the light chosen where it leads.
 
 use crate::rng;
 
@@ -66,8 +67,16 @@ impl Sampler {
     }
 
     /// A number that belongs to this path and this point of it, for decisions that need no stratification.
+    #[inline]
     pub fn ray_seed(&self) -> u64 {
-        rng::hash(self.seed, &[self.block, u64::from(self.index), 0x7261])
+        rng::mix(self.seed ^ (self.block << 32 | u64::from(self.index)))
+    }
+
+    /// Uniform in `[0, 1)` and, unlike the numbers of blocks, independent of those of all other paths: for decisions that
+    /// heed what other paths have brought, which would be biased if those paths told anything of the number.
+    #[inline]
+    pub fn chance(&self) -> f32 {
+        (self.ray_seed() >> 40) as f32 * (1.0 / (1u32 << 24) as f32)
     }
 }
 

@@ -77,7 +77,7 @@ fn directions_come_with_the_density_that_is_stated() {
             let mut observed = vec![0.0; ROWS * COLUMNS + 1];
             let mut rng = Rng::new(11, &[number as u64, (view * 100.0) as u64]);
             for _ in 0..n {
-                let sample = bsdf.sample(rng.next_f32(), Vec2::new(rng.next_f32(), rng.next_f32()));
+                let sample = bsdf.sample(Vec2::new(rng.next_f32(), rng.next_f32()));
                 let bin = sample.map_or(ROWS * COLUMNS, |s| {
                     let (lobes, density) = bsdf.eval(s.direction);
                     let Kind::Spread(stated) = s.kind else { panic!("{:?}", s.kind) };
@@ -117,7 +117,7 @@ fn albedo(substance: &Substance, view: f32, table: &AlbedoTable) -> (f64, f64) {
     let mut rng = Rng::new(13, &[]);
     let (mut sum, mut squares) = (0.0, 0.0);
     for _ in 0..n {
-        let sample = bsdf.sample(rng.next_f32(), Vec2::new(rng.next_f32(), rng.next_f32()));
+        let sample = bsdf.sample(Vec2::new(rng.next_f32(), rng.next_f32()));
         let weight = sample.map_or(0.0, |s| f64::from(s.weight.x));
         (sum, squares) = (sum + weight, squares + weight * weight);
     }

@@ -130,15 +130,15 @@ impl Emitters {
         Ok(())
     }
 
-    /// A point of a piece in proportion to its emission: the emitter and the barycentric coordinates. `u` chooses the
-    /// texel, `v` the point.
-    pub fn sample(&self, piece: usize, u: f64, v: Vec2) -> Option<(usize, Vec2)> {
+    /// A point of a piece in proportion to its emission: the emitter and the barycentric coordinates.
+    #[inline]
+    pub fn sample(&self, piece: usize, (u, v): (f64, f32)) -> Option<(usize, Vec2)> {
         let Some(tile) = piece.checked_sub(self.even.len()).map(|t| &self.tiles[t]) else {
-            return Some((self.even[piece].emitter as usize, uniform_in_triangle(v)));
+            return Some((self.even[piece].emitter as usize, uniform_in_triangle(Vec2::new(u as f32, v))));
         };
         let emitter = tile.emitter as usize;
         let Division::Tiled { tiling, .. } = self.divisions[emitter] else { return None };
-        Some((emitter, self.tilings[tiling as usize].sample(tile, u, v)?))
+        Some((emitter, self.tilings[tiling as usize].sample(tile, (u, v))?))
     }
 
     /// The piece that a point of an emitter belongs to, by its texture coordinates; none where it is dark.

@@ -93,12 +93,12 @@ impl Polygon {
         (1..self.len.saturating_sub(1)).map(|i| self.fan(i)).sum::<f64>() / 2.0
     }
 
-    /// A point uniform by area: `u` chooses the triangle of the fan, `v` the point in it.
-    pub fn sample(&self, u: f64, v: Vec2) -> Option<DVec2> {
+    /// A point uniform by area: `u` chooses the triangle of the fan, and what is left of it, with `v`, the point.
+    pub fn sample(&self, (u, v): (f64, f32)) -> Option<DVec2> {
         let mut target = u * 2.0 * self.area();
         let last = self.len.checked_sub(2).filter(|&l| l > 0)?;
         let mut chosen = last;
-        for i in 1..=last {
+        for i in 1..last {
             let area = self.fan(i);
             if target < area {
                 chosen = i;
@@ -106,7 +106,8 @@ impl Polygon {
             }
             target -= area;
         }
-        let b = uniform_in_triangle(v).as_dvec2();
+        let rest = (target / self.fan(chosen)).clamp(0.0, 1.0) as f32;
+        let b = uniform_in_triangle(Vec2::new(rest, v)).as_dvec2();
         let [p, q, r] = [self.corners[0], self.corners[chosen], self.corners[chosen + 1]];
         Some(p + (q - p) * b.x + (r - p) * b.y)
     }

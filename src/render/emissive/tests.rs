@@ -68,9 +68,8 @@ fn points_are_as_dense_as_the_light_they_emit() {
             let pieces = pieces(&emitters);
             let mut disagreed = 0;
             for i in 0..5000 {
-                let v = Vec2::new(rng.next_f32(), rng.next_f32());
                 let piece = i % pieces.len();
-                let (emitter, b) = emitters.sample(piece, rng.next_f64(), v).unwrap();
+                let (emitter, b) = emitters.sample(piece, (rng.next_f64(), rng.next_f32())).unwrap();
                 assert!(b.min_element() >= 0.0 && b.element_sum() < 1.0 + 1e-5);
                 let (emission, uv) = emitters.emitters[emitter].emission(&scene, b);
                 // Emission over density is the intensity of the piece: sampling is perfect.
@@ -111,8 +110,7 @@ fn chosen_points_fall_as_often_as_the_density_says() {
         let table = crate::render::distribution::Distribution::new(weights.into_iter()).unwrap();
         for _ in 0..samples {
             let (choice, rest) = table.sample(rng.next_f64());
-            let v = Vec2::new(rng.next_f32(), rng.next_f32());
-            let (emitter, b) = emitters.sample(own[choice], rest, v).unwrap();
+            let (emitter, b) = emitters.sample(own[choice], (rest, rng.next_f32())).unwrap();
             assert_eq!(emitter, 0);
             counts[bin(b)] += 1.0;
         }

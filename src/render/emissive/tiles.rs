@@ -139,23 +139,25 @@ impl Tiling {
         }
     }
 
-    /// A point of a tile in proportion to its emission, in barycentric coordinates: `u` chooses the texel, `v` the point.
-    pub fn sample(&self, tile: &Tile, u: f64, v: Vec2) -> Option<Vec2> {
-        let (shares, target) = (&tile.shares, u as f32);
+    /// A point of a tile in proportion to its emission, in barycentric coordinates: `u` chooses the texel, and what is left
+    /// of it, with `v`, the point.
+    pub fn sample(&self, tile: &Tile, (u, v): (f64, f32)) -> Option<Vec2> {
+        let (shares, target) = (&tile.shares, (u as f32).min(1.0 - f32::EPSILON));
         // All at once rather than by halves: the table is in the cache, and nothing is to be predicted.
         let before = shares.iter().map(|&share| u32::from(share <= target)).sum::<u32>() as usize;
         let index = before.min(SIDE * SIDE - 1);
         let texel = self.first_texel(tile.column as usize, tile.row as usize)
             + DVec2::new((index % SIDE) as f64, (index / SIDE) as f64);
+        let low = if index == 0 { 0.0 } else { f64::from(shares[index - 1]) };
+        let within = ((u - low) / (f64::from(shares[index]) - low)).clamp(0.0, 1.0);
+        let inside = texel + DVec2::new(within, f64::from(v));
         let point = if tile.whole {
-            texel + v.as_dvec2()
+            inside
         } else {
-            let low = if index == 0 { 0.0 } else { shares[index - 1] };
-            let within = ((target - low) / (shares[index] - low)).clamp(0.0, 1.0);
             let texel = rectangle(texel, 1.0);
             match texel.overlap(&self.triangle) {
-                Overlap::Whole => texel.low + v.as_dvec2(),
-                _ => Polygon::clipped(&self.triangle, &texel).sample(f64::from(within), v)?,
+                Overlap::Whole => inside,
+                _ => Polygon::clipped(&self.triangle, &texel).sample((within, v))?,
             }
         };
         Some(self.barycentric(point))

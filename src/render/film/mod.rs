@@ -1,7 +1,7 @@
 //! The image under way: which paths each pixel has had, their means, and how sure they are.
 //!
-//! `pixel` adds up the paths of one pixel → `plan` decides between passes where the next ones go → `interval` says how
-//! far off the image may be. A pass only ever extends the paths of each pixel up to a count. So one that is cut short
+//! `pixel` adds up the paths of one pixel → `plan` decides between passes where the next ones go, `worth` how long they are
+//! → `interval` says how far off the image may be. A pass only ever extends the paths of each pixel up to a count. So one that is cut short
 //! leaves a valid image with fewer paths here and there; and as the counts follow from the pixels of the pass before,
 //! they are the same for any number of threads.
 
@@ -10,13 +10,14 @@ mod grid;
 mod interval;
 mod pixel;
 mod plan;
+mod worth;
 
 pub use clock::Clock;
 pub use interval::pooled;
 pub use plan::{Pass, Plan};
 
 use super::layers::{Layers, Recorder};
-use super::path::{self, Contributions, MOST_SCATTERINGS};
+use super::path::{self, Contributions, Length, MOST_SCATTERINGS};
 use super::sampler::Sampler;
 use super::world::World;
 use super::{Film, LightSource, Params, PathSink};
@@ -32,6 +33,7 @@ use pixel::Pixel;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
+use worth::Surroundings;
 
 /// Paths of a pixel between two looks at the clock.
 const SLICE: u32 = 64;
@@ -63,6 +65,7 @@ impl<'a> Canvas<'a> {
     pub fn extend(&mut self, pass: &Pass, deadline: Option<Instant>, job: Job) -> Result<()> {
         let Self { world, eye, seed, grid, pixels, layers, discarded } = self;
         let layers = layers.as_ref();
+        let level = worth::level(pixels, job)?;
         let is_over = || job.is_cancelled() || deadline.is_some_and(|d| Instant::now() >= d);
         exec::for_rows(pixels, AREA, job, |tile, pixels| {
             // Coarse passes leave most tiles alone.
@@ -70,6 +73,7 @@ impl<'a> Canvas<'a> {
                 return;
             }
             let mut recorder = layers.map(|l| l.recorder(world));
+            let surroundings = level.map(|level| Surroundings::of(pixels, level));
             for (i, pixel) in pixels.iter_mut().enumerate() {
                 let Some((x, y)) = grid.place(tile, i) else { continue };
                 let wanted = pass.count(tile, x, y);
@@ -78,9 +82,11 @@ impl<'a> Canvas<'a> {
                         return;
                     }
                     let seed = rng::hash(*seed, &[x as u64, y as u64]);
+                    let worth = surroundings.as_ref().map(|s| s.worth(pixel));
+                    let length = Length { most: eye.most, worth };
                     pixel.extend(wanted.min(pixel.count() + SLICE), |replication, indices| {
                         let seed = rng::mix(seed ^ u64::from(replication));
-                        paths(world, eye, [x, y], seed, indices, recorder.as_mut(), discarded)
+                        paths(world, eye, [x, y], length, (seed, indices), recorder.as_mut(), discarded)
                     });
                     if let (Some(layers), Some(recorder)) = (layers, &mut recorder) {
                         layers.keep(recorder, tile, i);
@@ -164,14 +170,14 @@ fn paths(
     world: &World,
     eye: &Eye,
     at: [usize; 2],
-    seed: u64,
-    indices: Range<u32>,
+    length: Length,
+    (seed, indices): (u64, Range<u32>),
     mut recorder: Option<&mut Recorder>,
     discarded: &AtomicU64,
 ) -> DVec3 {
     let mut sum = DVec3::ZERO;
     for index in indices {
-        let radiance = radiance(world, eye, at, Sampler::new(seed, index), recorder.as_deref_mut());
+        let radiance = radiance(world, eye, at, length, Sampler::new(seed, index), recorder.as_deref_mut());
         if radiance.is_finite() {
             sum += radiance.as_dvec3();
         } else {
@@ -181,20 +187,29 @@ fn paths(
     sum
 }
 
-/// One sample of a pixel's radiance; the first block of numbers places it in the pixel (box filter).
-fn radiance(world: &World, eye: &Eye, at: [usize; 2], mut sampler: Sampler, recorder: Option<&mut Recorder>) -> Vec3 {
+/// One sample of a pixel's radiance; the first block of numbers places it in the pixel (box filter) and chooses the light
+/// for what is seen there.
+fn radiance(
+    world: &World,
+    eye: &Eye,
+    at: [usize; 2],
+    length: Length,
+    mut sampler: Sampler,
+    recorder: Option<&mut Recorder>,
+) -> Vec3 {
     let place = sampler.next();
+    let lighting = (place.fine(2), place.get(3));
     let direction = eye.direction(at[0] as f64 + place.fine(0), at[1] as f64 + place.fine(1));
     let ray = world.ray(eye.position, direction);
     match recorder {
         None => {
             let mut sum = Sum(Vec3::ZERO);
-            path::trace(world, ray, eye.most, &mut sampler, &mut Contributions(&mut sum));
+            path::trace(world, ray, lighting, length, &mut sampler, &mut Contributions(&mut sum));
             sum.0
         }
         Some(recorder) => {
             recorder.start();
-            path::trace(world, ray, eye.most, &mut sampler, recorder);
+            path::trace(world, ray, lighting, length, &mut sampler, recorder);
             recorder.finish()
         }
     }

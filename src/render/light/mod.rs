@@ -14,7 +14,6 @@ use super::LightSource;
 use super::distribution::Distribution;
 use super::emissive::{Emitters, mean_channel};
 use super::environment::{self, EnvironmentSampler};
-use super::sampler::Block;
 use crate::error::Result;
 use crate::scene::{PunctualLight, Scene};
 use glam::{DVec3, Vec2, Vec3};
@@ -100,19 +99,17 @@ impl Lights {
         })
     }
 
-    /// Chooses a light for a point: the first dimension of `block` chooses which, the next two where on it.
-    pub fn sample(&self, scene: &Scene, receiver: &Receiver, block: &Block) -> Option<LightSample> {
+    /// Chooses a light for a point by a point of the unit square: `u` chooses which, and what is left of it, with `v`,
+    /// where on it.
+    #[inline]
+    pub fn sample(&self, scene: &Scene, receiver: &Receiver, (u, v): (f64, f32)) -> Option<LightSample> {
         let [near, directional, environment] = self.groups;
-        let u = block.fine(0);
         let within = |start: f64, share: f64| ((u - start) / share).clamp(0.0, 1.0 - f64::EPSILON);
         if u < near {
             let (light, probability, rest) = self.tree.sample(receiver, within(0.0, near))?;
             let probability = probability * near as f32;
             match light.checked_sub(self.pieces) {
-                None => {
-                    let v = Vec2::new(block.get(1), block.get(2));
-                    self.sample_surface(scene, receiver, light, probability, rest, v)
-                }
+                None => self.sample_surface(scene, receiver, light, probability, (rest, v)),
                 Some(i) => self.sample_punctual(receiver, self.near[i], probability),
             }
         } else if u < near + directional {
@@ -120,7 +117,7 @@ impl Lights {
             let probability = directional * self.directional.probability(index);
             self.sample_punctual(receiver, index as u32, probability as f32)
         } else if environment > 0.0 {
-            let (direction, density) = self.environment.as_ref()?.sample(block.fine(1), block.get(2));
+            let (direction, density) = self.environment.as_ref()?.sample(within(near + directional, environment), v);
             let density = density * environment as f32;
             let emission = environment::radiance(scene.environment.as_ref()?, direction);
             Some(LightSample {
@@ -142,10 +139,9 @@ impl Lights {
         receiver: &Receiver,
         piece: usize,
         probability: f32,
-        u: f64,
-        v: Vec2,
+        at: (f64, f32),
     ) -> Option<LightSample> {
-        let (index, barycentric) = self.emitters.sample(piece, u, v)?;
+        let (index, barycentric) = self.emitters.sample(piece, at)?;
         let emitter = &self.emitters.emitters[index];
         let offset = emitter.point(barycentric) - receiver.position;
         let distance = offset.length();

@@ -8,7 +8,6 @@
 use super::bounds::{Bounds, BoundsLanes, LANES, Receiver};
 use crate::error::Result;
 use crate::image::try_vec;
-use crate::render::distribution::Distribution;
 use glam::Vec3;
 use rayon::prelude::*;
 
@@ -24,9 +23,9 @@ const NONE: u32 = u32::MAX;
 const LIGHT: u32 = 1 << 31;
 
 pub struct LightTree {
-    /// Probabilities that are the same for every receiver, in place of nodes: one light, or several within one box, as the
-    /// two triangles of a rectangle.
-    fixed: Option<Distribution>,
+    /// Probabilities that are the same for every receiver, in place of nodes: of one light, or of several within one box,
+    /// as the two triangles of a rectangle. Positive; there are at most as many as a node has children.
+    fixed: Vec<f64>,
     nodes: Vec<Node>,
     /// For every light the place that holds it: eight times its node plus its lane.
     places: Vec<u32>,
@@ -59,9 +58,10 @@ enum Branch {
 impl LightTree {
     /// Over fewer than 2^31 lights, each of some intensity.
     pub fn build(lights: &[Bounds]) -> Result<Self> {
-        let mut tree = Self { fixed: None, nodes: Vec::new(), places: Vec::new(), nearest: f32::MIN_POSITIVE };
+        let mut tree = Self { fixed: Vec::new(), nodes: Vec::new(), places: Vec::new(), nearest: f32::MIN_POSITIVE };
         if lights.len() <= LANES && lights.windows(2).all(|pair| pair[0].differs_only_in_intensity(&pair[1])) {
-            tree.fixed = Some(Distribution::new(lights.iter().map(|b| f64::from(b.intensity)))?);
+            let sum: f64 = lights.iter().map(|b| f64::from(b.intensity)).sum();
+            tree.fixed = lights.iter().map(|b| f64::from(b.intensity) / sum).collect();
             return Ok(tree);
         }
         let mut items = Vec::new();
@@ -96,12 +96,15 @@ impl LightTree {
     }
 
     /// A light by its importance, the probability of the choice, and where within its share `u` fell, in `[0, 1)`.
+    #[inline]
     pub fn sample(&self, receiver: &Receiver, u: f64) -> Option<(usize, f32, f64)> {
-        if let Some(fixed) = &self.fixed {
-            let (light, rest) = (fixed.len() > 0).then(|| fixed.sample(u))?;
-            return Some((light, fixed.probability(light) as f32, rest));
-        }
         let (mut probability, mut u) = (1.0, u);
+        for (light, &share) in self.fixed.iter().enumerate() {
+            if u < share || light + 1 == self.fixed.len() {
+                return Some((light, share as f32, (u / share).min(1.0 - f64::EPSILON)));
+            }
+            u -= share;
+        }
         let mut node = self.nodes.first()?;
         loop {
             let importance = node.bounds.importance(receiver, self.nearest);
@@ -131,8 +134,8 @@ impl LightTree {
 
     /// The probability with which [`LightTree::sample`] chooses a light.
     pub fn probability(&self, receiver: &Receiver, light: usize) -> f32 {
-        if let Some(fixed) = &self.fixed {
-            return fixed.probability(light) as f32;
+        if let Some(&share) = self.fixed.get(light) {
+            return share as f32;
         }
         let mut probability = 1.0;
         let mut place = self.places[light];

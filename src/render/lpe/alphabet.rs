@@ -75,10 +75,12 @@ impl Alphabet {
         Ok(Self { scatters, lights, first_scatter, mesh_light: class_of_mesh, punctual, environment })
     }
 
+    #[inline]
     pub fn scatter(&self, mesh: u32, scatter: Scatter) -> usize {
         self.first_scatter[mesh as usize] as usize + scatter as usize
     }
 
+    #[inline]
     pub fn light(&self, source: LightSource) -> usize {
         (match source {
             LightSource::Surface { mesh, .. } => self.mesh_light[mesh as usize],

@@ -29,7 +29,7 @@ pub struct Table {
     next: Vec<u16>,
     /// State by state, which of `lists` holds when a path ends at each light.
     ends: Vec<u16>,
-    /// Expressions that accept; the first list is empty.
+    /// Expressions that accept the same paths; the first list is empty.
     lists: Vec<Vec<u16>>,
     /// States that no scattering leaves.
     settled: Vec<bool>,
@@ -84,10 +84,15 @@ impl Table {
         self.alphabet.light(source)
     }
 
-    /// The expressions that accept a path that ends at such a light.
+    /// Which of the lists names the expressions that accept a path that ends at such a light. That of number 0 is empty.
     #[inline]
-    pub fn accepting(&self, state: u16, light: usize) -> &[u16] {
-        &self.lists[usize::from(self.ends[usize::from(state) * self.alphabet.lights.len() + light])]
+    pub fn accepting(&self, state: u16, light: usize) -> u16 {
+        self.ends[usize::from(state) * self.alphabet.lights.len() + light]
+    }
+
+    /// The lists of expressions that accept the same paths.
+    pub fn lists(&self) -> &[Vec<u16>] {
+        &self.lists
     }
 
     /// Whether no scattering can lead on from a state.

@@ -36,7 +36,7 @@ fn accepted(table: &Table, path: &str) -> Vec<u16> {
         let mesh = |default: u32| MESHES.iter().position(|m| m.0 == object).map_or(default, |i| i as u32);
         let lamp = |mesh| LightSource::Surface { mesh, triangle: 0, uv: Vec2::ZERO };
         let go = |mesh, scatter| table.next(state, table.event(mesh, scatter));
-        let end = |source| table.accepting(state, table.light(source)).to_vec();
+        let end = |source| table.lists()[usize::from(table.accepting(state, table.light(source)))].clone();
         state = match letter {
             "D" => go(mesh(0), Scatter::Diffuse),
             "G" => go(mesh(0), Scatter::Glossy),

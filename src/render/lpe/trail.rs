@@ -24,16 +24,20 @@ pub struct Trail<'a> {
     ends: Vec<(u16, Vec3)>,
     /// What stands between a vertex and the light chosen for it.
     panes: Vec<Pane>,
+    /// What the path has brought so far, and the list of the expressions that it is for.
+    brought: Vec<(u16, Vec3)>,
 }
 
 impl<'a> Trail<'a> {
     pub fn new(table: &'a Table) -> Self {
-        let [parts, before, ends] = [Vec::new(), Vec::new(), Vec::new()];
-        Self { table, parts, settled: true, before, ends, panes: Vec::new() }
+        let [parts, before, ends, brought] = [const { Vec::new() }; 4];
+        Self { table, parts, settled: true, before, ends, panes: Vec::new(), brought }
     }
 
     /// A new path leaves the camera.
+    #[inline]
     pub fn start(&mut self) {
+        self.brought.clear();
         self.parts.clear();
         add(&mut self.parts, self.table.start(), Vec3::ONE);
         self.settled = self.table.is_settled(self.table.start());
@@ -52,50 +56,100 @@ impl<'a> Trail<'a> {
         }
     }
 
+    #[inline]
     fn step(&mut self, mesh: u32, kind: Kind, lobes: Lobes) {
         let Self { table, parts, before, .. } = self;
+        let scatter = match kind {
+            Kind::Spread(_) => only_layer(lobes),
+            Kind::Mirrored => Some(Scatter::Mirror),
+            Kind::Through => Some(Scatter::Pane),
+        };
+        // One part that goes one way is the common case.
+        if let (Some(scatter), [(state, _)]) = (scatter, parts.as_mut_slice()) {
+            *state = table.next(*state, table.event(mesh, scatter));
+            self.settled = table.is_settled(*state);
+            if *state == DEAD {
+                parts.clear();
+            }
+            return;
+        }
         std::mem::swap(parts, before);
-        match kind {
-            Kind::Spread(_) => spread(table, mesh, lobes, before, parts),
-            Kind::Mirrored => all_go(table, mesh, Scatter::Mirror, before, parts),
-            Kind::Through => all_go(table, mesh, Scatter::Pane, before, parts),
+        match scatter {
+            Some(scatter) => all_go(table, mesh, scatter, before, parts),
+            None => spread(table, mesh, lobes, before, parts),
         }
         self.settled = self.parts.iter().all(|&(state, _)| self.table.is_settled(state));
     }
 
-    /// The path, or a connection of it, has come to a light, and brings a contribution: each expression gets its share.
+    /// The path, or a connection of it, has come to a light, and brings a contribution: each part of it is for the
+    /// expressions of a list.
     #[inline]
-    pub fn add(&mut self, world: &World, contribution: Vec3, source: LightSource, found: Found, sums: &mut [Vec3]) {
-        let table = self.table;
-        let parts = match found {
-            Found::Chosen { mesh, lobes } if !self.settled => self.connect(world, mesh, lobes),
-            _ => &self.parts,
-        };
+    pub fn add(&mut self, world: &World, contribution: Vec3, source: LightSource, found: Found) {
+        let Self { table, parts, settled, before, ends, panes, brought } = self;
         let light = table.light(source);
-        for &(state, share) in parts {
-            for &expression in table.accepting(state, light) {
-                sums[usize::from(expression)] += share * contribution;
-            }
+        let mut bring = |state: u16, share: Vec3| match table.accepting(state, light) {
+            0 => {}
+            list => match brought.last_mut() {
+                Some(last) if last.0 == list => last.1 += share * contribution,
+                _ => brought.push((list, share * contribution)),
+            },
+        };
+        let Found::Chosen { mesh, lobes } = found else {
+            return parts.iter().for_each(|&(state, share)| bring(state, share));
+        };
+        if *settled {
+            return parts.iter().for_each(|&(state, share)| bring(state, share));
         }
+        if let (Some(scatter), [(state, share)], true) = (only_layer(lobes), parts.as_slice(), panes.is_empty()) {
+            return bring(table.next(*state, table.event(mesh, scatter)), *share);
+        }
+        connect(table, world, mesh, lobes, parts, panes, ends, before);
+        ends.iter().for_each(|&(state, share)| bring(state, share));
     }
 
-    /// The parts behind a vertex and the panes listed.
-    fn connect(&mut self, world: &World, mesh: u32, lobes: Lobes) -> &[(u16, Vec3)] {
-        let Self { table, parts, before, ends, panes, .. } = self;
-        spread(table, mesh, lobes, parts, ends);
-        // In the order in which light from the vertex would meet them.
-        panes.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.triangle.cmp(&b.triangle)));
-        for pane in panes.iter() {
-            let (mesh, _) = world.locate(pane.triangle);
-            let through = share_of(pane.through, Vec3::splat(pane.beside) + pane.through);
-            let event = table.event(mesh, Scatter::Pane);
-            std::mem::swap(ends, before);
-            ends.clear();
-            for &(state, share) in before.iter() {
-                go_two_ways(ends, table.next(state, event), state, share, through);
-            }
+    /// What the path has brought, and for which list of expressions.
+    #[inline]
+    pub fn brought(&self) -> &[(u16, Vec3)] {
+        &self.brought
+    }
+}
+
+/// The parts behind a vertex and the panes between it and a light.
+#[allow(clippy::too_many_arguments)]
+fn connect(
+    table: &Table,
+    world: &World,
+    mesh: u32,
+    lobes: Lobes,
+    parts: &[(u16, Vec3)],
+    panes: &mut [Pane],
+    ends: &mut Vec<(u16, Vec3)>,
+    before: &mut Vec<(u16, Vec3)>,
+) {
+    spread(table, mesh, lobes, parts, ends);
+    // In the order in which light from the vertex would meet them.
+    panes.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.triangle.cmp(&b.triangle)));
+    for pane in panes.iter() {
+        let (mesh, _) = world.locate(pane.triangle);
+        let through = share_of(pane.through, Vec3::splat(pane.beside) + pane.through);
+        let event = table.event(mesh, Scatter::Pane);
+        std::mem::swap(ends, before);
+        ends.clear();
+        for &(state, share) in before.iter() {
+            go_two_ways(ends, table.next(state, event), state, share, through);
         }
-        ends
+    }
+}
+
+/// The layer that sends all of it on, if one does.
+#[inline]
+fn only_layer(lobes: Lobes) -> Option<Scatter> {
+    if lobes.glossy == Vec3::ZERO {
+        Some(Scatter::Diffuse)
+    } else if lobes.diffuse == Vec3::ZERO {
+        Some(Scatter::Glossy)
+    } else {
+        None
     }
 }
 
@@ -110,11 +164,8 @@ fn all_go(table: &Table, mesh: u32, scatter: Scatter, from: &[(u16, Vec3)], to: 
 
 /// All parts go on by the layers of a surface.
 fn spread(table: &Table, mesh: u32, lobes: Lobes, from: &[(u16, Vec3)], to: &mut Vec<(u16, Vec3)>) {
-    if lobes.glossy == Vec3::ZERO {
-        return all_go(table, mesh, Scatter::Diffuse, from, to);
-    }
-    if lobes.diffuse == Vec3::ZERO {
-        return all_go(table, mesh, Scatter::Glossy, from, to);
+    if let Some(scatter) = only_layer(lobes) {
+        return all_go(table, mesh, scatter, from, to);
     }
     let events = [Scatter::Diffuse, Scatter::Glossy].map(|scatter| table.event(mesh, scatter));
     let diffuse = share_of(lobes.diffuse, lobes.sum());

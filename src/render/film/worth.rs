@@ -1,0 +1,102 @@
+//! What light is worth to a pixel: errors are seen relative to what it shows.
+//!
+//! The same light means more to a pixel in the shade than to one under the lamp, and more to a black surface's than to a
+//! white one's. Paths are the longer for it. It is drawn from the paths that are there already; on these the chances of
+//! those to come may depend, and no estimate is biased ([`super::super::sampler::Sampler::chance`]).
+
+use super::grid::AREA;
+use super::pixel::Pixel;
+use crate::error::Result;
+use crate::exec;
+use crate::job::Job;
+use glam::{DVec3, Vec3};
+
+/// What is known of the surroundings counts as much as so many paths.
+const PRIOR: f64 = 8.0;
+/// Light is worth at most so many times more or less than in a middling pixel.
+const MOST: f64 = 50.0;
+
+/// The brightness of the middling tile, per channel; none without any paths.
+pub fn level(pixels: &[Pixel], job: Job) -> Result<Option<DVec3>> {
+    let tile = |i: usize| &pixels[i * AREA..(i + 1) * AREA];
+    let means = exec::map(pixels.len() / AREA, job, |i| mean(tile(i)).map(|(mean, _)| mean))?;
+    let means: Vec<DVec3> = means.into_iter().flatten().collect();
+    let median = |channel: usize| {
+        let mut values: Vec<f64> = means.iter().map(|m| m[channel]).collect();
+        let middle = values.len() / 2;
+        *values.select_nth_unstable_by(middle, f64::total_cmp).1
+    };
+    Ok((!means.is_empty()).then(|| DVec3::from_array([0, 1, 2].map(median))))
+}
+
+/// Mean of the pixels that have paths, and how many paths they have.
+fn mean(pixels: &[Pixel]) -> Option<(DVec3, f64)> {
+    let (mut sum, mut count, mut paths) = (DVec3::ZERO, 0.0, 0.0);
+    for pixel in pixels.iter().filter(|p| p.count() > 0) {
+        (sum, count, paths) = (sum + pixel.mean(), count + 1.0, paths + f64::from(pixel.count()));
+    }
+    (count > 0.0).then(|| (sum / count, paths))
+}
+
+/// The means of `paths` paths, and what was known before.
+fn blend(mean: DVec3, paths: f64, before: DVec3) -> DVec3 {
+    (mean * paths + before * PRIOR) / (paths + PRIOR)
+}
+
+/// What is around a pixel.
+pub struct Surroundings {
+    level: DVec3,
+    tile: DVec3,
+}
+
+impl Surroundings {
+    /// Of the pixels of a tile, in an image of that [`level`].
+    pub fn of(tile: &[Pixel], level: DVec3) -> Self {
+        Self { level, tile: mean(tile).map_or(level, |(mean, paths)| blend(mean, paths, level)) }
+    }
+
+    /// What light of the brightness `level` is worth to a pixel, relative to what the pixel shows, per channel; positive.
+    pub fn worth(&self, pixel: &Pixel) -> Vec3 {
+        let shown = blend(pixel.mean(), f64::from(pixel.count()), self.tile);
+        let worth = (self.level / shown).clamp(DVec3::splat(1.0 / MOST), DVec3::splat(MOST));
+        // Of a channel that is dark so far nothing is known.
+        DVec3::select(self.level.cmpgt(DVec3::ZERO), worth, DVec3::ONE).as_vec3()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::job::Monitor;
+
+    fn pixel(radiance: DVec3, count: u32) -> Pixel {
+        let mut pixel = Pixel::default();
+        pixel.extend(count, |_, indices| radiance * indices.len() as f64);
+        pixel
+    }
+
+    #[test]
+    fn light_is_worth_more_in_the_shade_and_what_it_is_where_nothing_is_known() {
+        let job = Monitor::default();
+        let unseen = vec![Pixel::default(); 3 * AREA];
+        assert!(level(&unseen, job.job()).unwrap().is_none());
+        // A lamp in view does not change what is middling.
+        let mut pixels = unseen;
+        for (tile, radiance) in [2.0, 1000.0, 0.5].into_iter().enumerate() {
+            pixels[tile * AREA..(tile + 1) * AREA].fill(pixel(DVec3::new(radiance, radiance, 0.0), 64));
+        }
+        let level = level(&pixels, job.job()).unwrap().unwrap();
+        assert_eq!(level, DVec3::new(2.0, 2.0, 0.0));
+        let worth = |tile: usize, pixel: &Pixel| {
+            Surroundings::of(&pixels[tile * AREA..(tile + 1) * AREA], level).worth(pixel)
+        };
+        assert!((worth(0, &pixels[0]) - Vec3::ONE).abs().max_element() < 1e-5);
+        assert!((worth(2, &pixels[2 * AREA]) - Vec3::new(4.0, 4.0, 1.0)).abs().max_element() < 0.05);
+        // Few paths say little: the tile speaks for a pixel that happens to be dark.
+        let dark = worth(0, &pixel(DVec3::ZERO, 1)).x;
+        assert!(dark > 1.0 && dark < 1.2, "{dark}");
+        // No pixel is so bright or so dark that light is worth nothing, or everything.
+        assert_eq!(worth(1, &pixels[AREA]).x, 1.0 / MOST as f32);
+        assert_eq!(worth(2, &pixel(DVec3::ZERO, 1 << 20)).x, MOST as f32);
+    }
+}
