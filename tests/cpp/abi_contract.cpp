@@ -1,6 +1,6 @@
 // The C boundary as a C++ program sees it, through the header and the shared library that a plug-in would use. What Rust
 // can check as well is in tests/abi_contract.rs; here are the linkage, the macros, threads of the host, and callbacks that
-// call back.
+// call back. It calls the C functions and not bindings/cpp, which would not let it pass wrong handles or release one early.
 #include "check.hpp"
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 // Bad input through the C interface: each ends with a status and a message that says what to do; nothing is lost and the
-// same objects go on working afterwards.
+// same objects go on working afterwards. It calls the C functions and not bindings/cpp, to see every status and that no
+// output is written.
 #include "check.hpp"
 
 #include <cmath>

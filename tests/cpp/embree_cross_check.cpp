@@ -36,12 +36,12 @@ std::vector<luxfer_ray> make_rays() {
 } // namespace
 
 int main() {
-    LitRoom room;
+    const LitRoom room;
     const SceneCopy copy = read_scene(room.scene);
     const EmbreeScene embree(copy);
     const std::vector<luxfer_ray> rays = make_rays();
     std::vector<luxfer_hit> hits(RAYS);
-    CHECK_OK(luxfer_scene_intersect(room.scene, rays.data(), RAYS, hits.data()));
+    room.scene.intersect(rays, hits);
 
     std::size_t same_triangle = 0, same_distance = 0, misses = 0, disagreed = 0, outside = 0;
     double worst_weight = 0;

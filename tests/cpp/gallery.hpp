@@ -1,4 +1,4 @@
-// A scene of every kind of material under every kind of light, described through the C functions.
+// A scene of every kind of material under every kind of light, described by arrays.
 //
 // Panels of 1 x 1 m lie in rows over a matt floor; those that let light through hang 40 cm above it. The camera looks down
 // on them. A lamp, a point light, a spot light and a distant light shine, and an image of a sky all around.
@@ -41,16 +41,14 @@ constexpr std::uint32_t SKY_WIDTH = 16, SKY_HEIGHT = 8, PATTERN = 4;
 constexpr float SKY_STRENGTH = 2.0f;
 
 struct Gallery {
-    luxfer_context *context = nullptr;
-    luxfer_scene *scene = nullptr;
+    luxfer::Context context = luxfer::Context::create();
+    luxfer::Scene scene = luxfer::Scene::create(context);
     // The same numbers for whoever traces the scene without the library. Rows of RGBA.
     TextureCopy colours, normals, layers, sky;
-    luxfer_light_params point, spot, distant;
+    luxfer::LightParams point, spot, distant;
     Vec lamp_corner = {-1.0, 3.5, -0.5}, lamp_u = {1.5, 0, 0}, lamp_v = {0, 0, 1}, lamp_emission = {30, 25, 20};
 
     Gallery() {
-        CHECK_OK(luxfer_context_create(nullptr, &context));
-        CHECK_OK(luxfer_scene_create(context, &scene));
         // Patterns: some of the colours' alphas are below the cutoff; normals lean by up to some 20 degrees.
         colours = make(PATTERN, PATTERN, 4, [](std::uint32_t x, std::uint32_t y, int c) {
             return c == 3 ? ((x + y) % 3 == 0 ? 0.1f : 1.0f) : 0.4f + 0.15f * float((x * 3 + y * 5 + c) % 4);
@@ -65,27 +63,22 @@ struct Gallery {
         sky = make(SKY_WIDTH, SKY_HEIGHT, 3, [](std::uint32_t x, std::uint32_t y, int c) {
             return y < SKY_HEIGHT / 2 ? 0.5f + 0.1f * float(c) + 0.2f * float(x % 5) : 0.1f;
         });
-        luxfer_image *image = upload(sky);
-        CHECK_OK(luxfer_scene_set_environment_image(scene, image, SKY_STRENGTH, SKY_STRENGTH, SKY_STRENGTH));
-        CHECK_OK(luxfer_image_release(image));
+        scene.set_environment(upload(sky), {SKY_STRENGTH, SKY_STRENGTH, SKY_STRENGTH});
         const std::uint32_t pattern = add(colours), bumps = add(normals), mixture = add(layers);
 
-        luxfer_material_params matt;
-        CHECK_OK(luxfer_material_params_init(&matt, sizeof matt));
+        luxfer::MaterialParams matt;
         matt.ior = 1;
         matt.base_color[0] = matt.base_color[1] = matt.base_color[2] = 0.5f;
-        std::uint32_t floor = 0, black = 0;
-        CHECK_OK(luxfer_scene_add_material(scene, &matt, &floor));
+        const std::uint32_t floor = scene.add_material(matt);
         matt.base_color[0] = matt.base_color[1] = matt.base_color[2] = 0;
         matt.double_sided = 0;
         store(lamp_emission, matt.emission);
-        CHECK_OK(luxfer_scene_add_material(scene, &matt, &black));
+        const std::uint32_t black = scene.add_material(matt);
         quad({-4, 0, -4}, {0, 0, 8}, {8, 0, 0}, floor);
         quad(lamp_corner, lamp_u, lamp_v, black);
         for (std::size_t i = 0; i < panels().size(); ++i) {
             const Panel &panel = panels()[i];
-            luxfer_material_params params;
-            CHECK_OK(luxfer_material_params_init(&params, sizeof params));
+            luxfer::MaterialParams params;
             params.metallic = float(panel.metallic);
             params.roughness = float(panel.roughness);
             params.transmission = float(panel.transmission);
@@ -95,11 +88,10 @@ struct Gallery {
             params.alpha_cutoff = CUTOFF;
             params.normal_scale = NORMAL_SCALE;
             store(panel.colour, params.base_color);
-            std::uint32_t material = 0;
-            CHECK_OK(luxfer_scene_add_material(scene, &params, &material));
+            const std::uint32_t material = scene.add_material(params);
             const auto use = [&](bool wanted, luxfer_texture_role role, std::uint32_t texture) {
                 if (wanted)
-                    CHECK_OK(luxfer_scene_set_material_texture(scene, material, role, texture, 0, nullptr));
+                    scene.set_material_texture(material, role, texture);
             };
             use(panel.textured, LUXFER_TEXTURE_BASE_COLOR, pattern);
             use(panel.bumpy, LUXFER_TEXTURE_NORMAL, bumps);
@@ -110,19 +102,12 @@ struct Gallery {
         light(point, LUXFER_LIGHT_POINT, {2.5, 2, 0.5}, {}, {12, 10, 8});
         light(spot, LUXFER_LIGHT_SPOT, {-2.5, 2.5, 1}, {2, -2.5, -0.6}, {30, 30, 40});
         light(distant, LUXFER_LIGHT_DIRECTIONAL, {}, {0.3, -1, -0.4}, {3, 3, 2});
-        luxfer_camera_params camera;
-        CHECK_OK(luxfer_camera_params_init(&camera, sizeof camera));
+        luxfer::CameraParams camera;
         store({0.1, 4.4, 3.6}, camera.position);
         store({0, 0, 0}, camera.target);
         camera.fov_y = 0.65f;
-        CHECK_OK(luxfer_scene_add_camera(scene, &camera, nullptr));
+        scene.add_camera(camera);
     }
-    ~Gallery() {
-        CHECK_OK(luxfer_scene_release(scene));
-        CHECK_OK(luxfer_context_release(context));
-    }
-    Gallery(const Gallery &) = delete;
-    Gallery &operator=(const Gallery &) = delete;
 
 private:
     static void store(Vec v, float *to) {
@@ -143,47 +128,25 @@ private:
         return copy;
     }
 
-    luxfer_image *upload(TextureCopy &copy) {
-        luxfer_image_view view;
-        CHECK_OK(luxfer_image_view_init(&view, sizeof view));
-        view.channels = copy.channels;
-        view.width = copy.width;
-        view.height = copy.height;
-        view.byte_size = copy.pixels.size() * sizeof(float);
-        view.data = copy.pixels.data();
-        luxfer_image *image = nullptr;
-        CHECK_OK(luxfer_image_create(context, &view, &image));
-        return image;
+    luxfer::Image upload(const TextureCopy &copy) const {
+        return luxfer::Image::create(context, {copy.pixels, copy.width, copy.height, copy.channels});
     }
 
-    std::uint32_t add(TextureCopy &copy) {
-        luxfer_image *image = upload(copy);
-        std::uint32_t index = 0;
-        CHECK_OK(luxfer_scene_add_texture(scene, image, LUXFER_WRAP_REPEAT, LUXFER_WRAP_REPEAT, &index));
-        CHECK_OK(luxfer_image_release(image));
-        return index;
-    }
+    std::uint32_t add(const TextureCopy &copy) const { return scene.add_texture(upload(copy)); }
 
-    void quad(Vec corner, Vec u, Vec v, std::uint32_t material) {
+    void quad(Vec corner, Vec u, Vec v, std::uint32_t material) const {
         float positions[12];
         const Vec corners[4] = {corner, corner + u, corner + u + v, corner + v};
         for (int i = 0; i < 4; ++i)
             store(corners[i], positions + 3 * i);
         const float uvs[8] = {0, 0, 1, 0, 1, 1, 0, 1};
         const std::uint32_t indices[6] = {0, 1, 2, 0, 2, 3};
-        luxfer_mesh_params mesh;
-        CHECK_OK(luxfer_mesh_params_init(&mesh, sizeof mesh));
-        mesh.material = material;
-        mesh.vertex_count = 4;
-        mesh.positions = positions;
+        luxfer::MeshParams mesh(positions, indices, material);
         mesh.uvs = uvs;
-        mesh.triangle_count = 2;
-        mesh.indices = indices;
-        CHECK_OK(luxfer_scene_add_mesh(scene, &mesh, nullptr));
+        scene.add_mesh(mesh);
     }
 
-    void light(luxfer_light_params &params, luxfer_light_kind kind, Vec position, Vec direction, Vec intensity) {
-        CHECK_OK(luxfer_light_params_init(&params, sizeof params));
+    void light(luxfer::LightParams &params, luxfer_light_kind kind, Vec position, Vec direction, Vec intensity) const {
         params.kind = kind;
         store(position, params.position);
         if (length(direction) > 0)
@@ -191,6 +154,6 @@ private:
         store(intensity, params.intensity);
         params.inner_angle = 0.2f;
         params.outer_angle = 0.5f;
-        CHECK_OK(luxfer_scene_add_light(scene, &params, nullptr));
+        scene.add_light(params);
     }
 };

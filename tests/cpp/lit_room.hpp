@@ -27,17 +27,12 @@ inline const Lamp *lamp_at(std::uint32_t column, std::uint32_t row) {
 }
 
 struct LitRoom {
-    luxfer_context *context = nullptr;
-    luxfer_scene *scene = nullptr;
-    luxfer_surface ceiling = {};
+    luxfer::Context context = luxfer::Context::create();
+    luxfer::Scene scene = luxfer::Scene::demo(context, LUXFER_DEMO_TARGET_ROOM);
+    luxfer_surface ceiling = scene.find_surface("Ceiling");
     std::uint32_t light_mesh = 0;
 
     LitRoom() {
-        CHECK_OK(luxfer_context_create(nullptr, &context));
-        CHECK_OK(luxfer_demo_scene(context, LUXFER_DEMO_TARGET_ROOM, &scene));
-        ceiling.struct_size = sizeof ceiling;
-        CHECK_OK(luxfer_scene_find_surface(scene, "Ceiling", &ceiling));
-
         constexpr float SCALE = 500.0f; // so that the strength matters
         std::vector<float> pixels(std::size_t(LAMP_COLUMNS) * LAMP_ROWS * 3, 0.0f);
         for (std::uint32_t row = 0; row < LAMP_ROWS; ++row)
@@ -48,21 +43,7 @@ struct LitRoom {
                     pixel[1] = float(lamp->emission.y / SCALE);
                     pixel[2] = float(lamp->emission.z / SCALE);
                 }
-        luxfer_image_view view;
-        CHECK_OK(luxfer_image_view_init(&view, sizeof view));
-        view.width = LAMP_COLUMNS;
-        view.height = LAMP_ROWS;
-        view.byte_size = pixels.size() * sizeof(float);
-        view.data = pixels.data();
-        luxfer_image *texture = nullptr;
-        CHECK_OK(luxfer_image_create(context, &view, &texture));
-        CHECK_OK(luxfer_scene_place_emission(scene, "Ceiling", texture, SCALE, SCALE, SCALE, &light_mesh, nullptr));
-        CHECK_OK(luxfer_image_release(texture));
+        const auto texture = luxfer::Image::create(context, {pixels, LAMP_COLUMNS, LAMP_ROWS});
+        light_mesh = scene.place_emission("Ceiling", texture, {SCALE, SCALE, SCALE}).mesh;
     }
-    ~LitRoom() {
-        CHECK_OK(luxfer_scene_release(scene));
-        CHECK_OK(luxfer_context_release(context));
-    }
-    LitRoom(const LitRoom &) = delete;
-    LitRoom &operator=(const LitRoom &) = delete;
 };

@@ -9,9 +9,9 @@
 
 int main(int argc, char **argv) {
     const double factor = argc > 1 ? std::atof(argv[1]) : 1.0;
-    Gallery gallery;
+    const Gallery gallery;
     const SceneCopy copy = read_scene(gallery.scene);
-    const auto [library, variances] = render_with_library(gallery.context, gallery.scene);
+    const auto [library, variances] = render_with_library(gallery.scene);
     const GalleryTracer tracer(gallery, copy, factor);
     const std::vector<Picture> harness = render_with_harness(tracer);
     for (std::size_t channel = 0; channel < 3; ++channel) {

@@ -4,10 +4,13 @@
 // of images are moved by half a pixel on both sides.
 #include "check.hpp"
 
+#include <luxfer.hpp>
+
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -31,17 +34,15 @@ Quad random_quad(std::mt19937_64 &random, double size) {
     return quad;
 }
 
-cv::Matx33d with_library(luxfer_context *context, const Quad &from, const Quad &to) {
-    double a[8], b[8];
+cv::Matx33d with_library(const luxfer::Context &context, const Quad &from, const Quad &to) {
+    std::array<double, 8> a, b;
     for (std::size_t i = 0; i < 4; ++i) {
         a[2 * i] = from[i].x;
         a[2 * i + 1] = from[i].y;
         b[2 * i] = to[i].x;
         b[2 * i + 1] = to[i].y;
     }
-    cv::Matx33d found;
-    CHECK_OK(luxfer_homography_from_corners(context, a, b, found.val));
-    return found;
+    return cv::Matx33d(luxfer::homography_from_corners(context, a, b).data());
 }
 
 // Between coordinates in units of the quads' sizes, so that all entries count alike; of unit norm, the largest entry
@@ -55,7 +56,7 @@ cv::Matx33d normalised(const cv::Matx33d &h, double from_size, double to_size) {
 
 // In those units the equations of these quads have condition numbers up to 2300, so that findHomography, which squares
 // them, errs by no more than 1e-9, and getPerspectiveTransform by far less. No quad is left out.
-void check_homographies(luxfer_context *context) {
+void check_homographies(const luxfer::Context &context) {
     constexpr double RELATIVE = 1e-9;
     std::mt19937_64 random(11);
     for (const auto &[from_size, to_size] : {std::pair{1.0, 1.0}, {1.0, 1024.0}, {1024.0, 1024.0}, {4096.0, 512.0}}) {
@@ -79,10 +80,11 @@ void check_homographies(luxfer_context *context) {
     const double square[8] = {0, 0, 1, 0, 1, 1, 0, 1}, line[8] = {0, 0, 1, 0, 2, 0, 0, 1};
     const double nowhere[8] = {0, 0, 1, 0, 1, 1, 0, std::numeric_limits<double>::quiet_NaN()};
     double h[9];
-    CHECK_STATUS(luxfer_homography_from_corners(context, line, square, h), LUXFER_DEGENERATE);
-    CHECK_STATUS(luxfer_homography_from_corners(context, square, nowhere, h), LUXFER_DEGENERATE);
-    CHECK_STATUS(luxfer_homography_from_corners(context, nullptr, square, h), LUXFER_INVALID_ARGUMENT);
-    CHECK_STATUS(luxfer_homography_from_corners(context, square, square, nullptr), LUXFER_INVALID_ARGUMENT);
+    luxfer_context *const c = context.get();
+    CHECK_STATUS(luxfer_homography_from_corners(c, line, square, h), LUXFER_DEGENERATE);
+    CHECK_STATUS(luxfer_homography_from_corners(c, square, nowhere, h), LUXFER_DEGENERATE);
+    CHECK_STATUS(luxfer_homography_from_corners(c, nullptr, square, h), LUXFER_INVALID_ARGUMENT);
+    CHECK_STATUS(luxfer_homography_from_corners(c, square, square, nullptr), LUXFER_INVALID_ARGUMENT);
 }
 
 // A smooth picture: waves of amplitude 0.25 and this length in pixels, another pair of directions for each channel.
@@ -107,24 +109,16 @@ struct Waves {
     }
 };
 
-cv::Mat warp_with_library(luxfer_context *context, const cv::Mat &source, const cv::Matx33d &to_source, cv::Size size) {
-    luxfer_image_view view;
-    CHECK_OK(luxfer_image_view_init(&view, sizeof view));
-    view.width = std::uint32_t(source.cols);
-    view.height = std::uint32_t(source.rows);
-    view.byte_size = source.total() * source.elemSize();
-    view.data = source.data;
-    luxfer_image *image = nullptr, *warped = nullptr;
-    CHECK_OK(luxfer_image_create(context, &view, &image));
-    CHECK_OK(luxfer_image_warp(image, to_source.val, std::uint32_t(size.width), std::uint32_t(size.height), &warped));
+// Its pixels in the library's eyes, and the other way round.
+luxfer::Span<float> samples(const cv::Mat &image) {
+    return {reinterpret_cast<float *>(image.data), image.total() * std::size_t(image.channels())};
+}
+
+cv::Mat warp_with_library(const luxfer::Context &context, const cv::Mat &source, const cv::Matx33d &to_source, cv::Size size) {
+    const luxfer::ConstImageView view(samples(source), std::uint32_t(source.cols), std::uint32_t(source.rows));
+    const auto width = std::uint32_t(size.width), height = std::uint32_t(size.height);
     cv::Mat out(size, CV_32FC3);
-    view.width = std::uint32_t(size.width);
-    view.height = std::uint32_t(size.height);
-    view.byte_size = out.total() * out.elemSize();
-    view.data = out.data;
-    CHECK_OK(luxfer_image_read(warped, 0, &view));
-    CHECK_OK(luxfer_image_release(warped));
-    CHECK_OK(luxfer_image_release(image));
+    luxfer::Image::create(context, view).warp(to_source.val, width, height).read({samples(out), width, height});
     return out;
 }
 
@@ -158,7 +152,7 @@ void check_difference(double minification, const Difference &found, double bound
 }
 
 // A map from an output of this size into the inside of a source, minifying by about `minification`.
-cv::Matx33d random_map(luxfer_context *context, std::mt19937_64 &random, cv::Size size, cv::Size source,
+cv::Matx33d random_map(const luxfer::Context &context, std::mt19937_64 &random, cv::Size size, cv::Size source,
                        double minification) {
     std::uniform_real_distribution<double> unit(-1.0, 1.0);
     const double w = size.width * minification, h = size.height * minification;
@@ -174,7 +168,7 @@ cv::Matx33d random_map(luxfer_context *context, std::mt19937_64 &random, cv::Siz
 // picture they may differ by a linear interpolation's error, curvature / 8 along each axis, and by what 1/64 pixel along
 // each axis makes; the cubic's own error is of fourth order. The mean is less than half of that largest difference: the
 // weight of a linear interpolation's error, a parabola, has a mean of 2/3, and a wave one of 2/pi.
-void check_magnified(luxfer_context *context) {
+void check_magnified(const luxfer::Context &context) {
     std::mt19937_64 random(12);
     const Waves waves{64};
     const cv::Mat source = waves.image(480, 360);
@@ -197,7 +191,7 @@ void check_magnified(luxfer_context *context) {
 // source pixels along each axis, here for OpenCV over the footprint itself, m² / 12, made by a linear unwarp four times as
 // fine (1/12 more for its interpolation) that is then averaged. Averages of a smooth picture differ by half the curvature
 // times the difference of the variances, along each axis.
-void check_minified(luxfer_context *context) {
+void check_minified(const luxfer::Context &context) {
     std::mt19937_64 random(13);
     const Waves waves{120};
     const cv::Mat source = waves.image(1300, 1000);
@@ -225,11 +219,9 @@ void check_minified(luxfer_context *context) {
 } // namespace
 
 int main() {
-    luxfer_context *context = nullptr;
-    CHECK_OK(luxfer_context_create(nullptr, &context));
+    const luxfer::Context context = luxfer::Context::create();
     check_homographies(context);
     check_magnified(context);
     check_minified(context);
-    CHECK_OK(luxfer_context_release(context));
     return check::summary("opencv_cross_check");
 }

@@ -24,9 +24,9 @@ void check_statistics() {
 int main(int argc, char **argv) {
     const double factor = argc > 1 ? std::atof(argv[1]) : 1.0;
     check_statistics();
-    LitRoom room;
+    const LitRoom room;
     const SceneCopy copy = read_scene(room.scene);
-    const auto [library, variances] = render_with_library(room.context, room.scene);
+    const auto [library, variances] = render_with_library(room.scene);
     const PathTracer tracer(room, copy, factor);
     const std::vector<Picture> harness = render_with_harness(tracer);
     for (std::size_t channel = 0; channel < 3; ++channel) {

@@ -25,36 +25,21 @@ constexpr std::size_t PIXELS = std::size_t(WIDTH) * HEIGHT;
 // One image: three channels for each pixel.
 using Picture = std::vector<float>;
 
-inline Picture read_render(luxfer_render *render, luxfer_render_image which) {
-    luxfer_image *image = nullptr;
-    CHECK_OK(luxfer_render_get_image(render, which, &image));
-    Picture picture = read_image(image).pixels;
-    CHECK_OK(luxfer_image_release(image));
-    return picture;
-}
-
 // Images, and the variances that the library states for them.
-inline std::pair<std::vector<Picture>, std::vector<Picture>> render_with_library(luxfer_context *context,
-                                                                                    luxfer_scene *scene) {
-    luxfer_render *render = nullptr;
-    CHECK_OK(luxfer_render_create(context, &render));
-    CHECK_OK(luxfer_render_set_scene(render, scene));
+inline std::pair<std::vector<Picture>, std::vector<Picture>> render_with_library(const luxfer::Scene &scene) {
+    const auto render = luxfer::Render::create(scene.context());
+    render.set_scene(scene);
+    luxfer::RenderParams params;
+    params.width = WIDTH;
+    params.height = HEIGHT;
+    params.samples = SAMPLES;
     std::vector<Picture> pictures, variances;
     for (std::uint32_t i = 0; i < REPLICATES; ++i) {
-        luxfer_render_params params;
-        CHECK_OK(luxfer_render_params_init(&params, sizeof params));
-        params.width = WIDTH;
-        params.height = HEIGHT;
-        params.samples = SAMPLES;
         params.seed = 1000 + i;
-        luxfer_job *job = nullptr;
-        CHECK_OK(luxfer_render_start(render, &params, &job));
-        CHECK_OK(luxfer_job_wait(job, -1, nullptr, nullptr));
-        CHECK_OK(luxfer_job_release(job));
-        pictures.push_back(read_render(render, LUXFER_RENDER_BEAUTY));
-        variances.push_back(read_render(render, LUXFER_RENDER_VARIANCE));
+        render.start(params).wait();
+        pictures.push_back(render.image(LUXFER_RENDER_BEAUTY).samples());
+        variances.push_back(render.image(LUXFER_RENDER_VARIANCE).samples());
     }
-    CHECK_OK(luxfer_render_release(render));
     return {pictures, variances};
 }
 

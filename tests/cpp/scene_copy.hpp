@@ -1,7 +1,9 @@
-// A luxfer scene read back through the C functions into plain arrays, for the harnesses that trace it themselves.
+// A luxfer scene read back into plain arrays, for the harnesses that trace it themselves.
 #pragma once
 
 #include "check.hpp"
+
+#include <luxfer.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -49,72 +51,40 @@ struct SceneCopy {
     std::vector<MeshCopy> meshes;
     std::vector<MaterialCopy> materials;
     std::vector<TextureCopy> textures;
-    luxfer_camera_params camera;
+    luxfer_camera_params camera = luxfer::CameraParams();
 };
 
-inline TextureCopy read_image(luxfer_image *image) {
-    TextureCopy copy;
-    CHECK_OK(luxfer_image_size(image, &copy.width, &copy.height, &copy.channels));
-    copy.pixels.resize(std::size_t(copy.width) * copy.height * copy.channels);
-    luxfer_image_view view;
-    CHECK_OK(luxfer_image_view_init(&view, sizeof view));
-    view.channels = copy.channels;
-    view.width = copy.width;
-    view.height = copy.height;
-    view.byte_size = copy.pixels.size() * sizeof(float);
-    view.data = copy.pixels.data();
-    CHECK_OK(luxfer_image_read(image, 0, &view));
-    return copy;
+inline TextureCopy read_texture(const luxfer::Image &image) {
+    const luxfer::ImageSize size = image.size();
+    return {size.width, size.height, size.channels, image.samples()};
 }
 
-inline MeshCopy read_mesh(luxfer_scene *scene, std::uint32_t index) {
-    luxfer_mesh_info info = {};
-    info.struct_size = sizeof info;
-    CHECK_OK(luxfer_scene_get_mesh(scene, index, &info));
+inline MeshCopy read_mesh(const luxfer::Scene &scene, std::uint32_t index) {
+    const luxfer_mesh_info info = scene.mesh(index);
     MeshCopy mesh;
+    mesh.name = scene.mesh_name(index);
     mesh.material = info.material;
-    std::size_t needed = 0;
-    CHECK_OK(luxfer_scene_get_mesh_name(scene, index, nullptr, 0, &needed));
-    mesh.name.resize(needed);
-    CHECK_OK(luxfer_scene_get_mesh_name(scene, index, &mesh.name[0], needed, nullptr));
-    mesh.name.resize(needed - 1);
     mesh.positions.resize(3 * info.vertex_count);
     mesh.normals.resize(info.has_normals ? 3 * info.vertex_count : 0);
     mesh.indices.resize(3 * info.triangle_count);
-    CHECK_OK(luxfer_scene_read_mesh(scene, index, info.vertex_count, mesh.positions.data(),
-                                    info.has_normals ? mesh.normals.data() : nullptr, info.triangle_count,
-                                    mesh.indices.data()));
+    scene.read_mesh(index, mesh.positions, mesh.normals, mesh.indices);
     if (info.uv_sets & 1) {
         mesh.uvs.resize(2 * info.vertex_count);
-        CHECK_OK(luxfer_scene_read_mesh_uvs(scene, index, 0, info.vertex_count, mesh.uvs.data()));
+        scene.read_mesh_uvs(index, 0, mesh.uvs);
     }
     return mesh;
 }
 
-inline SceneCopy read_scene(luxfer_scene *scene) {
-    luxfer_scene_counts counts = {};
-    counts.struct_size = sizeof counts;
-    CHECK_OK(luxfer_scene_get_counts(scene, &counts));
+inline SceneCopy read_scene(const luxfer::Scene &scene) {
+    const luxfer_scene_counts counts = scene.counts();
     SceneCopy copy;
     for (std::uint32_t i = 0; i < counts.meshes; ++i)
         copy.meshes.push_back(read_mesh(scene, i));
-    for (std::uint32_t i = 0; i < counts.materials; ++i) {
-        MaterialCopy material = {};
-        material.params.struct_size = sizeof material.params;
-        CHECK_OK(luxfer_scene_get_material(scene, i, &material.params));
-        material.base_color.struct_size = sizeof material.base_color;
-        CHECK_OK(luxfer_scene_get_material_texture(scene, i, LUXFER_TEXTURE_BASE_COLOR, &material.base_color));
-        copy.materials.push_back(material);
-    }
-    for (std::uint32_t i = 0; i < counts.textures; ++i) {
-        luxfer_image *image = nullptr;
-        CHECK_OK(luxfer_scene_get_texture(scene, i, &image));
-        copy.textures.push_back(read_image(image));
-        CHECK_OK(luxfer_image_release(image));
-    }
-    copy.camera = {};
-    copy.camera.struct_size = sizeof copy.camera;
+    for (std::uint32_t i = 0; i < counts.materials; ++i)
+        copy.materials.push_back({scene.material(i), scene.material_texture(i, LUXFER_TEXTURE_BASE_COLOR)});
+    for (std::uint32_t i = 0; i < counts.textures; ++i)
+        copy.textures.push_back(read_texture(scene.texture(i)));
     if (counts.cameras > 0)
-        CHECK_OK(luxfer_scene_get_camera(scene, 0, &copy.camera));
+        copy.camera = scene.camera(0);
     return copy;
 }
