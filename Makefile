@@ -2,24 +2,31 @@
 # make test   sets up what is missing (Debian packages, Mitsuba from PyPI) and runs every test
 # make bench  runs the benches and prints the headline figures; make bench ONLY=rays runs one; plots go to out/bench/
 # make clean  removes what was built
+#
+# make install PREFIX=/usr/local DESTDIR=, make uninstall, make dist and more: bindings/install.mk
 
 CARGO   ?= cargo
 CC      ?= cc
 PROFILE := target/release
 LIB     := $(PROFILE)/libluxfer.so
-SONAME  := $(PROFILE)/libluxfer.so.0.1
-PACKAGES := cmake g++ binutils libopencv-dev libembree-dev python3-venv
+VERSION := $(shell sed -n '/^version = /{s/.*"\(.*\)"/\1/p;q;}' Cargo.toml)
+# What the SONAME ends in, as build.rs has it: before 1.0 libraries of one minor version are compatible.
+ABI     := $(shell echo $(VERSION) | sed -E 's/^(0\.[0-9]+|[1-9][0-9]*)\..*/\1/')
+SONAME  := $(PROFILE)/libluxfer.so.$(ABI)
+PACKAGES := cmake g++ binutils libopencv-dev libembree-dev python3-venv pkg-config
 
 BENCHES  := $(patsubst benches/%.rs,%,$(wildcard benches/*.rs))
 ONLY     ?= $(BENCHES)
 
 .PHONY: all lib demo test bench peers setup clean
 
-all: lib
+all: lib $(PROFILE)/THIRD-PARTY.txt
 
 lib:
 	$(CARGO) build --release --lib
 	@ln -sf libluxfer.so $(SONAME)
+
+include bindings/install.mk
 
 out/%: examples_c/%.c examples_c/common.h examples_c/panels.h include/luxfer.h lib
 	@mkdir -p out

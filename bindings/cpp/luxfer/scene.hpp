@@ -88,6 +88,29 @@ public:
         return value<std::uint32_t>(luxfer_scene_add_light, &params);
     }
 
+    /// Replaces the numbers of a material; its textures stay. Change what material() has read.
+    Result<> set_material(std::uint32_t index, const luxfer_material_params &params) const {
+        return call(luxfer_scene_set_material, index, &params);
+    }
+
+    /// A copy of an image, for set_material_texture; the wraps are LUXFER_WRAP_ values. Returns its index.
+    Result<std::uint32_t> add_texture(const Image &image, luxfer_wrap wrap_u = LUXFER_WRAP_REPEAT,
+                                      luxfer_wrap wrap_v = LUXFER_WRAP_REPEAT) const {
+        return value<std::uint32_t>(luxfer_scene_add_texture, image.get(), wrap_u, wrap_v);
+    }
+
+    /// Makes a material use a texture for a purpose, a LUXFER_TEXTURE_ value; LUXFER_NONE takes it away.
+    Result<> set_material_texture(std::uint32_t material, luxfer_texture_role role, std::uint32_t texture,
+                                  std::uint32_t uv_set = 0) const {
+        return call(luxfer_scene_set_material_texture, material, role, texture, uv_set, nullptr);
+    }
+
+    /// The same with a transform, two rows of three, applied to (u, v, 1) before the look-up.
+    Result<> set_material_texture(std::uint32_t material, luxfer_texture_role role, std::uint32_t texture,
+                                  std::uint32_t uv_set, Numbers<6, float> transform) const {
+        return call(luxfer_scene_set_material_texture, material, role, texture, uv_set, transform.data());
+    }
+
     Result<> set_camera(std::uint32_t index, const luxfer_camera_params &params) const {
         return call(luxfer_scene_set_camera, index, &params);
     }
@@ -95,6 +118,11 @@ public:
     /// Light of one colour from all directions, in cd/m².
     Result<> set_environment(Rgb light) const {
         return call(luxfer_scene_set_environment, light.red, light.green, light.blue);
+    }
+
+    /// An equirectangular image of it, times scale.
+    Result<> set_environment(const Image &image, Rgb scale) const {
+        return call(luxfer_scene_set_environment_image, image.get(), scale.red, scale.green, scale.blue);
     }
 
     /// What a material emits, in cd/m².

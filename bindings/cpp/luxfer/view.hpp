@@ -51,15 +51,15 @@ private:
 };
 
 /// Exactly N numbers, of an array or a std::array: 9 for a matrix row by row, 8 for four points.
-template <std::size_t N>
+template <std::size_t N, class T = double>
 class Numbers {
 public:
-    constexpr Numbers(const double (&numbers)[N]) noexcept : data_(numbers) {}
-    constexpr Numbers(const std::array<double, N> &numbers) noexcept : data_(numbers.data()) {}
-    constexpr const double *data() const noexcept { return data_; }
+    constexpr Numbers(const T (&numbers)[N]) noexcept : data_(numbers) {}
+    constexpr Numbers(const std::array<T, N> &numbers) noexcept : data_(numbers.data()) {}
+    constexpr const T *data() const noexcept { return data_; }
 
 private:
-    const double *data_;
+    const T *data_;
 };
 
 /// A colour, or an amount of light for each channel.

@@ -1,0 +1,67 @@
+# Installing and handing on, part of the Makefile: `make`, then
+#
+# make install      library (SONAME and symlinks, static too), headers, pkg-config and CMake files, licences
+# make split-debug  takes the debug symbols out of the installed library, into .debug/ beside it, where gdb looks for them
+# make uninstall    removes what install has put there
+# make dist         out/luxfer-VERSION.tar.gz of the last commit
+#
+# PREFIX=/usr/local   where it will be used; LIBDIR (such as $(PREFIX)/lib/x86_64-linux-gnu), INCLUDEDIR and DOCDIR below it
+# DESTDIR=            a folder to stage it in, for packages
+# Strip and split-debug are left to those who want them: Debian and Fedora split the symbols themselves.
+
+PREFIX     ?= /usr/local
+LIBDIR     ?= $(PREFIX)/lib
+INCLUDEDIR ?= $(PREFIX)/include
+DOCDIR     ?= $(PREFIX)/share/doc/luxfer
+INSTALL    ?= install
+OBJCOPY    ?= objcopy
+
+HEADERS     := luxfer.h luxfer.hpp $(patsubst bindings/cpp/%,%,$(wildcard bindings/cpp/luxfer/*.hpp))
+INSTALLED    = $(addprefix $(LIBDIR)/,libluxfer.so libluxfer.so.$(ABI) libluxfer.so.$(VERSION) libluxfer.a \
+                 .debug/libluxfer.so.$(VERSION).debug pkgconfig/luxfer.pc) \
+               $(addprefix $(INCLUDEDIR)/,$(HEADERS))
+INSTALLED_DIRS = $(LIBDIR)/cmake/luxfer $(INCLUDEDIR)/luxfer $(DOCDIR)
+
+# The path from one folder to another, which need not exist.
+relative = $(shell realpath -m --relative-to='$(1)' '$(2)')
+# fill(template, folder it goes to)
+fill = sed -e 's|@VERSION@|$(VERSION)|g' -e 's|@ABI@|$(ABI)|g' -e 's|@INCLUDEDIR@|$(call relative,$(2),$(INCLUDEDIR))|g' \
+         $(1) | $(INSTALL) -m 644 /dev/stdin '$(DESTDIR)$(2)/$(basename $(notdir $(1)))'
+
+.PHONY: install split-debug uninstall dist
+
+# Only where it is missing: `make` as oneself, then `sudo make install`, which needs no cargo.
+$(LIB) $(PROFILE)/libluxfer.a:
+	$(MAKE) lib
+
+$(PROFILE)/THIRD-PARTY.txt: Cargo.lock
+	@mkdir -p $(@D)
+	CARGO='$(CARGO)' bindings/third_party.sh >$@.part && mv $@.part $@
+
+install: $(LIB) $(PROFILE)/libluxfer.a $(PROFILE)/THIRD-PARTY.txt
+	$(INSTALL) -d '$(DESTDIR)$(LIBDIR)/pkgconfig' $(foreach dir,$(INSTALLED_DIRS),'$(DESTDIR)$(dir)')
+	$(INSTALL) -m 755 $(LIB) '$(DESTDIR)$(LIBDIR)/libluxfer.so.$(VERSION)'
+	ln -sf libluxfer.so.$(VERSION) '$(DESTDIR)$(LIBDIR)/libluxfer.so.$(ABI)'
+	ln -sf libluxfer.so.$(ABI) '$(DESTDIR)$(LIBDIR)/libluxfer.so'
+	$(INSTALL) -m 644 $(PROFILE)/libluxfer.a '$(DESTDIR)$(LIBDIR)'
+	$(INSTALL) -m 644 include/luxfer.h bindings/cpp/luxfer.hpp '$(DESTDIR)$(INCLUDEDIR)'
+	$(INSTALL) -m 644 bindings/cpp/luxfer/*.hpp '$(DESTDIR)$(INCLUDEDIR)/luxfer'
+	$(INSTALL) -m 644 LICENSE-APACHE LICENSE-MIT README.md $(PROFILE)/THIRD-PARTY.txt '$(DESTDIR)$(DOCDIR)'
+	$(call fill,bindings/pkgconfig/luxfer.pc.in,$(LIBDIR)/pkgconfig)
+	$(call fill,bindings/cmake/luxferConfig.cmake.in,$(LIBDIR)/cmake/luxfer)
+	$(call fill,bindings/cmake/luxferConfigVersion.cmake.in,$(LIBDIR)/cmake/luxfer)
+
+split-debug:
+	$(INSTALL) -d '$(DESTDIR)$(LIBDIR)/.debug'
+	cd '$(DESTDIR)$(LIBDIR)' && $(OBJCOPY) --only-keep-debug libluxfer.so.$(VERSION) .debug/libluxfer.so.$(VERSION).debug
+	cd '$(DESTDIR)$(LIBDIR)' && $(OBJCOPY) --strip-debug --add-gnu-debuglink=.debug/libluxfer.so.$(VERSION).debug libluxfer.so.$(VERSION)
+
+uninstall:
+	rm -f $(foreach file,$(INSTALLED),'$(DESTDIR)$(file)')
+	rm -rf $(foreach dir,$(INSTALLED_DIRS),'$(DESTDIR)$(dir)')
+	-rmdir '$(DESTDIR)$(LIBDIR)/.debug' 2>/dev/null
+
+dist:
+	@mkdir -p out
+	git archive --prefix=luxfer-$(VERSION)/ -o out/luxfer-$(VERSION).tar.gz HEAD
+	@echo out/luxfer-$(VERSION).tar.gz

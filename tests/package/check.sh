@@ -1,0 +1,109 @@
+#!/bin/sh
+# Installs luxfer into a scratch folder and builds programs against it: by pkg-config, by find_package, again after the
+# installed tree has been moved, and with the source tree as a part of their project. Nothing is left after an uninstall.
+#
+#   check.sh SOURCE BUILT SCRATCH    BUILT is the folder where cargo has put libluxfer.so and libluxfer.a
+set -eu
+source="$1" built="$2" scratch="$3"
+consumers="$source/tests/package"
+flags="-O1 -Wall -Wextra -Wpedantic -Werror"
+rm -rf "$scratch"
+mkdir -p "$scratch"
+cd "$scratch"
+version="$(sed -n '/^version = /{s/.*"\(.*\)"/\1/p;q;}' "$source/Cargo.toml")"
+abi="$(echo "$version" | sed -E 's/^(0\.[0-9]+|[1-9][0-9]*)\..*/\1/')"
+
+step() { echo "== $1"; }
+
+fail() {
+  echo "failed: $1" >&2
+  exit 1
+}
+
+run_make() { make --no-print-directory -s -C "$source" PROFILE="$built" "$@"; }
+
+# What there is under a prefix.
+check_tree() {
+  for link in libluxfer.so "libluxfer.so.$abi"; do
+    [ -L "$1/$lib/$link" ] || fail "$link is no symbolic link"
+  done
+  [ "$(readlink -f "$1/$lib/libluxfer.so")" = "$1/$lib/libluxfer.so.$version" ] || fail "libluxfer.so leads elsewhere"
+  readelf -d "$1/$lib/libluxfer.so" | grep -q "SONAME.*\[libluxfer.so.$abi\]" || fail "wrong SONAME"
+  for file in include/luxfer.h include/luxfer.hpp include/luxfer/core.hpp "$lib/libluxfer.a" share/doc/luxfer/LICENSE-MIT \
+    share/doc/luxfer/THIRD-PARTY.txt; do
+    [ -s "$1/$file" ] || fail "$file is not there, or empty"
+  done
+}
+
+# Programs in C and C++, against the shared and the static library, by the flags that pkg-config tells.
+by_pkg_config() {
+  export PKG_CONFIG_PATH="$1/pkgconfig"
+  pkg-config --exact-version="$version" luxfer || fail "pkg-config does not find luxfer $version"
+  cflags="$(pkg-config --cflags luxfer)"
+  cc -std=c99 $flags $cflags "$consumers/consumer.c" -o by_c $(pkg-config --libs luxfer)
+  c++ -std=c++17 $flags $cflags "$consumers/consumer.cpp" -o by_cpp $(pkg-config --libs luxfer)
+  readelf -d by_c | grep -q "NEEDED.*\[libluxfer.so.$abi\]" || fail "the program needs another library"
+  LD_LIBRARY_PATH="$1" ./by_c
+  LD_LIBRARY_PATH="$1" ./by_cpp
+}
+
+by_pkg_config_static() {
+  # What `pkg-config --static` adds; -l:libluxfer.a takes the static library where both are installed.
+  cc -std=c99 $flags $cflags "$consumers/consumer.c" -o by_c_static \
+    $(pkg-config --static --libs luxfer | sed 's/-lluxfer/-l:libluxfer.a/')
+  readelf -d by_c_static | grep -q libluxfer && fail "the program is not linked statically"
+  ./by_c_static
+}
+
+# The same by CMake: by_cmake folder options...
+by_cmake() {
+  folder="$1"
+  shift
+  cmake -S "$consumers" -B "$folder" -DCMAKE_BUILD_TYPE=Release -DVERSION="$version" "$@" >"$folder.log" 2>&1 || { cat "$folder.log"; fail "cmake"; }
+  cmake --build "$folder" >>"$folder.log" 2>&1 || { cat "$folder.log"; fail "cmake --build"; }
+  (cd "$folder" && ctest --output-on-failure)
+}
+
+step "install"
+# As Debian has it, where that is what CMake looks for; the stage below is as others have it.
+triplet="$(cc -print-multiarch 2>/dev/null || true)"
+lib="lib${triplet:+/$triplet}"
+into="PREFIX=$scratch/prefix LIBDIR=$scratch/prefix/$lib"
+run_make install $into
+check_tree "$scratch/prefix"
+
+step "pkg-config"
+by_pkg_config "$scratch/prefix/$lib"
+by_pkg_config_static
+step "find_package"
+by_cmake found -DCMAKE_PREFIX_PATH="$scratch/prefix"
+
+step "moved"
+mv prefix moved
+by_pkg_config "$scratch/moved/$lib"
+by_cmake moved_build -DSHARED_ONLY=ON -DCMAKE_PREFIX_PATH="$scratch/moved"
+mv moved prefix
+
+step "add_subdirectory"
+by_cmake part -DSHARED_ONLY=ON -DLUXFER_SOURCE="$source" -DLUXFER_LIB_DIR="$built"
+
+step "split-debug"
+run_make split-debug $into
+cd "prefix/$lib"
+readelf -S libluxfer.so | grep -q '\.gnu_debuglink' || fail "the library does not name its debug symbols"
+readelf -S libluxfer.so | grep -q '\.debug_line' && fail "the library still has debug symbols"
+readelf -S .debug/libluxfer.so.*.debug | grep -q '\.debug_line' || fail "the debug symbols are lost"
+cd "$scratch"
+by_pkg_config "$scratch/prefix/$lib"
+
+step "uninstall"
+run_make uninstall $into
+left="$(find prefix ! -type d)"
+[ -z "$left" ] || fail "left behind: $left"
+
+step "DESTDIR"
+run_make install DESTDIR="$scratch/stage" PREFIX=/usr
+[ -f stage/usr/lib/libluxfer.a ] || fail "nothing in stage/usr/lib"
+grep -r "$scratch" stage/usr/lib/pkgconfig stage/usr/lib/cmake && fail "installed files name the folder they were staged in"
+rm -rf "$scratch"
+echo "package: all checks passed"
