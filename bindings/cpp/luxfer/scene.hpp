@@ -74,7 +74,7 @@ public:
 
     Result<luxfer_scene_counts> counts() const { return value<luxfer_scene_counts>(luxfer_scene_get_counts); }
 
-    /// These three return the index of what was added.
+    /// These return the index of what was added.
     Result<std::uint32_t> add_material(const luxfer_material_params &params = MaterialParams()) const {
         return value<std::uint32_t>(luxfer_scene_add_material, &params);
     }
