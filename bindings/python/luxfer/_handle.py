@@ -17,6 +17,14 @@ if TYPE_CHECKING:
 H = TypeVar("H", bound="Handle")
 
 
+def call(context: Context, name: str, *arguments: Any) -> None:
+    """A function of the library that returns a status, whose failure is an exception. Objects are given as themselves, so
+    that they live until the call is done."""
+    status = getattr(library, name)(*(a.handle if isinstance(a, Handle) else a for a in arguments))
+    if status != _abi.LUXFER_OK:
+        raise error(status, context.last_error())
+
+
 class Handle:
     """An object of the library. Releasing it twice is fine; using it afterwards is an error."""
 
@@ -55,13 +63,9 @@ class Handle:
     def __copy__(self: H) -> H:
         raise TypeError(f"a {type(self).__name__} cannot be copied")
 
-    def _check(self, status: int) -> None:
-        if status != _abi.LUXFER_OK:
-            raise error(status, self._context.last_error())
-
     def _call(self, verb: str, *arguments: Any) -> None:
-        """luxfer_<kind>_<verb>(this, ...), whose failure is an exception."""
-        self._check(getattr(library, f"luxfer_{self.kind}_{verb}")(self.handle, *arguments))
+        """luxfer_<kind>_<verb>(this, ...)."""
+        call(self._context, f"luxfer_{self.kind}_{verb}", self, *arguments)
 
     def _read(self, verb: str, struct: Any, *arguments: Any) -> Any:
         """A report, as its dataclass."""
@@ -94,5 +98,5 @@ class Handle:
         """luxfer_<kind>_create."""
         self._context = context
         pointer = ctypes.POINTER(getattr(_abi, f"luxfer_{self.kind}"))()
-        self._check(getattr(library, f"luxfer_{self.kind}_create")(context.handle, pointer))
+        call(context, f"luxfer_{self.kind}_create", context, pointer)
         self._pointer = pointer

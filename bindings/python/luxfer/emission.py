@@ -47,7 +47,7 @@ class Emission(StageBase):
     def set_exemplar(self, unwarped: ImageLike, light: ImageLike, valid: ImageLike) -> None:
         """Three images of one size: the unwarped photo, the unwarped confidence of the lights, where both are valid."""
         images = [image_of(self._context, image) for image in (unwarped, light, valid)]
-        self._call("set_exemplar", *(image.handle for image in images))
+        self._call("set_exemplar", *images)
 
     def set_photo(self, photo: ImageLike | None, to_photo: ArrayLike | None = None) -> None:
         """The photo from which full detail is recovered, and the 3 x 3 map to it (RectifyReport.to_photo); None: none."""
@@ -56,7 +56,7 @@ class Emission(StageBase):
         if to_photo is None:
             raise TypeError("a photo needs to_photo, the map from unwarped to photo pixels")
         matrix = _matrix(to_photo, "to_photo", 9)
-        return self._call("set_photo", image_of(self._context, photo).handle, _arrays.pointer(matrix, ctypes.c_double))
+        return self._call("set_photo", image_of(self._context, photo), _arrays.pointer(matrix, ctypes.c_double))
 
     def start(self, **params: Unpack[EmissionParams]) -> Job[Emission]:
         """Starts the work."""

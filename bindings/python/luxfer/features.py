@@ -34,16 +34,16 @@ class Features(StageBase):
 
     def set_photo(self, photo: ImageLike) -> None:
         """Linear RGB, 1 = display white."""
-        self._call("set_photo", image_of(self._context, photo).handle)
+        self._call("set_photo", image_of(self._context, photo))
 
     def set_depth(self, depth: ImageLike | None, kind: DepthKind | str = DepthKind.ALONG_Z) -> None:
         """A depth map of the photo's size in any unit, "along-z" or "along-ray"; None: none."""
-        handle = None if depth is None else image_of(self._context, depth).handle
-        self._call("set_depth", handle, _params.member(DepthKind, kind))
+        image = None if depth is None else image_of(self._context, depth)
+        self._call("set_depth", image, _params.member(DepthKind, kind))
 
     def set_view(self, rectify: Rectify | None) -> None:
         """The lines and the camera found in the same photo; None: none."""
-        self._call("set_view", None if rectify is None else rectify.handle)
+        self._call("set_view", None if rectify is None else rectify)
 
     def start(self, **params: Unpack[FeaturesParams]) -> Job[Features]:
         """Starts the work."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from . import _abi, _params
-from .image import Image
+from .image import Image, made
 from .job import Job, Progress, StageBase
 from .types import Artwork, GuidesImage
 
@@ -33,7 +33,7 @@ class Guides(StageBase):
 
     def set_scene(self, scene: Scene) -> None:
         """Each start renders the scene as it is then."""
-        self._call("set_scene", scene.handle)
+        self._call("set_scene", scene)
 
     def start(self, **params: Unpack[GuidesParams]) -> Job[Guides]:
         """Starts the work."""
@@ -49,14 +49,8 @@ class Guides(StageBase):
 
     def motion(self, before: Guides) -> Image:
         """Where each pixel was in the frame before, for Stylize.set_motion."""
-        return self._get_image("motion", before.handle)
+        return self._get_image("motion", before)
 
     def demo_artwork(self, style: Artwork | str) -> Image:
         """Draws an artwork of the scene in place of an artist: "pen", "stipple" or "paint"."""
-        import ctypes
-
-        from ._library import library
-
-        pointer = ctypes.POINTER(_abi.luxfer_image)()
-        self._check(library.luxfer_demo_artwork(self.handle, _params.member(Artwork, style), pointer))
-        return Image._adopt(self._context, pointer)
+        return made(self._context, "luxfer_demo_artwork", self, _params.member(Artwork, style))

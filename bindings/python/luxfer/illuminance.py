@@ -37,7 +37,7 @@ class Illuminance(StageBase):
 
     def set_scene(self, scene: Scene) -> None:
         """Each start calculates with the scene as it is then."""
-        self._call("set_scene", scene.handle)
+        self._call("set_scene", scene)
 
     def start_grid(self, grid: IlluminanceGrid | Mapping[str, Any] | None = None, **params: Unpack[IlluminanceParams]) -> Job[Illuminance]:
         """Starts a calculation on a grid: origin, across, down and normal, in metres."""

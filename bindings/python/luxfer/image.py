@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any, Union
 import numpy as np
 
 from . import _abi, _arrays, _params
-from ._handle import Handle
-from ._library import library
+from ._handle import Handle, call
 from .types import ColourSpace
 
 if TYPE_CHECKING:
@@ -40,28 +39,20 @@ class Image(Handle):
         self._context = context
         view, _keep = _arrays.view(_floats(pixels), colour_space)
         handle = ctypes.POINTER(_abi.luxfer_image)()
-        self._check(library.luxfer_image_create(context.handle, view, handle))
+        call(context, "luxfer_image_create", context, view, handle)
         self._pointer = handle
 
     @classmethod
     def load(cls, context: Context, path: str | os.PathLike[str], colour_space: ColourSpace | str = ColourSpace.SRGB) -> Image:
         """Loads a PNG, JPEG, Radiance HDR or OpenEXR file. Pictures are "srgb"; give "linear" for data such as masks."""
-        out = cls._adopt(context, None)
-        handle = ctypes.POINTER(_abi.luxfer_image)()
         space = _params.member(ColourSpace, colour_space)
-        out._check(library.luxfer_image_load(context.handle, _params.text(os.fspath(path), "path"), space, handle))
-        out._pointer = handle
-        return out
+        return made(context, "luxfer_image_load", context, _params.text(os.fspath(path), "path"), space)
 
     @classmethod
     def from_bytes(cls, context: Context, data: bytes, colour_space: ColourSpace | str = ColourSpace.SRGB) -> Image:
         """As load, from a file in memory."""
-        out = cls._adopt(context, None)
-        handle = ctypes.POINTER(_abi.luxfer_image)()
         space = _params.member(ColourSpace, colour_space)
-        out._check(library.luxfer_image_load_memory(context.handle, data, len(data), space, handle))
-        out._pointer = handle
-        return out
+        return made(context, "luxfer_image_load_memory", context, data, len(data), space)
 
     def save(self, path: str | os.PathLike[str], exposure: float = 1.0) -> None:
         """Saves as .png, multiplied by exposure and encoded as sRGB, or as .exr, as it is."""
@@ -141,11 +132,16 @@ def homography(context: Context, source: ArrayLike, target: ArrayLike) -> NDArra
     """
     points = _matrix(source, "source", 8), _matrix(target, "target", 8)
     out = np.empty((3, 3))
-    status = library.luxfer_homography_from_corners(
-        context.handle, *(_arrays.pointer(a, ctypes.c_double) for a in (*points, out))
-    )
-    context._check(status)
+    pointers = [_arrays.pointer(a, ctypes.c_double) for a in (*points, out)]
+    call(context, "luxfer_homography_from_corners", context, *pointers)
     return out
+
+
+def made(context: Context, name: str, *arguments: Any) -> Image:
+    """The image that a function of the library makes."""
+    handle = ctypes.POINTER(_abi.luxfer_image)()
+    call(context, name, *arguments, handle)
+    return Image._adopt(context, handle)
 
 
 def image_of(context: Context, value: ImageLike, colour_space: ColourSpace | str = ColourSpace.LINEAR) -> Image:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar, cast
 from . import _abi
 from ._handle import Handle
 from ._library import library
+from .errors import error
 from .types import Status
 
 if TYPE_CHECKING:
@@ -68,7 +69,8 @@ class Job(Handle, Generic[T]):
         except BaseException:
             self._stop()
             raise
-        self._check(status)
+        if status != Status.OK:
+            raise error(status, self._context.last_error())
         if progress is not None:
             progress(1.0)
         return self._owner

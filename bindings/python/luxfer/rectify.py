@@ -36,11 +36,11 @@ class Rectify(StageBase):
 
     def set_photo(self, photo: ImageLike) -> None:
         """Linear RGB."""
-        self._call("set_photo", image_of(self._context, photo).handle)
+        self._call("set_photo", image_of(self._context, photo))
 
     def set_mask(self, mask: ImageLike | None) -> None:
         """1 on the plane to unwarp, 0 elsewhere, of the photo's size; None: only lines and vanishing points are found."""
-        self._call("set_mask", None if mask is None else image_of(self._context, mask).handle)
+        self._call("set_mask", None if mask is None else image_of(self._context, mask))
 
     def start(self, **params: Unpack[RectifyParams]) -> Job[Rectify]:
         """Starts the work."""
@@ -57,7 +57,7 @@ class Rectify(StageBase):
 
     def warp(self, source: ImageLike) -> Image:
         """Unwarps another image of the photo's size as the plane was."""
-        return self._get_image("warp", image_of(self._context, source).handle)
+        return self._get_image("warp", image_of(self._context, source))
 
     @property
     def report(self) -> RectifyReport:

@@ -34,7 +34,7 @@ class Relight(StageBase):
     def set_scene(self, scene: Scene, material: int, mesh: int) -> None:
         """The scene, the emitting material to solve for, and the mesh whose mean colour is to match, as
         Scene.place_emission returns them."""
-        self._call("set_scene", scene.handle, material, mesh)
+        self._call("set_scene", scene, material, mesh)
 
     def set_target(self, radiance: Sequence[float]) -> None:
         """The mean radiance the mesh should have, in cd/m² per channel."""

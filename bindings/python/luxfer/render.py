@@ -50,7 +50,7 @@ class Render(StageBase):
 
     def set_scene(self, scene: Scene) -> None:
         """Each start renders the scene as it is then."""
-        self._call("set_scene", scene.handle)
+        self._call("set_scene", scene)
 
     def set_camera_index(self, camera: int) -> None:
         """Renders from a camera of the scene; the default is 0."""

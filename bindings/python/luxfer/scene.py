@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from . import _abi, _arrays, _params
-from ._handle import Handle
-from ._library import library
+from ._handle import Handle, call
 from .image import Image, image_of
 from .types import (
     CameraParams, MaterialParams, MeshInfo, Requirements, SceneCounts, Surface, TextureRole, TextureUse,
@@ -51,21 +50,19 @@ class Scene(Handle):
     @classmethod
     def load(cls, context: Context, path: str | os.PathLike[str]) -> Scene:
         """Loads a glTF 2.0 file, .glb or .gltf with the files it names."""
-        return cls._made(context, library.luxfer_scene_load, _params.text(os.fspath(path), "path"))
+        return cls._made(context, "luxfer_scene_load", _params.text(os.fspath(path), "path"))
 
     @classmethod
     def from_bytes(cls, context: Context, data: bytes, base_path: str | os.PathLike[str] | None = None) -> Scene:
         """Loads a glTF file in memory; files that it names are looked up in base_path."""
         base = None if base_path is None else _params.text(os.fspath(base_path), "base_path")
-        return cls._made(context, library.luxfer_scene_load_memory, data, len(data), base)
+        return cls._made(context, "luxfer_scene_load_memory", data, len(data), base)
 
     @classmethod
-    def _made(cls, context: Context, function: Any, *arguments: Any) -> Scene:
-        out = cls._adopt(context, None)
+    def _made(cls, context: Context, name: str, *arguments: Any) -> Scene:
         handle = ctypes.POINTER(_abi.luxfer_scene)()
-        out._check(function(context.handle, *arguments, handle))
-        out._pointer = handle
-        return out
+        call(context, name, context, *arguments, handle)
+        return cls._adopt(context, handle)
 
     def export(self, path: str | os.PathLike[str]) -> None:
         """Saves as a GLB file with its textures inside."""
@@ -158,7 +155,7 @@ class Scene(Handle):
         returns the indices of the mesh and of its material."""
         mesh, material = ctypes.c_uint32(), ctypes.c_uint32()
         image = image_of(self._context, texture)
-        self._call("place_emission", _params.text(name, "name"), image.handle, *_colour(scale), mesh, material)
+        self._call("place_emission", _params.text(name, "name"), image, *_colour(scale), mesh, material)
         return mesh.value, material.value
 
     # -- what it holds
@@ -247,7 +244,7 @@ class Scene(Handle):
         """A scene that the library makes itself: "target-room", "exemplar-room", "sphere-on-table" or "still-life"."""
         from .types import Demo
 
-        return cls._made(context, library.luxfer_demo_scene, _params.member(Demo, which))
+        return cls._made(context, "luxfer_demo_scene", _params.member(Demo, which))
 
 
 def _rows(values: ArrayLike, width: int, dtype: Any, name: str) -> NDArray[Any]:

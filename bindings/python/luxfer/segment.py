@@ -49,11 +49,11 @@ class Segment(StageBase):
 
     def set_features(self, features: ImageLike) -> None:
         """The channels of Features, or any image of 1 to 16 channels."""
-        self._call("set_features", image_of(self._context, features).handle)
+        self._call("set_features", image_of(self._context, features))
 
     def set_within(self, within: ImageLike | None) -> None:
         """Where to look, 1, and where not, 0; None: everywhere."""
-        self._call("set_within", None if within is None else image_of(self._context, within).handle)
+        self._call("set_within", None if within is None else image_of(self._context, within))
 
     def add_stroke(self, points: ArrayLike, radius: float, positive: bool) -> None:
         """Adds a stroke along points (n, 2) in pixels; positive for what is sought."""
@@ -63,7 +63,7 @@ class Segment(StageBase):
         """Adds the strokes of a drawing that concern the phase "plane" or "lights": green plane, red not plane, yellow light,
         blue not light. An array of uint8 is taken as sRGB."""
         drawing = image_of(self._context, drawing, "srgb")
-        self._call("add_strokes_image", drawing.handle, _params.member(Phase, phase))
+        self._call("add_strokes_image", drawing, _params.member(Phase, phase))
 
     def add_strokes_text(self, description: str, phase: Phase | str) -> None:
         """Adds the strokes that a text describes, one a line: "light 3 310.5 30 320 31"."""

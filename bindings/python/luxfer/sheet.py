@@ -6,8 +6,8 @@ import ctypes
 from typing import TYPE_CHECKING, cast
 
 from . import _abi, _params
-from ._library import library
-from .image import Image, image_of
+from ._handle import call
+from .image import Image, image_of, made
 from .types import SheetReport
 
 if TYPE_CHECKING:
@@ -26,10 +26,8 @@ def print_sheet(context: Context, picture: ImageLike, **params: Unpack[SheetPara
     >>> artwork.size, report.marks
     ((120, 90, 3), 10)
     """
-    pointer = ctypes.POINTER(_abi.luxfer_image)()
     settings = _params.fill(_abi.luxfer_sheet_params, params, [])
-    context._check(library.luxfer_sheet_print(image_of(context, picture).handle, settings, pointer))
-    return Image._adopt(context, pointer)
+    return made(context, "luxfer_sheet_print", image_of(context, picture), settings)
 
 
 def align_sheet(
@@ -40,6 +38,5 @@ def align_sheet(
     pointer = ctypes.POINTER(_abi.luxfer_image)()
     settings = _params.fill(_abi.luxfer_sheet_params, params, [])
     report = _params.sized(_abi.luxfer_sheet_report)
-    image = image_of(context, photo)
-    context._check(library.luxfer_sheet_align(image.handle, width, height, settings, pointer, report))
+    call(context, "luxfer_sheet_align", image_of(context, photo), width, height, settings, pointer, report)
     return Image._adopt(context, pointer), cast(SheetReport, _params.report(report))

@@ -52,7 +52,7 @@ class Stylize(StageBase):
 
     def set_artwork(self, artwork: ImageLike) -> None:
         """The exemplar scene as painted: linear, 1, 3 or 4 channels, aligned with the sources of the guides."""
-        self._call("set_artwork", image_of(self._context, artwork).handle)
+        self._call("set_artwork", image_of(self._context, artwork))
 
     def add_guide(
         self,
@@ -66,12 +66,11 @@ class Stylize(StageBase):
         image, for a half-painted picture."""
         first = image_of(self._context, source)
         second = None if target is None else image_of(self._context, target)
-        handle = None if second is None else second.handle
-        self._call("add_guide", _params.text(name, "name"), first.handle, handle, weight, _params.member(GuideRange, range))
+        self._call("add_guide", _params.text(name, "name"), first, second, weight, _params.member(GuideRange, range))
 
     def add_guides(self, source: Guides, target: Guides, extras: GuidesWith | str | int = 0, extra_weight: float = 1.0) -> None:
         """Adds the guides of two scenes: the five of light, and the extras, as "normals|edges|materials"."""
-        self._call("add_guides", source.handle, target.handle, _params.member(GuidesWith, extras), extra_weight)
+        self._call("add_guides", source, target, _params.member(GuidesWith, extras), extra_weight)
 
     def clear_guides(self) -> None:
         """Removes all guides."""
@@ -79,27 +78,26 @@ class Stylize(StageBase):
 
     def set_source_mask(self, mask: ImageLike | None) -> None:
         """Where the artwork may be copied from, above 0.5; None: everywhere."""
-        self._call("set_source_mask", None if mask is None else image_of(self._context, mask).handle)
+        self._call("set_source_mask", None if mask is None else image_of(self._context, mask))
 
     def set_target_mask(self, mask: ImageLike | None, known: ImageLike | None = None) -> None:
         """Which pixels to paint, above 0.5; the others are those of known, or black. None: everything."""
         images = [None if image is None else image_of(self._context, image) for image in (mask, known)]
-        self._call("set_target_mask", *(None if image is None else image.handle for image in images))
+        self._call("set_target_mask", *images)
 
     def set_motion(self, motion: ImageLike | None) -> None:
         """Makes each start go on from the result before; see Guides.motion. None: each start begins anew."""
-        self._call("set_motion", None if motion is None else image_of(self._context, motion).handle)
+        self._call("set_motion", None if motion is None else image_of(self._context, motion))
 
     def set_painted(self, painted: ImageLike) -> None:
         """Has the rest of a half-painted picture painted, which is the artwork; painted is above 0.5 where it is done."""
-        self._call("set_painted", image_of(self._context, painted).handle)
+        self._call("set_painted", image_of(self._context, painted))
 
     # -- work
 
     def start(self, preset: StylizePreset | str = StylizePreset.FULL, **params: Unpack[StylizeParams]) -> Job[Stylize]:
         """Starts the work with a preset, "full", "fast", "preview" or "paper", and settings over it."""
-        settings = _params.fill(_abi.luxfer_stylize_params, {}, [])
-        self._check(library.luxfer_stylize_params_preset(settings, _params.member(StylizePreset, preset)))
+        settings = _preset(preset)
         _params.update(settings, params, [])
         return self._job("start", settings)
 
@@ -112,7 +110,7 @@ class Stylize(StageBase):
     def update(self, artwork: ImageLike, changed: ImageLike) -> Job[Stylize]:
         """Starts a job that follows new paint in the artwork, where changed is above 0.5; needs keep_for_update=1."""
         images = [image_of(self._context, image) for image in (artwork, changed)]
-        return self._job("update", *(image.handle for image in images))
+        return self._job("update", *images)
 
     # -- results
 
@@ -149,6 +147,10 @@ def preset(which: StylizePreset | str) -> StylizeParams:
     >>> preset("preview")["preview"]
     1
     """
+    return cast("StylizeParams", _params.settings(_preset(which)))
+
+
+def _preset(which: StylizePreset | str) -> Any:
     settings = _params.fill(_abi.luxfer_stylize_params, {}, [])
-    library.luxfer_stylize_params_preset(settings, _params.member(StylizePreset, which))
-    return cast("StylizeParams", _params.settings(settings))
+    library.luxfer_stylize_params_preset(settings, _params.member(StylizePreset, which))  # of a member: cannot fail
+    return settings

@@ -52,20 +52,20 @@ class Transfer(StageBase):
 
     def set_photo(self, photo: ImageLike) -> None:
         """Linear RGB, 1 = display white."""
-        self._call("set_photo", image_of(self._context, photo).handle)
+        self._call("set_photo", image_of(self._context, photo))
 
     def set_depth(self, depth: ImageLike | None, kind: DepthKind | str = DepthKind.ALONG_Z) -> None:
         """A depth map of the photo, "along-z" or "along-ray"; None: none."""
-        handle = None if depth is None else image_of(self._context, depth).handle
-        self._call("set_depth", handle, _params.member(DepthKind, kind))
+        image = None if depth is None else image_of(self._context, depth)
+        self._call("set_depth", image, _params.member(DepthKind, kind))
 
     def set_scene(self, scene: Scene, surface: str) -> None:
         """The scene to light, never changed, and the object or material of its surface that receives the lights."""
-        self._call("set_scene", scene.handle, _params.text(surface, "surface"))
+        self._call("set_scene", scene, _params.text(surface, "surface"))
 
     def set_texture(self, texture: ImageLike | None) -> None:
         """An emissive texture to use instead of making one from the photo; None: one is made."""
-        self._call("set_texture", None if texture is None else image_of(self._context, texture).handle)
+        self._call("set_texture", None if texture is None else image_of(self._context, texture))
 
     def set_camera(self, camera: CameraParams | None = None, **params: Unpack[CameraParams]) -> None:
         """The camera of the picture; without arguments the scene's first, or one chosen in a corner of the room."""
@@ -79,7 +79,7 @@ class Transfer(StageBase):
     def add_strokes_image(self, drawing: ImageLike) -> None:
         """Adds the strokes of a drawing of the photo's size: green plane, red not plane, yellow light, blue not light. An
         array of uint8 is taken as sRGB."""
-        self._call("add_strokes_image", image_of(self._context, drawing, "srgb").handle)
+        self._call("add_strokes_image", image_of(self._context, drawing, "srgb"))
 
     def add_strokes_text(self, description: str) -> None:
         """Adds the strokes that a text describes, one a line: "light 3 310.5 30 320 31"."""
@@ -93,19 +93,19 @@ class Transfer(StageBase):
 
     def use_rectify(self, rectify: Rectify) -> None:
         """In the place of the results of the stages VIEW and UNWARP."""
-        self._call("use_rectify", rectify.handle)
+        self._call("use_rectify", rectify)
 
     def use_features(self, features: Features) -> None:
         """In the place of the result of the stage FEATURES."""
-        self._call("use_features", features.handle)
+        self._call("use_features", features)
 
     def use_segment(self, phase: Phase | str, segment: Segment) -> None:
         """In the place of the result of the stage PLANE or LIGHTS."""
-        self._call("use_segment", _params.member(Phase, phase), segment.handle)
+        self._call("use_segment", _params.member(Phase, phase), segment)
 
     def use_mask(self, phase: Phase | str, mask: ImageLike) -> None:
         """A mask of the photo's size in the place of the result of the stage PLANE or LIGHTS."""
-        self._call("use_mask", _params.member(Phase, phase), image_of(self._context, mask).handle)
+        self._call("use_mask", _params.member(Phase, phase), image_of(self._context, mask))
 
     # -- work
 

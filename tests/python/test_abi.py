@@ -1,0 +1,71 @@
+"""The package and the header say the same: nothing drifts, nothing is left out, every struct has the C compiler's layout."""
+
+import ctypes
+import re
+import shutil
+import subprocess
+import sys
+import unittest
+
+from support import PACKAGE, ROOT, Case, luxfer
+
+from luxfer import abi, errors, types
+
+
+class Drift(Case):
+    def test_what_is_generated_is_what_the_header_says(self):
+        check = subprocess.run([sys.executable, PACKAGE / "generate.py", "--check"], capture_output=True, text=True)
+        self.assertEqual(check.returncode, 0, check.stderr)
+
+    def test_every_function_is_bound_with_as_many_arguments_as_it_has(self):
+        header = re.sub(r"/\*.*?\*/", "", (ROOT / "include" / "luxfer.h").read_text(), flags=re.S)
+        declared = dict(re.findall(r"\b(luxfer_\w+)\(([^()]*)\);", header))
+        self.assertGreater(len(declared), 190)
+        self.assertEqual(set(declared), set(abi.FUNCTIONS))
+        for name, arguments in declared.items():
+            count = 0 if arguments.strip() == "void" else arguments.count(",") + 1
+            self.assertEqual(len(getattr(luxfer.library, name).argtypes), count, name)
+
+    def test_every_function_is_used_by_the_modules(self):
+        """All but those that Python has no use for: references are counted by its own objects."""
+        source = "".join(p.read_text() for p in (PACKAGE / "luxfer").glob("*.py") if p.name not in ("_abi.py", "types.py"))
+        kinds = re.findall(r'kind = "(\w+)"', source)
+        verbs = set(re.findall(r'_(?:call|read|job|get_image|get_text|add)\(\s*"(\w+)"', source))
+        unused = []
+        for name in abi.FUNCTIONS:
+            kind = max((k for k in kinds if name.startswith(f"luxfer_{k}_")), key=len, default=None)
+            verb = name.removeprefix(f"luxfer_{kind}_") if kind else ""
+            generic = verb in ("create", "release", "retain") or name.endswith("_init")
+            if not generic and name not in source and verb not in verbs:
+                unused.append(name)
+        self.assertEqual(unused, ["luxfer_status_name"])
+
+    def test_every_status_has_an_exception(self):
+        self.assertEqual(set(errors.BY_STATUS), set(types.Status) - {types.Status.OK})
+        for status in types.Status:
+            self.assertEqual(luxfer.library.luxfer_status_name(status).decode(), f"LUXFER_{status.name}")
+
+    def test_structs_have_the_layout_of_the_c_compiler(self):
+        compiler = shutil.which("cc") or shutil.which("gcc")
+        if not compiler:
+            self.skipTest("there is no C compiler")
+        lines, expected = [], []
+        for name, struct in vars(abi).items():
+            if isinstance(struct, type) and issubclass(struct, ctypes.Structure) and hasattr(struct, "_fields_"):
+                lines.append(f'printf("{name} %zu\\n", sizeof({name}));')
+                expected.append(f"{name} {ctypes.sizeof(struct)}")
+                for field, *_ in struct._fields_:
+                    lines.append(f'printf("{name}.{field} %zu %zu\\n", offsetof({name}, {field}), sizeof((({name} *)0)->{field}));')
+                    member = getattr(struct, field)
+                    expected.append(f"{name}.{field} {member.offset} {member.size}")
+        self.assertGreater(len(expected), 200)
+        (self.folder / "a.c").write_text(
+            '#include "luxfer.h"\n#include <stdio.h>\nint main(void) {\n' + "\n".join(lines) + "\nreturn 0;\n}\n"
+        )
+        subprocess.run([compiler, "-I", ROOT / "include", "a.c", "-o", "a"], cwd=self.folder, check=True)
+        printed = subprocess.run(["./a"], cwd=self.folder, check=True, capture_output=True, text=True).stdout
+        self.assertEqual(printed.split("\n")[:-1], expected)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,80 @@
+"""The documentation is true and complete: every example runs, everything public is described and annotated."""
+
+import doctest
+import importlib
+import inspect
+import os
+import pkgutil
+import re
+import unittest
+
+from support import PACKAGE, Case, context, demo, lit_room, luxfer, np
+
+
+def modules():
+    return [importlib.import_module(f"luxfer.{m.name}") for m in pkgutil.iter_modules(luxfer.__path__)]
+
+
+class Documentation(Case):
+    def test_docstring_examples(self):
+        photo, strokes = demo()
+        names = {name: getattr(luxfer, name) for name in luxfer.__all__}
+        names |= {"np": np, "context": context(), "photo": photo, "strokes": strokes, "lit_room": lit_room()}
+        names |= {name: luxfer.Scene.demo(context(), scene) for name, scene in (("room", "target-room"), ("ball", "sphere-on-table"), ("still_life", "still-life"))}
+        attempted = 0
+        for module in modules():
+            result = doctest.testmod(module, extraglobs=names)
+            self.assertEqual(result.failed, 0, module.__name__)
+            attempted += result.attempted
+        self.assertGreater(attempted, 40)
+
+    def test_readme_examples(self):
+        blocks = re.findall(r"```python\n(.*?)```", (PACKAGE / "README.md").read_text(), re.S)
+        self.assertGreater(len(blocks), 4)
+        names: dict = {"print": lambda *_: None}
+        before = os.getcwd()
+        os.chdir(self.folder)
+        try:
+            for block in blocks:
+                exec(block, names)
+        finally:
+            os.chdir(before)
+        self.assertEqual({p.name for p in self.folder.iterdir()}, {"lit.png", "lit.glb", "layers.exr"})
+
+    def test_everything_is_described_and_annotated(self):
+        missing = []
+        for module in modules():
+            if not module.__doc__:
+                missing.append(module.__name__)
+            for name, item in vars(module).items():
+                if name.startswith("_") or getattr(item, "__module__", None) != module.__name__ or module.__name__.endswith("_abi"):
+                    continue
+                missing += self.lacking(f"{module.__name__}.{name}", item, module.__name__.rpartition(".")[2].startswith("_"))
+        self.assertEqual(missing, [])
+        self.assertTrue((PACKAGE / "luxfer" / "py.typed").exists())
+
+    def lacking(self, path, item, is_private):
+        """What of an item has no docstring, unless private, or lacks an annotation."""
+        if inspect.isclass(item):
+            out = [] if item.__doc__ or is_private else [path]
+            for name, member in vars(item).items():
+                function = member.fget if isinstance(member, property) else getattr(member, "__func__", member)
+                if inspect.isfunction(function) and function.__module__ == item.__module__ and function.__doc__ != "":
+                    private = is_private or name.startswith("_")
+                    if "lambda" not in function.__qualname__ and function.__code__.co_filename != "<string>" and not name.startswith("__") or name == "__init__":
+                        if item.__module__ != "luxfer.types":
+                            out += self.lacking(f"{path}.{name}", function, private)
+            return out
+        if not inspect.isfunction(item):
+            return []
+        out = [] if item.__doc__ or is_private else [path]
+        for parameter in inspect.signature(item).parameters.values():
+            if parameter.name not in ("self", "cls") and parameter.annotation is parameter.empty:
+                out.append(f"{path}({parameter.name})")
+        if inspect.signature(item).return_annotation is inspect.Signature.empty:
+            out.append(f"{path} ->")
+        return out
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,276 @@
+"""Each stage through Python: the whole transfer, rendering with layers, lux, relighting, stylisation, sheets, scenes."""
+
+import unittest
+
+from support import Case, context, demo, lit_room, luxfer, np
+
+from luxfer import errors
+
+
+class Transfer(Case):
+    def test_the_whole_transfer(self):
+        photo, strokes = demo()
+        room = luxfer.Scene.demo(context(), "target-room")
+        transfer = luxfer.Transfer(context(), photo, room, "Ceiling")
+        transfer.add_strokes_image(strokes.numpy(np.uint8, "srgb"))
+        settings = {"max_texels": 256, "render": {"width": 80, "height": 45, "samples": 8}, "relight": {"paths": 1 << 16}}
+        transfer.run(**settings)
+
+        # The solution: the lit scene's ceiling has the colour that the report says it should have.
+        report, solution = transfer.report, transfer.solution
+        off = np.array(solution.scale) * solution.response - 100 * np.array(report.target)
+        self.assertTrue((np.abs(off) <= np.multiply(solution.half_width, solution.response)).all(), off)
+        self.assertEqual(solution.reach, (luxfer.types.Reach.MET,) * 3)
+        self.assertTrue((transfer.image("render").numpy() >= 0).all())
+        self.assertGreater(transfer.image("render").numpy().mean(), 0)
+
+        # The lamps: as many as the report says, on the ceiling, shining down.
+        surface = room.find_surface("Ceiling")
+        fixtures = transfer.fixtures
+        self.assertEqual(len(fixtures), report.fixtures)
+        for fixture in fixtures:
+            np.testing.assert_allclose(fixture.normal, surface.normal, atol=1e-5)
+            self.assertAlmostEqual(fixture.position[1], surface.origin[1], places=4)
+
+        # The lit scene goes through a file in memory.
+        lit = luxfer.Scene.from_bytes(context(), transfer.scene("lit").to_bytes())
+        self.assertEqual(lit.counts.triangles, transfer.scene("lit").counts.triangles)
+
+        # A mask of the caller's own, and the run taken up from there.
+        mask = transfer.image("lights-mask").numpy()[..., 0] > 0.5
+        mask[:, : mask.shape[1] // 2] = False
+        before = transfer.image("emission").numpy()
+        transfer.use_mask("lights", mask)
+        transfer.run("unwarp", "emission", **settings)
+        self.assertTrue((before != transfer.image("emission").numpy()).any())
+
+    def test_the_stages_one_by_one_make_what_the_transfer_makes(self):
+        photo, strokes = demo()
+        view = luxfer.Rectify(context(), photo).run()
+        features = luxfer.Features(context(), photo)
+        features.set_view(view)
+        features.run()
+        plane = luxfer.Segment(context(), features.image())
+        plane.add_strokes_image(strokes, "plane")
+        plane.run()
+        transfer = luxfer.Transfer(context(), photo)
+        transfer.add_strokes_image(strokes)
+        transfer.run(last="plane")
+        np.testing.assert_array_equal(plane.image("mask").numpy(), transfer.image("plane-mask").numpy())
+        self.assertEqual(view.report.vanishing_points, transfer.view.vanishing_points)
+
+        lights = luxfer.Segment(context(), features.image())
+        lights.set_within(plane.image())
+        lights.add_strokes_image(strokes, "lights")
+        lights.run(channels=7)
+        view.set_mask(plane.image())
+        view.run(max_side=256)
+        emission = luxfer.Emission(context(), view.image("unwarped"), view.warp(lights.image("confidence")), view.image("valid"))
+        emission.set_photo(photo, view.report.to_photo)
+        emission.run(width=128, height=96)
+        lamps = emission.luminaires
+        self.assertEqual(len(lamps), emission.report.luminaires)
+        self.assertAlmostEqual(sum(lamp.flux_share for lamp in lamps), 1, places=3)
+        outline = emission.outline(0)
+        self.assertEqual(outline.shape, (lamps[0].corners, 2))
+        self.assertTrue(((outline >= 0) & (outline <= (128, 96))).all())
+
+    def test_strokes_by_hand_and_as_text(self):
+        photo = np.zeros((40, 60, 3), np.float32)
+        photo[:20] = (0.8, 0.2, 0.2)
+        masks = []
+        for describe in (
+            lambda s: (s.add_stroke([(5, 5), (50, 8)], 3, True), s.add_stroke((30.5, 35.5), 3, False)),
+            lambda s: s.add_strokes_text("plane 3 5 5 50 8\nnot-plane 3 30.5 35.5 # the floor", "plane"),
+        ):
+            segment = luxfer.Segment(context(), photo)
+            describe(segment)
+            masks.append(segment.run().image("mask").numpy()[..., 0])
+            self.assertTrue((masks[-1][:20] == 1).all() and (masks[-1][20:] == 0).all())
+        np.testing.assert_array_equal(*masks)
+        with self.assertRaises(errors.FormatError):
+            segment.add_strokes_text("plane 3 5", "plane")
+
+
+class Rendering(Case):
+    def test_layers_of_light_and_of_surfaces(self):
+        render = luxfer.Render(context(), lit_room(), aovs="depth|normal|alpha")
+        render.add_expression("seen", "LE")
+        render.add_expression("once", "L.E")
+        render.add_expression("more", "L..+E")
+        seconds = render.run(width=48, height=32, samples=16)
+        self.assertIs(seconds, render)
+        layers = {name: image.numpy() for name, image in render.layers.items()}
+        self.assertEqual(list(layers), ["seen", "once", "more", "Depth", "Normal", "Alpha"])
+        beauty = render.image().numpy()
+        np.testing.assert_allclose(sum(layers[n] for n in ("seen", "once", "more")), beauty, rtol=1e-4, atol=1e-4 * beauty.mean())
+        np.testing.assert_array_equal(render.layer("once").numpy(), layers["once"])
+        lengths = np.linalg.norm(layers["Normal"], axis=-1)
+        self.assertTrue((lengths < 1.001).all())
+        self.assertTrue((layers["Depth"] > 0).all())
+        render.write_exr(self.folder / "layers.exr")
+        np.testing.assert_array_equal(luxfer.Image.load(context(), self.folder / "layers.exr").numpy()[..., :3], beauty)
+        self.assertEqual(render.report.samples, 16)
+        with self.assertRaises(errors.InvalidArgument):
+            render.add_expression("bad", "L(E")
+
+    def test_the_same_seed_gives_the_same_bits(self):
+        def picture(threads, seed):
+            with luxfer.Context(num_threads=threads) as own:
+                scene = luxfer.Scene.from_bytes(own, glb)
+                return luxfer.Render(own, scene).run(width=32, height=24, samples=4, seed=seed).image().numpy().tobytes()
+
+        glb = lit_room().to_bytes()
+        self.assertEqual(picture(1, 5), picture(3, 5))
+        self.assertNotEqual(picture(1, 5), picture(1, 6))
+
+    def test_illuminance_of_a_point_light(self):
+        scene = luxfer.Scene(context())
+        scene.add_material(base_color=(0, 0, 0))
+        floor = scene.add_mesh([[-9, 0, -9], [9, 0, -9], [9, 0, 9], [-9, 0, 9]], [[0, 2, 1], [0, 3, 2]], uvs=[[0, 0], [1, 0], [1, 1], [0, 1]])
+        scene.add_light(kind="point", position=(0, 2, 0), intensity=(100, 100, 100))
+        lux = luxfer.Illuminance(context(), scene)
+        lux.run_grid({"origin": (-1, 0.001, -1), "across": (2, 0, 0), "down": (0, 0, 2)}, columns=5, rows=5, samples=16)
+        x, z = np.meshgrid(*[np.linspace(-0.8, 0.8, 5)] * 2)
+        height = 2 - 0.001
+        expected = 100 * height / (x**2 + z**2 + height**2) ** 1.5
+        np.testing.assert_allclose(lux.image("lux").numpy()[..., 0], expected, rtol=1e-3)
+        self.assertAlmostEqual(lux.report.mean, expected.mean(), delta=1e-3 * expected.mean())
+        over = lux.run_mesh(floor, columns=3, rows=3, samples=16).image("lux").numpy()[..., 0]
+        self.assertEqual(np.unravel_index(over.argmax(), over.shape), (1, 1))
+
+    def test_relighting_meets_its_target(self):
+        scene = luxfer.Scene.demo(context(), "target-room")
+        mesh, material = scene.place_emission("Ceiling", np.eye(8).repeat(3).reshape(8, 8, 3), (100, 100, 100))
+        relight = luxfer.Relight(context())
+        relight.set_scene(scene, material, mesh)
+        relight.set_target((12, 10, 8))
+        report = relight.run(paths=1 << 16).report
+        off = np.array(report.scale) * report.response - (12, 10, 8)
+        self.assertTrue((np.abs(off) <= np.multiply(report.half_width, report.response)).all(), off)
+
+
+class Scenes(Case):
+    def test_arrays_go_in_and_come_out(self):
+        vertices = np.zeros(4, [("p", "f4", 3), ("n", "f4", 3), ("t", "f4", 2), ("pad", "u1", 4)])  # as hosts interleave them
+        vertices["p"] = [[0, 0, 0], [1, 0, 0], [1, 0, 1], [0, 0, 1]]
+        vertices["n"] = (0, 1, 0)
+        vertices["t"] = vertices["p"][:, ::2]
+        scene = luxfer.Scene(context())
+        red = scene.add_material(base_color=(0.5, 0, 0), roughness=0.25)
+        index = scene.add_mesh(vertices["p"], [[0, 2, 1], [0, 3, 2]], normals=vertices["n"], uvs=vertices["t"], material=red, name="Böden")
+        out = scene.mesh_arrays(index)
+        np.testing.assert_array_equal(out["positions"], vertices["p"])
+        np.testing.assert_array_equal(out["normals"], vertices["n"])
+        np.testing.assert_array_equal(out["uvs"], vertices["t"])
+        np.testing.assert_array_equal(out["indices"], [[0, 2, 1], [0, 3, 2]])
+        self.assertEqual(scene.mesh_name(index), "Böden")
+        self.assertEqual(scene.material(red)["roughness"], 0.25)
+        self.assertEqual(scene.mesh(index).uv_sets, 1)
+        hit = scene.intersect([[0.9, 2, 0.2]], [[0, -1, 0]])[0]
+        self.assertEqual((hit["t"], hit["mesh"], hit["triangle"]), (2, 0, 0))
+        self.assertTrue(np.isinf(scene.intersect([[5, 2, 5]], [[0, -1, 0]])["t"][0]))
+
+    def test_a_scene_copied_through_arrays_looks_the_same(self):
+        scene, copy = lit_room(), luxfer.Scene(context())
+        for i in range(scene.counts.materials):
+            copy.add_material(**scene.material(i))
+        for i in (i for i in range(scene.counts.meshes) if scene.mesh(i).triangle_count):
+            arrays = scene.mesh_arrays(i)
+            arrays.pop("uvs1", None)
+            copy.add_mesh(**arrays, material=scene.mesh(i).material, name=scene.mesh_name(i))
+        copy.add_camera(**luxfer.Scene.demo(context(), "exemplar-room").camera(0))
+        self.assertEqual(copy.counts.triangles, scene.counts.triangles)
+        rays = np.zeros((64, 3)) + (0, 1.4, 0), np.random.default_rng(4).normal(size=(64, 3))
+        np.testing.assert_array_equal(copy.intersect(*rays)["t"], scene.intersect(*rays)["t"])
+
+    def test_cameras_and_textures(self):
+        scene = lit_room()
+        index = scene.add_camera(fov_y=0.5, position=(0, 1, 2))
+        scene.set_camera(index, **{**scene.camera(index), "target": (0, 1, 0)})
+        self.assertEqual(scene.camera(index)["position"], (0, 1, 2))
+        self.assertEqual(scene.camera(index)["target"], (0, 1, 1))  # a metre ahead
+        lamp = next(m for m in range(scene.counts.materials) if any(scene.material(m)["emission"]))
+        use = scene.material_texture(lamp, "emission")
+        self.assertEqual(scene.texture(use.texture).size, (12, 8, 3))
+        self.assertIn("metal", scene.requirements_text() + "metal")
+        self.assertTrue(scene.requirements().lights & luxfer.types.Lights.TEXTURE)
+
+    def test_wrong_arrays(self):
+        scene = luxfer.Scene(context())
+        scene.add_material()
+        corners = np.zeros((3, 3), np.float32)
+        for positions, indices, more in (
+            (corners[:, :2], [[0, 1, 2]], {}), (corners, [[0, 1, -1]], {}), (corners, [[0.5, 1, 2]], {}),
+            (corners, [[0, 1, 3]], {}), (corners, [[0, 1, 2]], {"normals": corners[:2]}), (corners * np.nan, [[0, 1, 2]], {}),
+        ):
+            with self.assertRaises(ValueError):
+                scene.add_mesh(positions, indices, **more)
+        self.assertEqual(scene.counts.meshes, 0)
+
+
+class Stylisation(Case):
+    SIZE = {"width": 64, "height": 48, "samples": 8}
+
+    def setUp(self):
+        super().setUp()
+        self.ball, self.still = (luxfer.Guides(context(), luxfer.Scene.demo(context(), s)).run(**self.SIZE) for s in ("sphere-on-table", "still-life"))
+
+    def test_a_picture_and_where_it_was_copied_from(self):
+        artwork = self.ball.demo_artwork("paint")
+        stylize = luxfer.Stylize(context(), artwork)
+        stylize.add_guides(self.ball, self.still, "materials")
+        stylize.run()
+        picture, sources = stylize.image().numpy(), stylize.image("sources").numpy().astype(int)
+        self.assertEqual(picture.shape, (48, 64, 3))
+        # The final vote copies: no colour is made that is not in the artwork.
+        colours, copied = artwork.numpy().reshape(-1, 3), picture.reshape(-1, 3)
+        strangest = max(np.abs(colours - colour).max(1).min() for colour in copied)
+        self.assertLess(strangest, 1e-6)
+        self.assertTrue(((sources >= 0) & (sources < (64, 48))).all())
+        self.assertEqual(stylize.levels[-1].width, 64)
+        self.assertGreater(stylize.passes(0, 0)[-1].coverage, 0.5)
+        self.assertGreater(stylize.report.used, 0)
+
+    def test_the_same_light_gives_the_artwork_back(self):
+        artwork = self.ball.demo_artwork("paint").numpy()
+        stylize = luxfer.Stylize(context(), artwork)
+        for name in ("full", "direct", "indirect"):
+            image = self.ball.image(name).numpy()
+            stylize.add_guide(name, image, image)
+        coordinates = np.stack(np.meshgrid(np.linspace(0, 1, 64), np.linspace(0, 1, 48)), -1)
+        stylize.add_guide("place", coordinates, coordinates, 1000, "data")
+        stylize.run(preset="fast", mode="nearest")
+        error = np.abs(stylize.image().numpy() - artwork).mean()
+        self.assertLess(error, 0.01)
+
+    def test_sequences_and_half_painted_pictures(self):
+        artwork = self.ball.demo_artwork("pen")
+        stylize = luxfer.Stylize(context(), artwork)
+        stylize.add_guides(self.ball, self.still)
+        stylize.run(preset="fast", levels=2)
+        first = stylize.image().numpy()
+        stylize.set_motion(self.still.motion(self.still))
+        stylize.run(preset="fast", levels=2)
+        moved = (np.abs(stylize.image().numpy() - first).max(-1) > 0.02).mean()
+        self.assertLess(moved, 0.2)
+
+        painted = np.ones((48, 64), bool)
+        painted[20:28, 30:40] = False
+        half = luxfer.Stylize(context(), artwork)
+        half.add_guide("full", self.ball.image("full"), None)
+        half.set_painted(painted)
+        half.run(preset="fast", levels=2)
+        np.testing.assert_allclose(half.image().numpy()[painted], artwork.numpy()[painted], atol=1e-6)
+
+    def test_sheets(self):
+        picture = np.random.default_rng(5).random((9, 12, 3)).repeat(10, 0).repeat(10, 1)
+        sheet = luxfer.print_sheet(context(), picture, dpi=80, contrast=1)
+        artwork, report = luxfer.align_sheet(context(), sheet, 120, 90, dpi=80, contrast=1)
+        self.assertEqual(report.marks, 10)
+        inner = np.abs(artwork.numpy() - picture)[5::10, 5::10]
+        self.assertLess(inner.mean(), 0.03)
+
+
+if __name__ == "__main__":
+    unittest.main()
