@@ -1,5 +1,5 @@
 # make demo   builds the library and two C programs, and runs a lighting transfer and a stylisation, into out/
-# make test   sets up what is missing (Debian packages, Mitsuba from PyPI) and runs every test
+# make test   sets up what is missing (Debian packages, Mitsuba and numpy from PyPI) and runs every test
 # make bench  runs the benches and prints the headline figures; make bench ONLY=rays runs one; plots go to out/bench/
 # make clean  removes what was built
 #
@@ -37,7 +37,7 @@ demo: out/lighting_transfer out/stylize
 	./out/stylize --out out
 	@echo "look at out/overview.png and out/stylize.png"
 
-# Installs Debian packages only when one is missing, and the renderer that one test compares with.
+# Installs Debian packages only when one is missing, the renderer that one test compares with, and what the Python package needs.
 setup:
 	@missing=""; for p in $(PACKAGES); do dpkg -s $$p >/dev/null 2>&1 || missing="$$missing $$p"; done; \
 	if [ -n "$$missing" ]; then \
@@ -47,7 +47,7 @@ setup:
 	  $$root apt-get update -qq </dev/null && \
 	  $$root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $$missing </dev/null; \
 	fi
-	@benches/peers/install.sh mitsuba
+	@benches/peers/install.sh mitsuba python
 
 test: setup lib
 	$(CARGO) test

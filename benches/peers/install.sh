@@ -15,6 +15,8 @@ install() { # name, packages...
     { echo "$name could not be installed" >&2; rm -rf "target/peers/$name"; }
 }
 
+# For the tests of the Python package.
+install python numpy 'setuptools>=70.1'
 install mitsuba mitsuba numpy
 # Cycles; its wheels fit one version of Python each.
 install bpy 'bpy==5.0.*' 'numpy<2'

@@ -11,6 +11,8 @@ from support import PACKAGE, ROOT, Case, luxfer
 
 from luxfer import abi, errors, types
 
+# Functions that Python has no use for, and those that wait for a place in the modules: call them through luxfer.library.
+ABI_ONLY = {"luxfer_status_name"}
 
 class Drift(Case):
     def test_what_is_generated_is_what_the_header_says(self):
@@ -27,7 +29,7 @@ class Drift(Case):
             self.assertEqual(len(getattr(luxfer.library, name).argtypes), count, name)
 
     def test_every_function_is_used_by_the_modules(self):
-        """All but those that Python has no use for: references are counted by its own objects."""
+        """All but those of ABI_ONLY; references are counted by Python's own objects."""
         source = "".join(p.read_text() for p in (PACKAGE / "luxfer").glob("*.py") if p.name not in ("_abi.py", "types.py"))
         kinds = re.findall(r'kind = "(\w+)"', source)
         verbs = set(re.findall(r'_(?:call|read|job|get_image|get_text|add)\(\s*"(\w+)"', source))
@@ -38,7 +40,7 @@ class Drift(Case):
             generic = verb in ("create", "release", "retain") or name.endswith("_init")
             if not generic and name not in source and verb not in verbs:
                 unused.append(name)
-        self.assertEqual(unused, ["luxfer_status_name"])
+        self.assertEqual(set(unused), ABI_ONLY, "add them to a module, or to ABI_ONLY")
 
     def test_every_status_has_an_exception(self):
         self.assertEqual(set(errors.BY_STATUS), set(types.Status) - {types.Status.OK})

@@ -196,6 +196,29 @@ class Scenes(Case):
         self.assertIn("metal", scene.requirements_text() + "metal")
         self.assertTrue(scene.requirements().lights & luxfer.types.Lights.TEXTURE)
 
+    def test_materials_change_and_use_textures(self):
+        scene = luxfer.Scene(context())
+        index = scene.add_material(base_color=(0.5, 0.4, 0.3), roughness=0.25)
+        scene.set_material(index, emission=(1, 2, 3), alpha_mode="mask")
+        material = scene.material(index)
+        self.assertEqual((material["emission"], material["roughness"], material["alpha_mode"].name), ((1, 2, 3), 0.25, "MASK"))
+        texture = scene.add_texture(np.ones((2, 3, 3)), "clamp", "mirror")
+        scene.set_material_texture(index, "base-color", texture, transform=[[2, 0, 0], [0, 3, 0.5]])
+        use = scene.material_texture(index, "base-color")
+        self.assertEqual((use.texture, use.wrap_u.name, use.wrap_v.name, use.transform), (0, "CLAMP", "MIRROR", (2, 0, 0, 0, 3, 0.5)))
+        scene.set_material_texture(index, "base-color", None)
+        self.assertEqual(scene.material_texture(index, "base-color").texture, luxfer.abi.LUXFER_NONE)
+
+    def test_an_environment_of_one_brightness_is_that_bright(self):
+        for image, colour in ((None, (3, 2, 1)), (np.ones((4, 8, 3)), (3, 2, 1))):
+            scene = luxfer.Scene(context())
+            scene.add_material()
+            scene.add_mesh([[0, -5, 0], [1, -5, 0], [0, -5, 1]], [[0, 1, 2]])
+            scene.add_camera(target=(0, 1, -1))
+            scene.set_environment(colour, image)
+            picture = luxfer.Render(context(), scene).run(width=8, height=8, samples=4).image().numpy()
+            np.testing.assert_allclose(picture, np.broadcast_to(colour, picture.shape), rtol=1e-4)
+
     def test_wrong_arrays(self):
         scene = luxfer.Scene(context())
         scene.add_material()

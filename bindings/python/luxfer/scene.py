@@ -13,7 +13,7 @@ from . import _abi, _arrays, _params
 from ._handle import Handle, call
 from .image import Image, image_of
 from .types import (
-    CameraParams, MaterialParams, MeshInfo, Requirements, SceneCounts, Surface, TextureRole, TextureUse,
+    CameraParams, MaterialParams, MeshInfo, Requirements, SceneCounts, Surface, TextureRole, TextureUse, Wrap,
 )
 
 if TYPE_CHECKING:
@@ -136,11 +136,43 @@ class Scene(Handle):
         self._call(verb, params, index)
         return index.value
 
+    def set_material(self, index: int, **params: Unpack[MaterialParams]) -> None:
+        """Changes numbers of a material; what is not given stays, and so do its textures and name."""
+        values = {**self.material(index), **params}
+        self._call("set_material", index, _params.fill(_abi.luxfer_material_params, values, []))
+
+    def add_texture(self, image: ImageLike, wrap: Wrap | str = Wrap.REPEAT, wrap_v: Wrap | str | None = None) -> int:
+        """Adds a texture, linear, of 1, 3 or 4 channels; returns its index."""
+        wraps = [_params.member(Wrap, w) for w in (wrap, wrap if wrap_v is None else wrap_v)]
+        index = ctypes.c_uint32()
+        self._call("add_texture", image_of(self._context, image), *wraps, index)
+        return index.value
+
+    def set_material_texture(
+        self,
+        material: int,
+        role: TextureRole | str,
+        texture: int | None,
+        uv_set: int = 0,
+        transform: ArrayLike | None = None,
+    ) -> None:
+        """Makes a material use a texture, or none, as "base-color", "metallic-roughness", "normal" or "emission"; transform
+        is 2 x 3, applied to (u, v, 1)."""
+        matrix = None if transform is None else np.ascontiguousarray(transform, np.float32)
+        if matrix is not None and matrix.size != 6:
+            raise ValueError(f"transform is 6 numbers, not {matrix.size}")
+        number = _abi.LUXFER_NONE if texture is None else texture
+        pointer = _arrays.pointer(matrix, ctypes.c_float)
+        self._call("set_material_texture", material, _params.member(TextureRole, role), number, uv_set, pointer)
+
     # -- light
 
-    def set_environment(self, colour: Sequence[float]) -> None:
-        """Surrounds the scene with light of one colour, in cd/m²."""
-        self._call("set_environment", *_colour(colour))
+    def set_environment(self, colour: Sequence[float], image: ImageLike | None = None) -> None:
+        """Surrounds the scene with light of one colour, in cd/m², or with that of an equirectangular image times it."""
+        if image is None:
+            self._call("set_environment", *_colour(colour))
+        else:
+            self._call("set_environment_image", image_of(self._context, image), *_colour(colour))
 
     def set_emission(self, material: int, colour: Sequence[float]) -> None:
         """Sets what a material emits, in cd/m²; multiplies its emission texture."""
