@@ -229,7 +229,7 @@ class Writer:
     def abi(self) -> str:
         h, out = self.header, [BANNER.format(title="The C functions, structs and constants of luxfer.h, for ctypes.")]
         imports = "CFUNCTYPE, POINTER, Structure, c_char_p, c_double, c_float, c_int32, c_size_t, c_uint32, c_uint64, c_void_p"
-        out.append(f"from ctypes import {imports}\n\nfrom . import types\n\n")
+        out.append(f"from ctypes import {imports}\nfrom typing import Any\n\nfrom . import types\n\n")
         out += [f"{name} = {value}\n" for name, value in h.constants.items()]
         out.append("\n")
         for name in h.opaque:
@@ -243,10 +243,11 @@ class Writer:
             out.append("    ]\n")
             enums = [f'"{f.name}": types.{self.enums[f.type].name}' for f in fields if f.type in self.enums]
             enums += [f'"{f.name}": types.{e.name}' for f in fields for e in self.enums.values() if self.takes_flags(f, e)]
-            out.append(f"    enumerations = {{{', '.join(enums)}}}\n")
+            if enums:
+                out.append(f"    enumerations: dict[str, type] = {{{', '.join(enums)}}}\n")
             if name in self.is_output:
                 out.append(f"    result = types.{camel(name)}\n")
-        out.append("\n\n#: What each function returns, and takes: names and types.\nFUNCTIONS = {\n")
+        out.append("\n\n#: What each function returns, and takes: names and types.\nFUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {\n")
         for name, (returns, arguments) in h.functions.items():
             result = "c_char_p" if "*" in returns else C_TYPES.get(returns, "c_int32")
             types = ", ".join(f'("{a.name}", {self.c_type(a)})' for a in arguments)

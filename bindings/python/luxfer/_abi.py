@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from ctypes import CFUNCTYPE, POINTER, Structure, c_char_p, c_double, c_float, c_int32, c_size_t, c_uint32, c_uint64, c_void_p
+from typing import Any
 
 from . import types
 
@@ -246,7 +247,6 @@ class luxfer_context_params(Structure):
         ("num_threads", c_uint32),
         ("memory_budget_mib", c_uint64),
     ]
-    enumerations = {}
 
 
 class luxfer_image_view(Structure):
@@ -266,7 +266,7 @@ class luxfer_image_view(Structure):
         ("byte_size", c_size_t),
         ("data", c_void_p),
     ]
-    enumerations = {"sample": types.Sample, "colour_space": types.ColourSpace, "flags": types.View}
+    enumerations: dict[str, type] = {"sample": types.Sample, "colour_space": types.ColourSpace, "flags": types.View}
 
 
 class luxfer_scene_counts(Structure):
@@ -281,7 +281,6 @@ class luxfer_scene_counts(Structure):
         ("cameras", c_uint32),
         ("triangles", c_uint64),
     ]
-    enumerations = {}
     result = types.SceneCounts
 
 
@@ -299,7 +298,6 @@ class luxfer_surface(Structure):
         ("area", c_float),
         ("reserved", c_uint32),
     ]
-    enumerations = {}
     result = types.Surface
 
 
@@ -321,7 +319,7 @@ class luxfer_material_params(Structure):
         ("alpha_cutoff", c_float),
         ("normal_scale", c_float),
     ]
-    enumerations = {"alpha_mode": types.AlphaMode}
+    enumerations: dict[str, type] = {"alpha_mode": types.AlphaMode}
 
 
 class luxfer_texture_use(Structure):
@@ -335,7 +333,7 @@ class luxfer_texture_use(Structure):
         ("wrap_v", c_int32),
         ("transform", c_float * 6),
     ]
-    enumerations = {"wrap_u": types.Wrap, "wrap_v": types.Wrap}
+    enumerations: dict[str, type] = {"wrap_u": types.Wrap, "wrap_v": types.Wrap}
     result = types.TextureUse
 
 
@@ -357,7 +355,6 @@ class luxfer_mesh_params(Structure):
         ("indices", c_void_p),
         ("index_stride", c_size_t),
     ]
-    enumerations = {}
 
 
 class luxfer_camera_params(Structure):
@@ -371,7 +368,6 @@ class luxfer_camera_params(Structure):
         ("up", c_float * 3),
         ("reserved", c_uint32),
     ]
-    enumerations = {}
 
 
 class luxfer_light_params(Structure):
@@ -387,7 +383,7 @@ class luxfer_light_params(Structure):
         ("outer_angle", c_float),
         ("reserved", c_uint32),
     ]
-    enumerations = {"kind": types.LightKind}
+    enumerations: dict[str, type] = {"kind": types.LightKind}
 
 
 class luxfer_ray(Structure):
@@ -398,7 +394,6 @@ class luxfer_ray(Structure):
         ("direction", c_float * 3),
         ("t_max", c_float),
     ]
-    enumerations = {}
     result = types.Ray
 
 
@@ -412,7 +407,6 @@ class luxfer_hit(Structure):
         ("u", c_float),
         ("v", c_float),
     ]
-    enumerations = {}
     result = types.Hit
 
 
@@ -428,7 +422,7 @@ class luxfer_requirements(Structure):
         ("brightest_material", c_uint32),
         ("albedo", c_float * 3),
     ]
-    enumerations = {"scattering": types.Scattering, "lights": types.Lights}
+    enumerations: dict[str, type] = {"scattering": types.Scattering, "lights": types.Lights}
     result = types.Requirements
 
 
@@ -443,7 +437,6 @@ class luxfer_mesh_info(Structure):
         ("has_normals", c_uint32),
         ("uv_sets", c_uint32),
     ]
-    enumerations = {}
     result = types.MeshInfo
 
 
@@ -464,7 +457,7 @@ class luxfer_rectify_params(Structure):
         ("max_magnification", c_double),
         ("seed", c_uint64),
     ]
-    enumerations = {"detector": types.Lines, "search": types.Search, "metric": types.Metric}
+    enumerations: dict[str, type] = {"detector": types.Lines, "search": types.Search, "metric": types.Metric}
 
 
 class luxfer_rectify_report(Structure):
@@ -488,7 +481,7 @@ class luxfer_rectify_report(Structure):
         ("pixel_size", c_double),
         ("aspect_confidence", c_double),
     ]
-    enumerations = {"focal_source": types.FocalSource}
+    enumerations: dict[str, type] = {"focal_source": types.FocalSource}
     result = types.RectifyReport
 
 
@@ -501,7 +494,6 @@ class luxfer_features_params(Structure):
         ("far_plane", c_float),
         ("normal_radius", c_uint32),
     ]
-    enumerations = {}
 
 
 class luxfer_features_report(Structure):
@@ -513,7 +505,7 @@ class luxfer_features_report(Structure):
         ("depth_confidence", c_double),
         ("replaced_pixels", c_uint64),
     ]
-    enumerations = {"depth_source": types.DepthSource}
+    enumerations: dict[str, type] = {"depth_source": types.DepthSource}
     result = types.FeaturesReport
 
 
@@ -528,7 +520,6 @@ class luxfer_segment_params(Structure):
         ("ridge", c_double),
         ("seed", c_uint64),
     ]
-    enumerations = {}
 
 
 class luxfer_segment_report(Structure):
@@ -542,7 +533,6 @@ class luxfer_segment_report(Structure):
         ("positive_samples", c_uint64),
         ("contradictory_pixels", c_uint64),
     ]
-    enumerations = {}
     result = types.SegmentReport
 
 
@@ -559,7 +549,6 @@ class luxfer_emission_params(Structure):
         ("metadata_weight", c_float),
         ("seed", c_uint64),
     ]
-    enumerations = {}
 
 
 class luxfer_emission_report(Structure):
@@ -571,7 +560,6 @@ class luxfer_emission_report(Structure):
         ("error", c_double),
         ("regularity", c_double),
     ]
-    enumerations = {}
     result = types.EmissionReport
 
 
@@ -589,7 +577,6 @@ class luxfer_luminaire(Structure):
         ("colour", c_float * 3),
         ("reserved", c_uint32),
     ]
-    enumerations = {}
     result = types.Luminaire
 
 
@@ -609,7 +596,6 @@ class luxfer_render_params(Structure):
         ("preview", c_float),
         ("reserved", c_uint32),
     ]
-    enumerations = {}
 
 
 class luxfer_render_report(Structure):
@@ -622,7 +608,6 @@ class luxfer_render_report(Structure):
         ("discarded", c_uint64),
         ("preview_bias", c_double),
     ]
-    enumerations = {}
     result = types.RenderReport
 
 
@@ -636,7 +621,6 @@ class luxfer_illuminance_params(Structure):
         ("samples", c_uint32),
         ("seed", c_uint64),
     ]
-    enumerations = {}
 
 
 class luxfer_illuminance_grid(Structure):
@@ -650,7 +634,6 @@ class luxfer_illuminance_grid(Structure):
         ("normal", c_float * 3),
         ("reserved", c_uint32),
     ]
-    enumerations = {}
 
 
 class luxfer_illuminance_report(Structure):
@@ -664,7 +647,6 @@ class luxfer_illuminance_report(Structure):
         ("largest", c_double),
         ("mean_error", c_double),
     ]
-    enumerations = {}
     result = types.IlluminanceReport
 
 
@@ -680,7 +662,7 @@ class luxfer_relight_params(Structure):
         ("reserved", c_uint32),
         ("seed", c_uint64),
     ]
-    enumerations = {"quantity": types.Quantity}
+    enumerations: dict[str, type] = {"quantity": types.Quantity}
 
 
 class luxfer_relight_report(Structure):
@@ -697,7 +679,7 @@ class luxfer_relight_report(Structure):
         ("reserved", c_uint32),
         ("error", c_double),
     ]
-    enumerations = {"reach": types.Reach}
+    enumerations: dict[str, type] = {"reach": types.Reach}
     result = types.RelightReport
 
 
@@ -718,7 +700,7 @@ class luxfer_transfer_params(Structure):
         ("relight", POINTER(luxfer_relight_params)),
         ("render", POINTER(luxfer_render_params)),
     ]
-    enumerations = {"target": types.Target}
+    enumerations: dict[str, type] = {"target": types.Target}
 
 
 class luxfer_transfer_report(Structure):
@@ -740,7 +722,6 @@ class luxfer_transfer_report(Structure):
         ("target", c_float * 3),
         ("reserved", c_uint32),
     ]
-    enumerations = {}
     result = types.TransferReport
 
 
@@ -758,7 +739,6 @@ class luxfer_fixture(Structure):
         ("area", c_double),
         ("flux", c_double),
     ]
-    enumerations = {}
     result = types.Fixture
 
 
@@ -774,7 +754,6 @@ class luxfer_guides_params(Structure):
         ("smooth", c_uint32),
         ("seed", c_uint64),
     ]
-    enumerations = {}
 
 
 class luxfer_stylize_params(Structure):
@@ -802,7 +781,7 @@ class luxfer_stylize_params(Structure):
         ("match_appearance", c_float),
         ("seed", c_uint64),
     ]
-    enumerations = {"mode": types.StylizeMode, "search": types.StylizeSearch, "vote": types.StylizeVote, "final_vote": types.StylizeVote}
+    enumerations: dict[str, type] = {"mode": types.StylizeMode, "search": types.StylizeSearch, "vote": types.StylizeVote, "final_vote": types.StylizeVote}
 
 
 class luxfer_stylize_report(Structure):
@@ -822,7 +801,6 @@ class luxfer_stylize_report(Structure):
         ("broken_source", c_uint64),
         ("broken_target", c_uint64),
     ]
-    enumerations = {}
     result = types.StylizeReport
 
 
@@ -834,7 +812,6 @@ class luxfer_stylize_round(Structure):
         ("passes", c_uint32),
         ("energy", c_double),
     ]
-    enumerations = {}
     result = types.StylizeRound
 
 
@@ -848,7 +825,6 @@ class luxfer_stylize_pass(Structure):
         ("coverage", c_double),
         ("gained", c_uint64),
     ]
-    enumerations = {}
     result = types.StylizePass
 
 
@@ -864,7 +840,6 @@ class luxfer_sheet_params(Structure):
         ("margin", c_double),
         ("contrast", c_double),
     ]
-    enumerations = {}
 
 
 class luxfer_sheet_report(Structure):
@@ -877,7 +852,6 @@ class luxfer_sheet_report(Structure):
         ("error", c_double),
         ("to_photo", c_double * 9),
     ]
-    enumerations = {}
     result = types.SheetReport
 
 
@@ -891,11 +865,10 @@ class luxfer_demo_photo_params(Structure):
         ("samples", c_uint32),
         ("seed", c_uint64),
     ]
-    enumerations = {}
 
 
 #: What each function returns, and takes: names and types.
-FUNCTIONS = {
+FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_version": (c_uint32, []),
     "luxfer_version_string": (c_char_p, []),
     "luxfer_status_name": (c_char_p, [("status", c_int32)]),

@@ -42,7 +42,7 @@ def member(kind: type[E], value: E | str | int) -> E:
     try:
         return kind(operator.index(value))
     except ValueError:
-        listed = ", ".join(f"{m.name.lower()} = {m.value}" for m in kind)
+        listed = ", ".join(f"{name.lower()} = {m.value}" for name, m in kind.__members__.items())
         raise ValueError(f"{value} is no {kind.__name__}: there are {listed}") from None
 
 

@@ -25,7 +25,7 @@ class Context(Handle):
     """
 
     kind = "context"
-    _context = property(lambda self: self)  # type: ignore[assignment]
+    _context = property(lambda self: self)
 
     def __init__(self, **params: Unpack[ContextParams]) -> None:
         pointer = ctypes.POINTER(_abi.luxfer_context)()

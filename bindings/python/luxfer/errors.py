@@ -84,7 +84,9 @@ class Unreachable(Error):
     status = Status.UNREACHABLE
 
 
-BY_STATUS: dict[int, type[Error]] = {kind.status: kind for kind in (Error, *Error.__subclasses__())}
+KINDS: list[type[Error]] = [Error, *Error.__subclasses__()]
+
+BY_STATUS: dict[int, type[Error]] = {kind.status: kind for kind in KINDS}
 
 
 def error(status: int, message: str) -> Error:

@@ -45,7 +45,7 @@ class Transfer(StageBase):
             self.set_photo(photo)
         if scene is not None and surface is not None:
             self.set_scene(scene, surface)
-        elif scene is not surface:
+        elif not (scene is None and surface is None):
             raise TypeError("scene and surface, the name of what receives the lights, go together")
 
     # -- inputs
