@@ -157,7 +157,7 @@ mod tests {
             let expected: Vec<f64> = (0..side * side).map(|i| area(i) * share).collect();
             let mut counts = vec![0.0; side * side];
             for _ in 0..n {
-                let p = polygon.sample(rng.next_f64(), Vec2::new(rng.next_f32(), rng.next_f32())).unwrap();
+                let p = polygon.sample((rng.next_f64(), rng.next_f32())).unwrap();
                 let at = |x: f64| ((x * side as f64) as usize).min(side - 1);
                 counts[at(p.y) * side + at(p.x)] += 1.0;
             }

@@ -128,9 +128,9 @@ fn every_kind_of_light_is_chosen_as_often_as_its_density_says() {
     let (mut counts, mut stated) = ([0.0; 9], [0.0; 9]);
     let (mut surface, n) = (0.0, 100_000);
     let mut rng = Rng::new(45, &[]);
-    for i in 0..n {
-        let block = Sampler::new(rng.next_u64(), i).next();
-        let Some(sample) = world.lights().sample(world.scene(), &receiver, &block) else {
+    for _ in 0..n {
+        let point = (rng.next_f64(), rng.next_f32());
+        let Some(sample) = world.lights().sample(world.scene(), &receiver, point) else {
             counts[8] += 1.0;
             continue;
         };
