@@ -943,6 +943,8 @@ typedef struct luxfer_requirements {
     uint32_t brightest_material;
     /** The most that any surface sends on, per channel, in [0, 1]. */
     float albedo[3];
+    /** Triangles without an area, which are left out. */
+    uint32_t flat_triangles;
 } luxfer_requirements;
 
 /**

@@ -22,7 +22,7 @@ const SIDE: usize = 24;
 const BLOCK: usize = 4;
 const IMAGES: u32 = 16;
 const OUR_PATHS: u32 = 256;
-const THEIR_PATHS: u32 = 128;
+const THEIR_PATHS: u32 = 256;
 
 /// A parallelogram that faces `u × v`.
 fn quad(corner: Vec3, u: Vec3, v: Vec3, material: usize) -> Mesh {

@@ -421,6 +421,7 @@ class luxfer_requirements(Structure):
         ("bounces", c_uint32),
         ("brightest_material", c_uint32),
         ("albedo", c_float * 3),
+        ("flat_triangles", c_uint32),
     ]
     enumerations: dict[str, type] = {"scattering": types.Scattering, "lights": types.Lights}
     result = types.Requirements

@@ -775,6 +775,8 @@ class Requirements:
     surfaces."""
     albedo: tuple[float, float, float]
     """The most that any surface sends on, per channel, in [0, 1]."""
+    flat_triangles: int
+    """Triangles without an area, which are left out."""
 
 
 @dataclass(frozen=True)
