@@ -16,7 +16,7 @@ int isatty(int file);
 static luxfer_context *context;
 
 /* Ends the program with the library's own words if a call has failed. */
-static void check(luxfer_status status, const char *what) {
+static inline void check(luxfer_status status, const char *what) {
     char message[1024] = "";
     if (status == LUXFER_OK) return;
     if (context) luxfer_context_last_error(context, message, sizeof message, NULL);
@@ -24,7 +24,7 @@ static void check(luxfer_status status, const char *what) {
     exit(1);
 }
 
-static int show_progress(void *title, double fraction) {
+static inline int show_progress(void *title, double fraction) {
     char bar[41];
     int i, filled = (int)(fraction * 40);
     for (i = 0; i < 40; i++) bar[i] = i < filled ? '#' : '.';
@@ -34,7 +34,7 @@ static int show_progress(void *title, double fraction) {
 }
 
 /* Waits for a job, with a progress bar where somebody looks, and lets go of it. */
-static void finish(luxfer_job *job, const char *title) {
+static inline void finish(luxfer_job *job, const char *title) {
     check(luxfer_job_wait(job, -1, isatty(2) ? show_progress : NULL, (void *)title), title);
     check(luxfer_job_release(job), title);
 }

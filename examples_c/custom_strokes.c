@@ -1,0 +1,86 @@
+/* Strokes of a user's own: what on a photo is the ceiling, and what on the ceiling is a lamp.
+ *
+ * A segmentation learns from a few strokes and tells how sure it is, so a painting program shows its mask while the user
+ * paints. Here the strokes are written down. Writes custom_strokes.png: the photo; the ceiling after the first strokes, and
+ * after one more; the lamps in it.
+ */
+#include "common.h"
+#include "panels.h"
+
+/* A photo of the generated office, 300 x 200 pixels. luxfer_image_load would load one. */
+static luxfer_image *take_photo(void) {
+    luxfer_demo_photo_params params;
+    luxfer_demo_photo *demo = NULL;
+    luxfer_image *photo = NULL;
+    luxfer_job *job = NULL;
+    check(luxfer_demo_photo_params_init(&params, sizeof params), "photo");
+    params.width = 300;
+    params.height = 200;
+    params.samples = 8;
+    check(luxfer_demo_photo_create(context, &demo), "photo");
+    check(luxfer_demo_photo_start(demo, &params, &job), "photo");
+    finish(job, "taking the photo");
+    check(luxfer_demo_photo_get_image(demo, LUXFER_DEMO_PHOTO_PICTURE, &photo), "photo");
+    luxfer_demo_photo_release(demo);
+    return photo;
+}
+
+/* Runs stages first to last, says how good the result is, and shows it. The error is that of strokes held out: it knows nothing
+ * of what no stroke has touched, which LUXFER_SEGMENT_UNSEEN of a luxfer_segment shows. */
+static void run(luxfer_transfer *transfer, luxfer_stage first, luxfer_stage last, luxfer_transfer_image which, sheet *s,
+                int column, int row) {
+    luxfer_transfer_report report;
+    luxfer_image *confidence = NULL;
+    luxfer_job *job = NULL;
+    report.struct_size = sizeof report;
+    check(luxfer_transfer_start(transfer, first, last, NULL, &job), "segmentation");
+    finish(job, "segmenting");
+    check(luxfer_transfer_get_report(transfer, &report), "report");
+    if (last == LUXFER_STAGE_PLANE) printf("ceiling: %.1f %% wrong on strokes held out\n", 100 * report.plane_error);
+    else printf("lamps:   %.1f %% wrong on strokes held out\n", 100 * report.lights_error);
+    check(luxfer_transfer_get_image(transfer, which, &confidence), "confidence");
+    panels_add(s, column, row, confidence, 1);
+    luxfer_image_release(confidence);
+}
+
+int main(void) {
+    /* Polylines, x and y in pixels of the photo, the top-left pixel's centre at (0.5, 0.5). */
+    static const float ceiling[] = {50, 11, 90, 40, 128, 58}, beside_lamps[] = {214, 89, 253, 73};
+    static const float far_wall[] = {50, 163, 167, 160}, cupboards[] = {190, 185, 292, 171};
+    static const float left_wall[] = {5, 152, 7, 179};
+    static const float lamp[] = {157, 84, 190, 85}, large_lamp[] = {230, 19, 245, 30}, small_lamp[] = {130, 115, 152, 116};
+    static const float tiles[] = {73, 42, 112, 81}, far_tiles[] = {62, 112, 105, 105};
+    const float radius = 1.5f;
+    luxfer_transfer *transfer = NULL;
+    luxfer_image *photo;
+    sheet s = panels_begin(2, 2, 300, 200);
+
+    check(luxfer_context_create(NULL, &context), "context");
+    photo = take_photo();
+    panels_add(&s, 0, 0, photo, 1);
+    check(luxfer_transfer_create(context, &transfer), "transfer");
+    check(luxfer_transfer_set_photo(transfer, photo), "photo");
+
+    /* The ceiling: 1 is on it, 0 off it. Strokes on lamps count for it as well. */
+    check(luxfer_transfer_add_stroke(transfer, LUXFER_PHASE_PLANE, ceiling, 3, radius, 1), "stroke");
+    check(luxfer_transfer_add_stroke(transfer, LUXFER_PHASE_PLANE, far_wall, 2, radius, 0), "stroke");
+    run(transfer, LUXFER_STAGE_VIEW, LUXFER_STAGE_PLANE, LUXFER_TRANSFER_PLANE_CONFIDENCE, &s, 1, 0);
+
+    /* More strokes where it was wrong; only what depends on them is done again. */
+    check(luxfer_transfer_add_stroke(transfer, LUXFER_PHASE_PLANE, beside_lamps, 2, radius, 1), "stroke");
+    check(luxfer_transfer_add_stroke(transfer, LUXFER_PHASE_PLANE, cupboards, 2, radius, 0), "stroke");
+    check(luxfer_transfer_add_stroke(transfer, LUXFER_PHASE_PLANE, left_wall, 2, radius, 0), "stroke");
+    check(luxfer_transfer_add_stroke(transfer, LUXFER_PHASE_LIGHTS, lamp, 2, radius, 1), "stroke");
+    check(luxfer_transfer_add_stroke(transfer, LUXFER_PHASE_LIGHTS, large_lamp, 2, radius, 1), "stroke");
+    check(luxfer_transfer_add_stroke(transfer, LUXFER_PHASE_LIGHTS, small_lamp, 2, radius, 1), "stroke");
+    check(luxfer_transfer_add_stroke(transfer, LUXFER_PHASE_LIGHTS, tiles, 2, radius, 0), "stroke");
+    check(luxfer_transfer_add_stroke(transfer, LUXFER_PHASE_LIGHTS, far_tiles, 2, radius, 0), "stroke");
+    run(transfer, LUXFER_STAGE_PLANE, LUXFER_STAGE_PLANE, LUXFER_TRANSFER_PLANE_CONFIDENCE, &s, 0, 1);
+    run(transfer, LUXFER_STAGE_LIGHTS, LUXFER_STAGE_LIGHTS, LUXFER_TRANSFER_LIGHTS_CONFIDENCE, &s, 1, 1);
+    check(panels_save(&s, context, "custom_strokes.png"), "custom_strokes.png");
+
+    luxfer_transfer_release(transfer);
+    luxfer_image_release(photo);
+    luxfer_context_release(context);
+    return 0;
+}

@@ -1,0 +1,89 @@
+/* What can go wrong, and how one is told: statuses, messages, versions.
+ *
+ * Makes mistakes on purpose and prints what the library says about each. Nothing here ends the program: the library never
+ * prints, aborts, or leaves an output half written.
+ */
+#include "luxfer.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+static luxfer_context *context;
+
+/* What a program does with a failure: the status is for deciding, the message for people. */
+static void report(const char *attempt, luxfer_status status, luxfer_status expected) {
+    char *message;
+    size_t needed = 0;
+    /* Messages have any length: ask for it first. They are kept for each thread, until its next failure. */
+    luxfer_context_last_error(context, NULL, 0, &needed);
+    message = malloc(needed);
+    if (!message) exit(1);
+    luxfer_context_last_error(context, message, needed, NULL);
+    printf("%s\n  %s: %s\n", attempt, luxfer_status_name(status), message);
+    free(message);
+    if (status != expected) exit(1);
+}
+
+int main(void) {
+    luxfer_image *image = NULL;
+    luxfer_scene *scene = NULL;
+    luxfer_render *render = NULL;
+    luxfer_job *job = NULL;
+    luxfer_surface surface;
+    luxfer_material_params material;
+    luxfer_render_params params;
+    luxfer_image_view view;
+    float pixels[2 * 2 * 3] = {0};
+
+    /* Is the library that was loaded one for this header? Before 1.0 those of one minor version are. */
+    if (luxfer_version() / 100 != LUXFER_VERSION / 100) {
+        fprintf(stderr, "built for luxfer %d.%d, loaded %s\n", LUXFER_VERSION_MAJOR, LUXFER_VERSION_MINOR,
+                luxfer_version_string());
+        return 1;
+    }
+    if (luxfer_context_create(NULL, &context) != LUXFER_OK) return 1;
+
+    report("A file that is not there:", luxfer_image_load(context, "photo.jpg", LUXFER_COLOUR_SRGB, &image), LUXFER_IO);
+    report("A file that is something else:",
+           luxfer_scene_load_memory(context, "not a scene", 11, NULL, &scene), LUXFER_FORMAT);
+
+    /* Views carry the size of their memory, so that its end is never passed. */
+    luxfer_image_view_init(&view, sizeof view);
+    view.width = 2;
+    view.height = 3;
+    view.data = pixels;
+    view.byte_size = sizeof pixels;
+    report("Pixels of 2 x 2 that are said to be 2 x 3:", luxfer_image_create(context, &view, &image),
+           LUXFER_INVALID_ARGUMENT);
+
+    if (luxfer_demo_scene(context, LUXFER_DEMO_TARGET_ROOM, &scene) != LUXFER_OK) return 1;
+    surface.struct_size = sizeof surface;
+    report("A name with a slip in it:", luxfer_scene_find_surface(scene, "Ceilling", &surface), LUXFER_NOT_FOUND);
+    luxfer_material_params_init(&material, sizeof material);
+    material.roughness = NAN;
+    report("A number that is none:", luxfer_scene_add_material(scene, &material, NULL), LUXFER_INVALID_ARGUMENT);
+    if (luxfer_render_create(context, &render) != LUXFER_OK) return 1;
+    report("A rendering of no scene:", luxfer_render_start(render, NULL, &job), LUXFER_INVALID_OPERATION);
+    report("An expression that is none:",
+           luxfer_render_add_expression(render, "direct", "C<RD>L("), LUXFER_INVALID_ARGUMENT);
+
+    /* What a job meets is told by whoever waits for it; settings are checked when it starts or runs. */
+    luxfer_render_params_init(&params, sizeof params);
+    params.width = params.height = 16;
+    luxfer_render_set_scene(render, scene);
+    luxfer_render_add_expression(render, "lamp", "C.*<L.'No such lamp'>");
+    if (luxfer_render_start(render, &params, &job) != LUXFER_OK) return 1;
+    report("A label that nothing bears:", luxfer_job_wait(job, -1, NULL, NULL), LUXFER_NOT_FOUND);
+    report("The picture that it would have made:",
+           luxfer_render_get_image(render, LUXFER_RENDER_BEAUTY, &image), LUXFER_NOT_READY);
+
+    /* Outputs were left alone all the time. A handle of the wrong kind, or NULL, is an error like any other. */
+    if (image != NULL || luxfer_job_wait(NULL, -1, NULL, NULL) != LUXFER_INVALID_ARGUMENT) return 1;
+
+    luxfer_job_release(job);
+    luxfer_render_release(render);
+    luxfer_scene_release(scene);
+    luxfer_context_release(context);
+    return 0;
+}

@@ -1,0 +1,82 @@
+/* Illuminance on a plane, as lighting designers plan it.
+ *
+ * Measures the generated office 1.5 m above its floor, over the screens between desks, prints mean, extremes and uniformity with
+ * their error, and writes lux_map.png: dark blue is 0 lux, red 1500.
+ */
+#include "common.h"
+
+enum { COLUMNS = 22, ROWS = 40, SCALE = 6 }; /* A point every 20 cm, and its pixels. */
+
+/* Blue, green, yellow, red, for t in [0, 1]. */
+static void false_colour(float t, unsigned char *rgb) {
+    static const float stops[5][3] = {{20, 20, 90}, {20, 110, 190}, {60, 180, 90}, {240, 220, 60}, {210, 40, 30}};
+    const float at = (t < 0 ? 0 : t > 1 ? 1 : t) * 4;
+    const int i = at < 4 ? (int)at : 3;
+    int c;
+    for (c = 0; c < 3; c++) rgb[c] = (unsigned char)(stops[i][c] + (at - (float)i) * (stops[i + 1][c] - stops[i][c]));
+}
+
+int main(void) {
+    static float lux[ROWS][COLUMNS];
+    static unsigned char map[ROWS * SCALE][COLUMNS * SCALE][3];
+    luxfer_scene *scene = NULL;
+    luxfer_illuminance *illuminance = NULL;
+    luxfer_illuminance_grid grid;
+    luxfer_illuminance_params params;
+    luxfer_illuminance_report report;
+    luxfer_image_view view;
+    luxfer_image *image = NULL;
+    luxfer_job *job = NULL;
+    int x, y;
+    report.struct_size = sizeof report;
+
+    check(luxfer_context_create(NULL, &context), "context");
+    check(luxfer_demo_scene(context, LUXFER_DEMO_EXEMPLAR_ROOM, &scene), "scene");
+    check(luxfer_illuminance_create(context, &illuminance), "illuminance");
+    check(luxfer_illuminance_set_scene(illuminance, scene), "illuminance");
+
+    /* The plane: a corner and two edges; light counts from above. Points are the centres of the cells. */
+    check(luxfer_illuminance_grid_init(&grid, sizeof grid), "grid");
+    grid.origin[0] = 0.5f, grid.origin[1] = 1.5f, grid.origin[2] = 0.5f;
+    grid.across[0] = 4.4f;
+    grid.down[2] = 8;
+    check(luxfer_illuminance_params_init(&params, sizeof params), "grid");
+    params.columns = COLUMNS;
+    params.rows = ROWS;
+    params.samples = 256;
+    check(luxfer_illuminance_start_grid(illuminance, &grid, &params, &job), "grid");
+    finish(job, "measuring");
+
+    check(luxfer_illuminance_get_report(illuminance, &report), "report");
+    printf("mean %.0f lux (+- %.1f, 95 %%), least %.0f, largest %.0f, uniformity %.2f\n", report.mean, 1.96 * report.mean_error,
+           report.least, report.largest, report.least / report.mean);
+
+    /* The values, one channel, into an array of our own. */
+    check(luxfer_illuminance_get_image(illuminance, LUXFER_ILLUMINANCE_LUX, &image), "lux");
+    check(luxfer_image_view_init(&view, sizeof view), "lux");
+    view.width = COLUMNS;
+    view.height = ROWS;
+    view.channels = 1;
+    view.data = lux;
+    view.byte_size = sizeof lux;
+    check(luxfer_image_read(image, 0, &view), "lux");
+    check(luxfer_image_release(image), "lux");
+
+    for (y = 0; y < ROWS * SCALE; y++)
+        for (x = 0; x < COLUMNS * SCALE; x++) false_colour(lux[y / SCALE][x / SCALE] / 1500, map[y][x]);
+    view.width = COLUMNS * SCALE;
+    view.height = ROWS * SCALE;
+    view.channels = 3;
+    view.sample = LUXFER_SAMPLE_U8;
+    view.colour_space = LUXFER_COLOUR_SRGB;
+    view.data = map;
+    view.byte_size = sizeof map;
+    check(luxfer_image_create(context, &view, &image), "map");
+    check(luxfer_image_save(image, "lux_map.png", 1), "map");
+
+    luxfer_image_release(image);
+    luxfer_illuminance_release(illuminance);
+    luxfer_scene_release(scene);
+    luxfer_context_release(context);
+    return 0;
+}

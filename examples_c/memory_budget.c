@@ -1,0 +1,59 @@
+/* A budget of memory: what a host allows the library to keep for it.
+ *
+ * Loads pictures into a context of 8 MiB until one does not fit, lets go of one, and goes on.
+ */
+#include "luxfer.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+enum { SIDE = 512, MOST = 16 };
+
+/* A grey picture of 512 x 512 pixels: 3 MiB as 32-bit floating point, whatever the samples of the caller are. */
+static luxfer_status load(luxfer_context *context, luxfer_image **image) {
+    luxfer_image_view view;
+    luxfer_status status = luxfer_image_view_init(&view, sizeof view);
+    unsigned char *pixels = calloc(SIDE * SIDE, 3);
+    if (!pixels) return LUXFER_OUT_OF_MEMORY;
+    view.width = view.height = SIDE;
+    view.sample = LUXFER_SAMPLE_U8;
+    view.colour_space = LUXFER_COLOUR_SRGB;
+    view.data = pixels;
+    view.byte_size = (size_t)SIDE * SIDE * 3;
+    if (status == LUXFER_OK) status = luxfer_image_create(context, &view, image);
+    free(pixels); /* The library keeps a copy and no pointer. */
+    return status;
+}
+
+int main(void) {
+    luxfer_context_params params;
+    luxfer_context *context = NULL;
+    luxfer_image *images[MOST] = {NULL};
+    luxfer_status status = luxfer_context_params_init(&params, sizeof params);
+    int count = 0, i;
+
+    /* Also how many threads it may have; 0 would be one for each core. */
+    params.memory_budget_mib = 8;
+    params.num_threads = 1;
+    if (status == LUXFER_OK) status = luxfer_context_create(&params, &context);
+    if (status != LUXFER_OK) return 1;
+
+    while (count < MOST && (status = load(context, &images[count])) == LUXFER_OK) count++;
+    if (status == LUXFER_OUT_OF_MEMORY) {
+        /* Nothing is lost: the message says how much is in use, and the context goes on working. */
+        char message[512] = "";
+        luxfer_context_last_error(context, message, sizeof message, NULL);
+        printf("after %d pictures: %s\n", count, message);
+    }
+    if (count == 0 || status != LUXFER_OUT_OF_MEMORY) return 1;
+
+    /* A host with a cache would drop what was used least lately. */
+    luxfer_image_release(images[0]);
+    images[0] = NULL;
+    status = load(context, &images[0]);
+    printf("after letting go of one: %s\n", luxfer_status_name(status));
+
+    for (i = 0; i < MOST; i++) luxfer_image_release(images[i]);
+    luxfer_context_release(context);
+    return status == LUXFER_OK ? 0 : 1;
+}

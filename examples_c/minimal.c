@@ -1,0 +1,58 @@
+/* The least there is to it: a scene, a picture of it, a file.
+ *
+ *   minimal [SCENE.glb]
+ *
+ * Renders the first camera of a scene, or a room that the library generates, to minimal.png.
+ */
+#include "luxfer.h"
+
+#include <stdio.h>
+
+int main(int argc, char **argv) {
+    luxfer_context *context = NULL;
+    luxfer_scene *scene = NULL;
+    luxfer_render *render = NULL;
+    luxfer_job *job = NULL;
+    luxfer_image *picture = NULL;
+    luxfer_render_params params;
+    luxfer_status status;
+
+    /* A context owns the threads. All else is made in it; NULL stands for default settings. */
+    if (luxfer_context_create(NULL, &context) != LUXFER_OK) return 1;
+
+    /* Settings are filled with their defaults before any is changed. */
+    luxfer_render_params_init(&params, sizeof params);
+    params.width = 300;
+    params.height = 200;
+    params.samples = 8;
+
+    /* Every call returns a status, and does nothing once its input is missing: the first failure is the one to report. */
+    status = argc > 1 ? luxfer_scene_load(context, argv[1], &scene)
+                      : luxfer_demo_scene(context, LUXFER_DEMO_EXEMPLAR_ROOM, &scene);
+    if (status == LUXFER_OK) status = luxfer_render_create(context, &render);
+    if (status == LUXFER_OK) status = luxfer_render_set_scene(render, scene);
+
+    /* Long work is a job: started here, done on the library's threads, waited for without limit (-1). */
+    if (status == LUXFER_OK) status = luxfer_render_start(render, &params, &job);
+    if (status == LUXFER_OK) status = luxfer_job_wait(job, -1, NULL, NULL);
+
+    /* Pictures are in cd/m2; the last argument is what 1 cd/m2 becomes, here 0.005: white is 200 cd/m2. */
+    if (status == LUXFER_OK) status = luxfer_render_get_image(render, LUXFER_RENDER_BEAUTY, &picture);
+    if (status == LUXFER_OK) status = luxfer_image_save(picture, "minimal.png", 0.005f);
+
+    if (status == LUXFER_OK) {
+        printf("look at minimal.png\n");
+    } else {
+        char message[512] = "";
+        luxfer_context_last_error(context, message, sizeof message, NULL);
+        fprintf(stderr, "%s: %s\n", luxfer_status_name(status), message);
+    }
+
+    /* In any order; NULL is nothing to release. */
+    luxfer_image_release(picture);
+    luxfer_job_release(job);
+    luxfer_render_release(render);
+    luxfer_scene_release(scene);
+    luxfer_context_release(context);
+    return status == LUXFER_OK ? 0 : 1;
+}

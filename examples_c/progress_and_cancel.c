@@ -1,0 +1,79 @@
+/* Long work without a frozen program: progress, cancelling, and what is done so far.
+ *
+ * Starts a rendering that would take hours, twice: once waiting inside the library with a progress function that cancels
+ * after a second, once in a loop of the program's own, as a user interface has one. Writes progress_and_cancel.png.
+ */
+#include "common.h"
+
+/* Called about 50 times a second, on the thread that waits: it may call any function of the library, or of the host's. */
+typedef struct watch {
+    luxfer_render *render;
+    int calls;
+} watch;
+
+static int32_t on_progress(void *user, double fraction) {
+    watch *w = user;
+    luxfer_render_report report;
+    report.struct_size = sizeof report;
+    w->calls++;
+    /* Results grow while the job runs. Of one path for each pixel there is no error yet. */
+    if (w->calls % 10 == 0 && luxfer_render_get_report(w->render, &report) == LUXFER_OK && report.samples > 1)
+        printf("%7.3f %%: %u paths per pixel, standard error %.0f %%\n", 100 * fraction, report.samples, 100 * report.error);
+    /* Anything but 0 cancels. */
+    return w->calls >= 50;
+}
+
+int main(void) {
+    luxfer_scene *scene = NULL;
+    luxfer_render *render = NULL;
+    luxfer_render_params params;
+    luxfer_render_report report;
+    luxfer_job *job = NULL;
+    luxfer_image *picture = NULL;
+    luxfer_status status;
+    double fraction = 0;
+    int32_t finished = 0;
+    int frames = 0;
+    watch w = {NULL, 0};
+    report.struct_size = sizeof report;
+
+    check(luxfer_context_create(NULL, &context), "context");
+    check(luxfer_demo_scene(context, LUXFER_DEMO_STILL_LIFE, &scene), "scene");
+    check(luxfer_render_create(context, &render), "render");
+    check(luxfer_render_set_scene(render, scene), "render");
+    check(luxfer_render_params_init(&params, sizeof params), "render");
+    params.width = 200;
+    params.height = 150;
+    params.samples = 1 << 20;
+
+    /* 1. Waiting inside the library. */
+    w.render = render;
+    check(luxfer_render_start(render, &params, &job), "start");
+    status = luxfer_job_wait(job, -1, on_progress, &w);
+    printf("the wait ended with %s\n", luxfer_status_name(status));
+    luxfer_job_release(job);
+    if (status != LUXFER_CANCELLED) return 1;
+
+    /* What was done before the cancel is a picture, with an error of its own. */
+    check(luxfer_render_get_image(render, LUXFER_RENDER_BEAUTY, &picture), "picture");
+    check(luxfer_render_get_report(render, &report), "report");
+    check(luxfer_image_save(picture, "progress_and_cancel.png", 1 / 450.0f), "picture");
+    printf("%u paths per pixel are in progress_and_cancel.png\n", report.samples);
+    luxfer_image_release(picture);
+
+    /* 2. In a loop of the program's own: a wait that is over after 16 ms, then a frame of the user interface. */
+    check(luxfer_render_start(render, &params, &job), "start");
+    while ((status = luxfer_job_wait(job, 16, NULL, NULL)) == LUXFER_NOT_READY) {
+        check(luxfer_job_poll(job, &fraction, &finished), "poll");
+        if (finished) break; /* A job may have ended with LUXFER_NOT_READY itself. */
+        /* Any thread may cancel; the work ends within about 100 ms, and releasing the job would do the same. */
+        if (++frames == 20) check(luxfer_job_cancel(job), "cancel");
+    }
+    printf("%d frames were drawn until it ended with %s\n", frames, luxfer_status_name(status));
+    luxfer_job_release(job);
+
+    luxfer_render_release(render);
+    luxfer_scene_release(scene);
+    luxfer_context_release(context);
+    return status == LUXFER_CANCELLED ? 0 : 1;
+}

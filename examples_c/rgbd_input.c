@@ -1,0 +1,111 @@
+/* A photo with depth: what a depth camera, or a network, knows of a photo, in place of the library's own guess.
+ *
+ *   rgbd_input [PHOTO DEPTH]
+ *
+ * Without arguments it photographs the generated office and renders its depth. DEPTH has one channel, in any unit, and holes
+ * where it is not positive. Writes rgbd_input.png: photo and depth; normals without the depth and with it.
+ */
+#include "common.h"
+#include "panels.h"
+
+enum { WIDTH = 300, HEIGHT = 200 };
+
+static luxfer_image *take_photo(void) {
+    luxfer_demo_photo_params params;
+    luxfer_demo_photo *demo = NULL;
+    luxfer_image *photo = NULL;
+    luxfer_job *job = NULL;
+    check(luxfer_demo_photo_params_init(&params, sizeof params), "photo");
+    params.width = WIDTH;
+    params.height = HEIGHT;
+    params.samples = 4;
+    check(luxfer_demo_photo_create(context, &demo), "photo");
+    check(luxfer_demo_photo_start(demo, &params, &job), "photo");
+    finish(job, "taking the photo");
+    check(luxfer_demo_photo_get_image(demo, LUXFER_DEMO_PHOTO_PICTURE, &photo), "photo");
+    luxfer_demo_photo_release(demo);
+    return photo;
+}
+
+/* The distance along the viewing axis of each pixel, in metres: a layer of a rendering by the photo's camera. */
+static luxfer_image *measure_depth(void) {
+    luxfer_scene *office = NULL;
+    luxfer_render *render = NULL;
+    luxfer_render_params params;
+    luxfer_image *depth = NULL;
+    luxfer_job *job = NULL;
+    uint32_t layer = 0;
+    check(luxfer_demo_scene(context, LUXFER_DEMO_EXEMPLAR_ROOM, &office), "depth");
+    check(luxfer_render_create(context, &render), "depth");
+    check(luxfer_render_set_scene(render, office), "depth");
+    check(luxfer_render_set_aovs(render, LUXFER_AOV_DEPTH), "depth");
+    check(luxfer_render_params_init(&params, sizeof params), "depth");
+    params.width = WIDTH;
+    params.height = HEIGHT;
+    params.samples = 2;
+    check(luxfer_render_start(render, &params, &job), "depth");
+    finish(job, "measuring the depth");
+    check(luxfer_render_find_layer(render, "Depth", &layer), "depth");
+    check(luxfer_render_get_layer(render, layer, &depth), "depth");
+    luxfer_render_release(render);
+    luxfer_scene_release(office);
+    return depth;
+}
+
+/* Channels 7 to 9 of the features are normals, in [-1, 1]: shown in [0, 1]. */
+static void show_normals(luxfer_features *features, const char *title, sheet *s, int column) {
+    luxfer_features_report report;
+    luxfer_image *channels = NULL, *shown = NULL;
+    luxfer_image_view view;
+    luxfer_job *job = NULL;
+    float *pixels;
+    size_t k;
+    report.struct_size = sizeof report;
+    check(luxfer_features_start(features, NULL, &job), title);
+    finish(job, title);
+    check(luxfer_features_get_report(features, &report), title);
+    printf("%-14s trust in the depth %.2f\n", title, report.depth_confidence);
+    check(luxfer_features_get_image(features, LUXFER_FEATURES_CHANNELS, &channels), title);
+    check(luxfer_image_view_init(&view, sizeof view), title);
+    check(luxfer_image_size(channels, &view.width, &view.height, NULL), title);
+    view.byte_size = (size_t)view.width * view.height * 3 * sizeof *pixels;
+    view.data = pixels = malloc(view.byte_size);
+    if (!pixels) exit(1);
+    check(luxfer_image_read(channels, 7, &view), title);
+    for (k = 0; k < view.byte_size / sizeof *pixels; k++) pixels[k] = 0.5f + 0.5f * pixels[k];
+    check(luxfer_image_create(context, &view, &shown), title);
+    panels_add(s, column, 1, shown, 1);
+    luxfer_image_release(shown);
+    luxfer_image_release(channels);
+    free(pixels);
+}
+
+int main(int argc, char **argv) {
+    luxfer_features *features = NULL;
+    luxfer_image *photo = NULL, *depth = NULL;
+    sheet s = panels_begin(2, 2, WIDTH, HEIGHT);
+    check(luxfer_context_create(NULL, &context), "context");
+    if (argc == 3) {
+        check(luxfer_image_load(context, argv[1], LUXFER_COLOUR_SRGB, &photo), argv[1]);
+        check(luxfer_image_load(context, argv[2], LUXFER_COLOUR_LINEAR, &depth), argv[2]); /* Data, no colour. */
+    } else {
+        photo = take_photo();
+        depth = measure_depth();
+    }
+    panels_add(&s, 0, 0, photo, 1);
+    panels_add(&s, 1, 0, depth, 0.1f);
+
+    check(luxfer_features_create(context, &features), "features");
+    check(luxfer_features_set_photo(features, photo), "photo");
+    show_normals(features, "without depth", &s, 0);
+    check(luxfer_features_set_depth(features, depth, LUXFER_DEPTH_ALONG_Z), "depth");
+    show_normals(features, "with depth", &s, 1);
+    check(panels_save(&s, context, "rgbd_input.png"), "rgbd_input.png");
+    /* A whole transfer takes the same by luxfer_transfer_set_depth. */
+
+    luxfer_features_release(features);
+    luxfer_image_release(depth);
+    luxfer_image_release(photo);
+    luxfer_context_release(context);
+    return 0;
+}
