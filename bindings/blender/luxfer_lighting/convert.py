@@ -1,0 +1,144 @@
+"""Blender's images, scenes and cameras as luxfer's, and images back.
+
+Blender has Z up and rows from the bottom; luxfer has Y up and rows from the top.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import tempfile
+from typing import Any
+
+import bpy
+import luxfer
+import numpy as np
+from mathutils import Matrix, Vector
+
+#: From Blender's axes to luxfer's: (x, y, z) to (x, z, -y).
+TO_LUXFER = Matrix(((1, 0, 0, 0), (0, 0, 1, 0), (0, -1, 0, 0), (0, 0, 0, 1)))
+TO_BLENDER = TO_LUXFER.transposed()
+
+
+def pixels(image: bpy.types.Image) -> np.ndarray:
+    """An image's pixels, (height, width, 4), rows from the top; a view of one copy."""
+    width, height = image.size
+    if not width or not height:
+        raise ValueError(f"the image {image.name} has no pixels")
+    flat = np.empty(width * height * image.channels, np.float32)
+    image.pixels.foreach_get(flat)
+    return flat.reshape(height, width, image.channels)[::-1]
+
+
+def image(context: luxfer.Context, source: bpy.types.Image) -> luxfer.Image:
+    """An image, decoded if it is encoded."""
+    encoded = not source.is_float and source.colorspace_settings.name == "sRGB"
+    values = pixels(source)
+    return luxfer.Image(context, values[..., : min(3, values.shape[2])], "srgb" if encoded else "linear")
+
+
+def drawing(context: luxfer.Context, source: bpy.types.Image) -> luxfer.Image:
+    """Strokes: pure colours stay pure, however the image is encoded."""
+    return luxfer.Image(context, pixels(source)[..., :3])
+
+
+def store(name: str, values: np.ndarray, linear: bool) -> bpy.types.Image:
+    """Pixels (height, width, channels), rows from the top, as the image of that name: of floats if linear, else sRGB of 8
+    bits. It is packed into the .blend."""
+    height, width, channels = values.shape
+    rgba = np.ones((height, width, 4), np.float32)
+    rgba[..., :3] = values[::-1] if channels == 3 else values[::-1, :, :1]
+    out = bpy.data.images.get(name)
+    if out is None or tuple(out.size) != (width, height) or out.is_float != linear:
+        if out is not None:
+            bpy.data.images.remove(out)
+        out = bpy.data.images.new(name, width, height, alpha=False, float_buffer=linear)
+    out.colorspace_settings.name = "Linear Rec.709" if linear else "sRGB"
+    out.pixels.foreach_set(rgba.ravel())
+    out.update()
+    out.pack()
+    return out
+
+
+def scene(context: luxfer.Context, source: bpy.types.Scene) -> luxfer.Scene:
+    """The scene as it is now, modifiers applied, through glTF in a temporary file; area lights and the world's colour,
+    which glTF does not have, are added. Strengths become cd/m² one to one."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "scene.glb")
+        bpy.ops.export_scene.gltf(
+            filepath=path, export_format="GLB", export_apply=True, export_yup=True, export_cameras=True, export_lights=True,
+            export_import_convert_lighting_mode="COMPAT", export_animations=False, use_active_scene=True, use_renderable=True,
+        )
+        out = luxfer.Scene.load(context, path)
+    for thing in source.objects:
+        if thing.type == "LIGHT" and thing.data.type == "AREA" and not thing.hide_render:
+            add_area_light(out, thing)
+        elif thing.type == "MESH" and not thing.hide_render:
+            place_light(context, out, thing)
+    colour = world_colour(source)
+    if any(colour):
+        out.set_environment(colour)
+    return out
+
+
+def place_light(context: luxfer.Context, out: luxfer.Scene, thing: bpy.types.Object) -> None:
+    """The light that the add-on has given an object, from its image of floats; glTF would round it to 8 bits."""
+    for slot in thing.material_slots:
+        if slot.material is None or "luxfer_base" not in slot.material:
+            continue
+        nodes = slot.material.node_tree.nodes
+        surface = next((n for n in nodes if n.type == "BSDF_PRINCIPLED" and n.inputs["Emission Color"].is_linked), None)
+        texture = surface.inputs["Emission Color"].links[0].from_node if surface else None
+        if texture is not None and texture.type == "TEX_IMAGE" and texture.image is not None:
+            nits = surface.inputs["Emission Strength"].default_value
+            out.place_emission(thing.name, image(context, texture.image), (nits, nits, nits))
+
+
+def add_area_light(out: luxfer.Scene, thing: bpy.types.Object) -> None:
+    """A rectangle that shines with the radiance that Cycles gives an area light: power / (4 area)."""
+    light = thing.data
+    width = light.size
+    height = light.size_y if light.shape in ("RECTANGLE", "ELLIPSE") else light.size
+    matrix = TO_LUXFER @ thing.matrix_world
+    corners = [matrix @ Vector((x * width / 2, y * height / 2, 0)) for x, y in ((-1, -1), (-1, 1), (1, 1), (1, -1))]
+    area = (corners[1] - corners[0]).length * (corners[3] - corners[0]).length
+    emission = [light.energy * c / (4 * area) for c in light.color]
+    material = out.add_material(name=thing.name, base_color=(0, 0, 0), emission=emission, double_sided=0)
+    out.add_mesh(np.array(corners, np.float32), [[0, 1, 2], [0, 2, 3]], material=material, name=thing.name)
+
+
+def world_colour(source: bpy.types.Scene) -> tuple[float, float, float]:
+    """The world's background where it is a plain colour, else black."""
+    world = source.world
+    if world is None:
+        return 0.0, 0.0, 0.0
+    if world.use_nodes and world.node_tree:
+        for node in world.node_tree.nodes:
+            if node.type == "BACKGROUND" and not node.inputs["Color"].is_linked:
+                strength = node.inputs["Strength"].default_value
+                return tuple(strength * c for c in node.inputs["Color"].default_value[:3])
+        return 0.0, 0.0, 0.0
+    return tuple(world.color)
+
+
+def camera(source: bpy.types.Scene) -> dict[str, Any] | None:
+    """The active camera as settings of luxfer's; None if there is none."""
+    thing = source.camera
+    if thing is None or thing.type != "CAMERA":
+        return None
+    frame = thing.data.view_frame(scene=source)
+    top, distance = max(corner.y for corner in frame), -frame[0].z
+    matrix = TO_LUXFER @ thing.matrix_world
+    position = matrix.translation
+    return {
+        "fov_y": 2 * math.atan2(top, distance),
+        "position": tuple(position),
+        "target": tuple(position - matrix.to_3x3() @ Vector((0, 0, 1))),
+        "up": tuple((matrix.to_3x3() @ Vector((0, 1, 0))).normalized()),
+    }
+
+
+def resolution(source: bpy.types.Scene) -> tuple[int, int]:
+    """Width and height of the scene's renderings."""
+    share = source.render.resolution_percentage / 100
+    return max(1, round(source.render.resolution_x * share)), max(1, round(source.render.resolution_y * share))

@@ -1,0 +1,290 @@
+"""Operators of the lighting transfer: strokes, masks, the transfer itself, and the material it makes."""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from dataclasses import dataclass
+from typing import Any
+
+import bpy
+import luxfer
+import numpy as np
+
+from . import convert, work
+
+STROKES, MASKS, TEXTURE, LAMPS = "Luxfer strokes", "Luxfer masks", "Luxfer light", "Luxfer luminaires"
+
+#: What a stroke says: its colour, and what is shown of it.
+COLOURS = {
+    "PLANE": ((0.0, 1.0, 0.0), "Plane", "The plane that carries the lights"),
+    "NOT_PLANE": ((1.0, 0.0, 0.0), "Not Plane", "What is not on that plane"),
+    "LIGHT": ((1.0, 1.0, 0.0), "Light", "Lights in the plane"),
+    "NOT_LIGHT": ((0.0, 0.0, 1.0), "Not Light", "The plane beside the lights"),
+}
+
+
+@dataclass
+class Result:
+    """What a transfer has found, until it is applied."""
+
+    object: str
+    surface: luxfer.types.Surface
+    texture: np.ndarray
+    emission: tuple[float, float, float]  # cd/m² per channel where the texture is 1
+    error: float
+
+
+result: Result | None = None
+
+
+def prepared(scene: bpy.types.Scene) -> luxfer.Transfer:
+    """A transfer with photo and strokes."""
+    settings = scene.luxfer
+    if settings.photo is None:
+        raise ValueError("choose a photo first")
+    if settings.strokes is None:
+        raise ValueError("paint strokes on the photo first")
+    if tuple(settings.strokes.size) != tuple(settings.photo.size):
+        raise ValueError("the strokes are not of the photo's size: start them anew")
+    transfer = luxfer.Transfer(work.context(), convert.image(work.context(), settings.photo))
+    transfer.add_strokes_image(convert.drawing(work.context(), settings.strokes))
+    return transfer
+
+
+def mask_steps(scene: bpy.types.Scene, transfer: luxfer.Transfer) -> Generator[luxfer.Job, Any, None]:
+    yield transfer.start("view", "lights")
+    photo = convert.pixels(scene.luxfer.photo)[..., :3]
+    store_masks(photo, transfer)
+
+
+def store_masks(photo: np.ndarray, transfer: luxfer.Transfer) -> None:
+    """The photo with the plane in green and the lights in yellow."""
+    plane, lights = (transfer.image(which).numpy() for which in ("plane-confidence", "lights-mask"))
+    tinted = photo + (plane > 0.5) * (0.5 * (np.float32((0, 0.6, 0)) - photo))
+    tinted += lights * (0.8 * (np.float32((1, 1, 0)) - tinted))
+    convert.store(MASKS, tinted, linear=False)
+
+
+def transfer_steps(scene: bpy.types.Scene, transfer: luxfer.Transfer, room: luxfer.Scene) -> Generator[luxfer.Job, Any, None]:
+    global result
+    settings = scene.luxfer
+    name = settings.target.name
+    yield transfer.start(
+        "view", "relight",
+        max_texels=settings.texels, plane_distance=settings.distance, white_luminance=settings.white,
+    )
+    store_masks(convert.pixels(settings.photo)[..., :3], transfer)
+    lit = transfer.scene("lit")
+    emission = lit.material(lit.counts.materials - 1)["emission"]  # that of the surface is the last one
+    texture = transfer.image("emission").numpy()
+    result = Result(name, room.find_surface(name), texture, emission, transfer.solution.error)
+    write_lamps(transfer.fixtures)
+    if settings.apply_when_done:
+        bpy.ops.luxfer.apply("EXEC_DEFAULT", True)
+
+
+def write_lamps(fixtures: list[luxfer.types.Fixture]) -> None:
+    """The lamps as a text in the .blend, in Blender's axes."""
+    text = bpy.data.texts.get(LAMPS) or bpy.data.texts.new(LAMPS)
+    lines = ["x_m,y_m,z_m,length_m,width_m,area_m2,red_cd_m2,green_cd_m2,blue_cd_m2,flux_lm"]
+    for f in fixtures:
+        x, y, z = f.position
+        numbers = (x, -z, y, *f.size, f.area, *f.radiance, f.flux)
+        lines.append(",".join(f"{n:.5g}" for n in numbers))
+    text.from_string("\n".join(lines) + "\n")
+
+
+class LUXFER_OT_new_strokes(bpy.types.Operator):
+    """Start strokes anew: a pale copy of the photo to paint on"""
+
+    bl_idname = "luxfer.new_strokes"
+    bl_label = "New Strokes"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return context.scene.luxfer.photo is not None
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        photo = np.clip(convert.pixels(context.scene.luxfer.photo)[..., :3], 0, 1)
+        # No channel reaches 0 or 1, so nothing of the photo passes for a stroke.
+        context.scene.luxfer.strokes = convert.store(STROKES, 0.2 + 0.6 * photo, linear=False)
+        return {"FINISHED"}
+
+
+class LUXFER_OT_paint(bpy.types.Operator):
+    """Paint strokes of this kind in the Image Editor"""
+
+    bl_idname = "luxfer.paint"
+    bl_label = "Paint"
+
+    kind: bpy.props.EnumProperty(name="Kind", items=[(key, label, tip) for key, (_, label, tip) in COLOURS.items()])
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return context.scene.luxfer.strokes is not None
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        for area in context.screen.areas if context.screen else ():
+            if area.type == "IMAGE_EDITOR":
+                area.spaces.active.image = context.scene.luxfer.strokes
+                area.spaces.active.mode = "PAINT"
+                area.spaces.active.ui_mode = "PAINT"
+        tools = context.tool_settings
+        shared = getattr(tools.image_paint, "unified_paint_settings", None) or tools.unified_paint_settings
+        brush = tools.image_paint.brush
+        for target in (shared, brush):
+            if target is not None:
+                target.color = COLOURS[self.kind][0]
+        if brush is not None:  # a hard edge: mixed colours say nothing
+            brush.blend = "MIX"
+            brush.strength = 1
+            for name in ("curve_distance_falloff_preset", "curve_preset"):
+                if hasattr(brush, name):
+                    setattr(brush, name, "CONSTANT")
+                    break
+        return {"FINISHED"}
+
+
+class LUXFER_OT_preview_masks(work.Background, bpy.types.Operator):
+    """Show which pixels of the photo the strokes make plane and lights, as the image "Luxfer masks\""""
+
+    bl_idname = "luxfer.preview_masks"
+    bl_label = "Preview Masks"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return work.current() is None
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        scene = context.scene
+        return self.begin(context, "Masks", lambda: (mask_steps(scene, prepared(scene)), 1))
+
+
+class LUXFER_OT_transfer(work.Background, bpy.types.Operator):
+    """Give the surface the light of the photo's lamps, with the strength that gives it the photo's colour"""
+
+    bl_idname = "luxfer.transfer"
+    bl_label = "Transfer Light"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return work.current() is None
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        return self.begin(context, "Transfer", lambda: self.make(context.scene))
+
+    @staticmethod
+    def make(scene: bpy.types.Scene) -> tuple[Generator[luxfer.Job, Any, None], int]:
+        if scene.luxfer.target is None:
+            raise ValueError("choose the surface that receives the lights first")
+        transfer = prepared(scene)
+        room = convert.scene(work.context(), scene)
+        transfer.set_scene(room, scene.luxfer.target.name)
+        return transfer_steps(scene, transfer, room), 1
+
+
+class LUXFER_OT_apply(bpy.types.Operator):
+    """Give the surface the material that the last transfer has found"""
+
+    bl_idname = "luxfer.apply"
+    bl_label = "Apply Light"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return result is not None and result.object in bpy.data.objects
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        thing = bpy.data.objects[result.object]
+        faces = lay_out(thing, result.surface)
+        if not faces:
+            self.report({"ERROR"}, f"no face of {thing.name} lies in the surface any more: run the transfer again")
+            return {"CANCELLED"}
+        nits = max(*result.emission, 1e-9)
+        colour = np.array(result.emission, np.float32) / nits
+        image = convert.store(f"{TEXTURE} {thing.name}", result.texture * colour, linear=True)
+        material = emissive(base_material(thing), image, nits)
+        slot = next((i for i, s in enumerate(thing.material_slots) if s.material and "luxfer_base" in s.material), None)
+        if slot is None:
+            thing.data.materials.append(material)
+            slot = len(thing.data.materials) - 1
+        else:
+            thing.data.materials[slot] = material
+        for face in faces:
+            thing.data.polygons[face].material_index = slot
+        thing.data.update()
+        return {"FINISHED"}
+
+
+def lay_out(thing: bpy.types.Object, surface: luxfer.types.Surface) -> list[int]:
+    """The faces of an object that lie in a surface, and on them a UV map "Luxfer" over the surface's rectangle."""
+    if thing.data.users > 1:
+        thing.data = thing.data.copy()
+    mesh = thing.data
+    if not mesh.materials:
+        mesh.materials.append(None)  # else the new one would be everywhere
+    matrix = np.array(convert.TO_LUXFER @ thing.matrix_world)
+    points = np.empty((len(mesh.vertices), 3))
+    mesh.vertices.foreach_get("co", flat := np.empty(points.size, np.float32))
+    points = flat.reshape(-1, 3) @ matrix[:3, :3].T + matrix[:3, 3]
+    relative = points - surface.origin
+    off = np.abs(relative @ surface.normal)
+    inside = off < 1e-3 * max(surface.size)
+    faces = [p.index for p in mesh.polygons if inside[list(p.vertices)].all()]
+
+    layer = mesh.uv_layers.get("Luxfer") or mesh.uv_layers.new(name="Luxfer", do_init=False)
+    u = relative @ surface.u_axis / surface.size[0]
+    v = 1 - relative @ surface.v_axis / surface.size[1]  # Blender's v goes up
+    for face in faces:
+        for loop in mesh.polygons[face].loop_indices:
+            vertex = mesh.loops[loop].vertex_index
+            layer.uv[loop].vector = u[vertex], v[vertex]
+    return faces
+
+
+def base_material(thing: bpy.types.Object) -> bpy.types.Material | None:
+    """The material that the surface had before it was lit."""
+    materials = [slot.material for slot in thing.material_slots if slot.material is not None]
+    lit = next((m for m in materials if "luxfer_base" in m), None)
+    return bpy.data.materials.get(lit["luxfer_base"]) if lit else next(iter(materials), None)
+
+
+def emissive(base: bpy.types.Material | None, image: bpy.types.Image, nits: float) -> bpy.types.Material:
+    """A copy of a material that emits image * nits."""
+    material = base.copy() if base is not None else bpy.data.materials.new("Luxfer")
+    material.name = f"{base.name if base is not None else 'Surface'} lit by Luxfer"
+    material["luxfer_base"] = base.name if base is not None else ""
+    material.use_nodes = True
+    nodes, links = material.node_tree.nodes, material.node_tree.links
+    surface = next((n for n in nodes if n.type == "BSDF_PRINCIPLED"), None)
+    if surface is None:
+        surface = nodes.new("ShaderNodeBsdfPrincipled")
+        output = next((n for n in nodes if n.type == "OUTPUT_MATERIAL"), None) or nodes.new("ShaderNodeOutputMaterial")
+        links.new(surface.outputs["BSDF"], output.inputs["Surface"])
+
+    uv = nodes.new("ShaderNodeUVMap")
+    uv.uv_map = "Luxfer"
+    texture = nodes.new("ShaderNodeTexImage")
+    texture.image, texture.interpolation, texture.extension = image, "Closest", "EXTEND"
+    links.new(uv.outputs["UV"], texture.inputs["Vector"])
+    links.new(texture.outputs["Color"], surface.inputs["Emission Color"])
+    surface.inputs["Emission Strength"].default_value = nits
+    uv.location = surface.location.x - 520, surface.location.y - 300
+    texture.location = surface.location.x - 300, surface.location.y - 300
+    return material
+
+
+CLASSES = (LUXFER_OT_new_strokes, LUXFER_OT_paint, LUXFER_OT_preview_masks, LUXFER_OT_transfer, LUXFER_OT_apply)
+
+
+def register() -> None:
+    for kind in CLASSES:
+        bpy.utils.register_class(kind)
+
+
+def unregister() -> None:
+    global result
+    result = None
+    for kind in reversed(CLASSES):
+        bpy.utils.unregister_class(kind)

@@ -1,0 +1,126 @@
+"""Operators of the stylisation: the exemplar to paint over, a sample artwork, and the scene painted like it."""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from typing import Any
+
+import bpy
+import luxfer
+import numpy as np
+
+from . import convert, work
+
+EXEMPLAR, ARTWORK, PICTURE = "Luxfer exemplar", "Luxfer artwork", "Luxfer stylised"
+
+
+def ball(width: int, height: int, samples: int) -> tuple[luxfer.Guides, luxfer.Job]:
+    """The guides of the exemplar, being rendered."""
+    guides = luxfer.Guides(work.context(), luxfer.Scene.demo(work.context(), "sphere-on-table"))
+    return guides, guides.start(width=width, height=height, samples=samples)
+
+
+def exemplar_steps(scene: bpy.types.Scene) -> Generator[luxfer.Job, Any, None]:
+    settings = scene.luxfer
+    guides, job = ball(settings.exemplar_width, settings.exemplar_height, settings.guide_samples)
+    yield job
+    light = guides.image("full").numpy()
+    shown = luxfer.Image(work.context(), light * (0.9 / np.percentile(light, 98)))
+    convert.store(EXEMPLAR, shown.numpy(np.uint8, "srgb") / np.float32(255), linear=False)
+
+
+def sample_steps(scene: bpy.types.Scene, style: str) -> Generator[luxfer.Job, Any, None]:
+    settings = scene.luxfer
+    guides, job = ball(settings.exemplar_width, settings.exemplar_height, settings.guide_samples)
+    yield job
+    artwork = guides.demo_artwork(style).numpy(np.uint8, "srgb")[..., :3]
+    settings.artwork = convert.store(ARTWORK, artwork / np.float32(255), linear=False)
+
+
+def stylise_steps(scene: bpy.types.Scene, target: luxfer.Scene, camera: int) -> Generator[luxfer.Job, Any, None]:
+    settings = scene.luxfer
+    artwork = settings.artwork
+    source, job = ball(*artwork.size, settings.guide_samples)
+    yield job
+    guides = luxfer.Guides(work.context(), target)
+    width, height = convert.resolution(scene)
+    yield guides.start(width=width, height=height, samples=settings.guide_samples, camera=camera)
+    stylize = luxfer.Stylize(work.context(), convert.image(work.context(), artwork))
+    stylize.add_guides(source, guides)
+    yield stylize.start(settings.preset)
+    painted = stylize.image().numpy(np.uint8, "srgb")
+    convert.store(PICTURE, painted[..., :3] / np.float32(255), linear=False)
+
+
+class LUXFER_OT_exemplar(work.Background, bpy.types.Operator):
+    """Render the ball on a table that artists paint over, as the image "Luxfer exemplar\""""
+
+    bl_idname = "luxfer.exemplar"
+    bl_label = "Render Exemplar"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return work.current() is None
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        return self.begin(context, "Exemplar", lambda: (exemplar_steps(context.scene), 1))
+
+
+class LUXFER_OT_sample_artwork(work.Background, bpy.types.Operator):
+    """Have a program paint the exemplar, to try stylisation without an artist"""
+
+    bl_idname = "luxfer.sample_artwork"
+    bl_label = "Sample Artwork"
+
+    style: bpy.props.EnumProperty(
+        name="Style",
+        items=(
+            ("paint", "Paint", "Oil on canvas"),
+            ("pen", "Pen", "Hatching with a pen and two inks"),
+            ("stipple", "Stipple", "Dots of two inks"),
+        ),
+    )
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return work.current() is None
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        return self.begin(context, "Artwork", lambda: (sample_steps(context.scene, self.style), 1))
+
+
+class LUXFER_OT_stylise(work.Background, bpy.types.Operator):
+    """Paint the view of the active camera in the manner of the artwork, as the image "Luxfer stylised\""""
+
+    bl_idname = "luxfer.stylise"
+    bl_label = "Stylise"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return work.current() is None
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        return self.begin(context, "Stylisation", lambda: self.make(context.scene))
+
+    @staticmethod
+    def make(scene: bpy.types.Scene) -> tuple[Generator[luxfer.Job, Any, None], int]:
+        view = convert.camera(scene)
+        if scene.luxfer.artwork is None:
+            raise ValueError("choose an artwork first: the exemplar, painted over")
+        if view is None:
+            raise ValueError("the scene has no camera")
+        target = convert.scene(work.context(), scene)
+        return stylise_steps(scene, target, target.add_camera(**view)), 3
+
+
+CLASSES = (LUXFER_OT_exemplar, LUXFER_OT_sample_artwork, LUXFER_OT_stylise)
+
+
+def register() -> None:
+    for kind in CLASSES:
+        bpy.utils.register_class(kind)
+
+
+def unregister() -> None:
+    for kind in reversed(CLASSES):
+        bpy.utils.unregister_class(kind)

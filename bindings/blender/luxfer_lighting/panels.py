@@ -1,0 +1,108 @@
+"""What is seen: three panels in the sidebar of the 3D view and the Image Editor."""
+
+from __future__ import annotations
+
+import bpy
+
+from . import lighting, painting, work
+
+
+def show_progress(layout: bpy.types.UILayout) -> None:
+    """The progress of the running work and a button that cancels, or what the last one had to say."""
+    running = work.current()
+    if running is not None:
+        row = layout.row(align=True)
+        row.progress(factor=running.progress, text=f"{running.title} {running.progress:.0%}")
+        row.operator("luxfer.cancel", text="", icon="X")
+    elif work.message:
+        column = layout.column()
+        column.alert = work.message != "Cancelled"
+        for line in lines(work.message):
+            column.label(text=line)
+
+
+def lines(text: str, width: int = 40) -> list[str]:
+    """A message in lines that fit into the sidebar."""
+    out = [""]
+    for word in text.split():
+        if len(out[-1]) + len(word) >= width:
+            out.append("")
+        out[-1] = f"{out[-1]} {word}".strip()
+    return out
+
+
+class Sidebar:
+    bl_region_type = "UI"
+    bl_category = "Luxfer"
+
+
+class LightingPanel(Sidebar):
+    bl_label = "Light of a Photo"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout, settings = self.layout, context.scene.luxfer
+        layout.template_ID(settings, "photo", open="image.open")
+        box = layout.column(align=True)
+        box.operator("luxfer.new_strokes", icon="BRUSH_DATA")
+        grid = box.grid_flow(columns=2, align=True)
+        for kind, (_, label, _) in lighting.COLOURS.items():
+            grid.operator("luxfer.paint", text=label).kind = kind
+        box.operator("luxfer.preview_masks", icon="MOD_MASK")
+        layout.prop(settings, "target")
+        column = layout.column(align=True)
+        for name in ("distance", "white", "texels"):
+            column.prop(settings, name)
+        layout.prop(settings, "apply_when_done")
+        layout.operator("luxfer.transfer", icon="LIGHT")
+        if lighting.result is not None:
+            layout.operator("luxfer.apply", icon="MATERIAL")
+            layout.label(text=f"Strength known to {lighting.result.error:.1%}; see the text {lighting.LAMPS}")
+        show_progress(layout)
+
+
+class PaintingPanel(Sidebar):
+    bl_label = "Paint by Example"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout, settings = self.layout, context.scene.luxfer
+        column = layout.column(align=True)
+        column.prop(settings, "exemplar_width")
+        column.prop(settings, "exemplar_height")
+        column.operator("luxfer.exemplar", icon="SHADING_RENDERED")
+        layout.template_ID(settings, "artwork", open="image.open")
+        layout.operator_menu_enum("luxfer.sample_artwork", "style")
+        layout.prop(settings, "preset")
+        layout.prop(settings, "guide_samples")
+        layout.operator("luxfer.stylise", icon="BRUSH_DATA")
+        layout.label(text=f"The picture is the image {painting.PICTURE}")
+        show_progress(layout)
+
+
+class LUXFER_PT_lighting(LightingPanel, bpy.types.Panel):
+    bl_space_type = "VIEW_3D"
+
+
+class LUXFER_PT_lighting_image(LightingPanel, bpy.types.Panel):
+    bl_space_type = "IMAGE_EDITOR"
+
+
+class LUXFER_PT_painting(PaintingPanel, bpy.types.Panel):
+    bl_space_type = "VIEW_3D"
+
+
+class LUXFER_PT_painting_image(PaintingPanel, bpy.types.Panel):
+    bl_space_type = "IMAGE_EDITOR"
+
+
+CLASSES = (LUXFER_PT_lighting, LUXFER_PT_lighting_image, LUXFER_PT_painting, LUXFER_PT_painting_image)
+
+
+def register() -> None:
+    for kind in CLASSES:
+        bpy.utils.register_class(kind)
+
+
+def unregister() -> None:
+    for kind in reversed(CLASSES):
+        bpy.utils.unregister_class(kind)

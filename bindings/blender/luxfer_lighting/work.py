@@ -1,0 +1,186 @@
+"""Jobs behind the user interface: a work is a generator that yields jobs of the library and goes on when each has succeeded.
+
+A timer of Blender's polls the running job, so the interface stays free; progress goes to the panels, Esc and the button
+cancel. Nothing of Blender's data is touched but from the main thread, between two jobs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator
+from typing import Any
+
+import bpy
+import luxfer
+
+POLL_SECONDS = 0.05
+
+_context: luxfer.Context | None = None
+_current: Work | None = None
+message = ""
+
+
+def context() -> luxfer.Context:
+    """The library's context, made when it is first needed."""
+    global _context
+    if _context is None:
+        _context = luxfer.Context()
+    return _context
+
+
+class Work:
+    """A generator of jobs, how many there will be, and what is said of it."""
+
+    def __init__(self, title: str, steps: Generator[luxfer.Job, Any, None], count: int):
+        self.title, self.steps, self.count = title, steps, count
+        self.done = 0
+        self.job: luxfer.Job = next(steps)
+
+    @property
+    def progress(self) -> float:
+        return min(1.0, (self.done + self.job.poll()[0]) / self.count)
+
+    def advance(self) -> bool:
+        """Goes on if the running job has ended; False when there is no other. Raises what the job or the steps raise."""
+        if not self.job.finished:
+            return True
+        self.job.wait()
+        self.done += 1
+        try:
+            self.job = next(self.steps)
+        except StopIteration:
+            return False
+        return True
+
+    def stop(self) -> None:
+        """Cancels, and waits until nothing runs."""
+        self.job.cancel()
+        try:
+            self.job.wait()
+        except luxfer.Error:
+            pass
+        self.steps.close()
+
+
+def current() -> Work | None:
+    return _current
+
+
+def start(title: str, make: Callable[[], tuple[Generator[luxfer.Job, Any, None], int]]) -> None:
+    """Begins a work; an error of its first step is raised here, later ones become the message."""
+    global _current, message
+    if _current is not None:
+        raise RuntimeError(f"{_current.title} is still running")
+    message = ""
+    _current = Work(title, *make())
+    if not bpy.app.timers.is_registered(step):
+        bpy.app.timers.register(step, first_interval=POLL_SECONDS)
+
+
+def step() -> float | None:
+    """What the timer calls: seconds until it wants to be called again, None when the work is over."""
+    global _current, message
+    if _current is None:
+        return None
+    try:
+        goes_on = _current.advance()
+    except luxfer.errors.Cancelled:
+        goes_on, message = False, "Cancelled"
+    except Exception as error:  # shown in the panel: a timer has nobody to raise to
+        goes_on, message = False, str(error)
+    if not goes_on:
+        _current.steps.close()
+        _current = None
+    redraw()
+    return POLL_SECONDS if goes_on else None
+
+
+def finish() -> None:
+    """Waits for the work: for scripts and without a user interface. Raises if it failed."""
+    while _current is not None:
+        _current.job.finished or _wait(_current.job)
+        step()
+    if message:
+        raise RuntimeError(message)
+
+
+def _wait(job: luxfer.Job) -> None:
+    try:
+        job.wait()
+    except luxfer.Error:
+        pass  # step() meets it again
+
+
+def cancel() -> None:
+    """Ends the work now."""
+    global _current, message
+    if _current is not None:
+        work, _current = _current, None
+        work.stop()
+        message = "Cancelled"
+        redraw()
+
+
+def redraw() -> None:
+    for window in getattr(bpy.context.window_manager, "windows", ()):
+        for area in window.screen.areas:
+            if area.type in ("VIEW_3D", "IMAGE_EDITOR"):
+                area.tag_redraw()
+
+
+class Background:
+    """For operators: begin() starts the work; with a user interface the operator stays modal for Esc."""
+
+    def begin(self, context: bpy.types.Context, title: str, make: Callable[[], Any]) -> set[str]:
+        try:
+            start(title, make)
+        except Exception as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        if bpy.app.background:
+            try:
+                finish()
+            except RuntimeError as error:
+                self.report({"ERROR"}, str(error))
+                return {"CANCELLED"}
+            return {"FINISHED"}
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        if _current is None:
+            if message:
+                self.report({"WARNING" if message == "Cancelled" else "ERROR"}, message)
+            return {"CANCELLED" if message else "FINISHED"}
+        if event.type == "ESC":
+            cancel()
+        return {"PASS_THROUGH"}
+
+
+class LUXFER_OT_cancel(bpy.types.Operator):
+    """End the running work"""
+
+    bl_idname = "luxfer.cancel"
+    bl_label = "Cancel"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return _current is not None
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        cancel()
+        return {"FINISHED"}
+
+
+def register() -> None:
+    bpy.utils.register_class(LUXFER_OT_cancel)
+
+
+def unregister() -> None:
+    global _context
+    cancel()
+    if bpy.app.timers.is_registered(step):
+        bpy.app.timers.unregister(step)
+    bpy.utils.unregister_class(LUXFER_OT_cancel)
+    if _context is not None:
+        _context.close()
+        _context = None

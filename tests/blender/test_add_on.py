@@ -1,0 +1,198 @@
+"""The add-on in a Blender without a window (bpy from PyPI): its operators on a scene made here, the result by Cycles."""
+
+import time
+import unittest
+
+from room import SIZE, bpy, build, cycles, np
+
+import luxfer
+import luxfer_lighting
+from luxfer_lighting import convert, lighting, painting, work
+
+EXEMPLAR = {"width": 240, "height": 160, "samples": 8}
+
+
+class AddOn(unittest.TestCase):
+    def setUp(self):
+        self.scene = build()
+        luxfer_lighting.register()
+        self.addCleanup(luxfer_lighting.unregister)
+
+    def load_photo(self):
+        """The generated photo and its strokes, as a user would have them."""
+        demo = luxfer.DemoPhoto(work.context()).run(**EXEMPLAR)
+        photo, strokes = (demo.image(which).numpy(np.uint8, "srgb") / np.float32(255) for which in ("picture", "strokes"))
+        settings = self.scene.luxfer
+        settings.photo = convert.store("photo", photo, linear=False)
+        bpy.ops.luxfer.new_strokes()
+        painted = strokes.max(-1) > 0  # what is drawn is in pure colours, all else is black
+        pale = convert.pixels(settings.strokes)[..., :3]
+        settings.strokes = convert.store(lighting.STROKES, np.where(painted[..., None], strokes, pale), linear=False)
+        settings.target = bpy.data.objects["Ceiling"]
+        settings.texels = 256
+
+    def finish(self):
+        """What Blender's timer does, without a window."""
+        while work.step() is not None:
+            time.sleep(work.POLL_SECONDS)
+
+    def test_register_and_unregister_twice(self):
+        luxfer_lighting.unregister()
+        for _ in range(2):
+            self.assertFalse(hasattr(bpy.types.Scene, "luxfer"))
+            self.assertFalse([n for n in dir(bpy.types) if n.startswith("LUXFER_")])
+            luxfer_lighting.register()
+            self.assertIsNotNone(bpy.context.scene.luxfer)
+            luxfer_lighting.unregister()
+        luxfer_lighting.register()
+
+    def test_the_transfer_lights_the_ceiling_as_our_own_renderer_sees_it(self):
+        self.load_photo()
+        self.assertEqual(bpy.ops.luxfer.transfer(), {"FINISHED"})
+        found = lighting.result
+        ceiling = bpy.data.objects["Ceiling"]
+        lit = ceiling.data.materials[ceiling.data.polygons[0].material_index]
+        self.assertEqual(lit["luxfer_base"], "White")
+        self.assertGreater(len(bpy.data.texts[lighting.LAMPS].as_string().splitlines()), 2)
+
+        # Nits: the strongest channel of the emission, and an image of floats.
+        surface = next(n for n in lit.node_tree.nodes if n.type == "BSDF_PRINCIPLED")
+        self.assertAlmostEqual(surface.inputs["Emission Strength"].default_value, max(found.emission), delta=1e-4 * max(found.emission))
+        self.assertTrue(bpy.data.images["Luxfer light Ceiling"].is_float)
+
+        # Ours, of the scene as it is exported now; and Cycles', in batches whose scatter is its error.
+        room = convert.scene(work.context(), self.scene)
+        render = luxfer.Render(work.context(), room)
+        render.set_camera(**convert.camera(self.scene))
+        width, height = convert.resolution(self.scene)
+        render.run(width=width, height=height, samples=256)
+        ours, variance = render.image().numpy(), render.image("variance").numpy()
+        batches = []
+        for seed in range(4):
+            self.scene.cycles.seed = seed
+            batches.append(cycles(self.scene, 32))
+        theirs = np.mean(batches, 0)
+
+        first = luxfer.Render(work.context(), room, aovs="object")
+        first.set_camera(**convert.camera(self.scene))
+        seen = first.run(width=width, height=height, samples=16).layer("IndexOB").numpy()[..., 0].astype(int) - 1
+        names = [room.mesh_name(i) for i in range(room.counts.meshes)]
+        for name in ("Ceiling", "Floor"):
+            where = seen == max(i for i, n in enumerate(names) if n == name)  # the lit surface comes last
+            where[1:-1, 1:-1] &= where[:-2, 1:-1] & where[2:, 1:-1] & where[1:-1, :-2] & where[1:-1, 2:]  # not its edges
+            self.assertGreater(where.sum(), 100)
+            mine, other = ours[where].mean(0), theirs[where].mean(0)
+            my_error = np.sqrt(variance[where].sum(0)) / where.sum()
+            other_error = np.std([b[where].mean(0) for b in batches], axis=0, ddof=1) / 2
+            print(f"{name}: ours {mine.round(3)} ± {1.96 * my_error.round(4)}, Cycles {other.round(3)} ± {3.18 * other_error.round(4)} cd/m²")
+            self.assertTrue((np.abs(mine - other) <= 1.96 * my_error + 3.18 * other_error).all())
+
+    def test_applying_can_be_undone(self):
+        self.load_photo()
+        bpy.ops.ed.undo_push(message="before")
+        self.scene.luxfer.apply_when_done = False
+        bpy.ops.luxfer.transfer()
+        bpy.ops.ed.undo_push(message="transferred")
+        self.assertEqual(len(bpy.data.objects["Ceiling"].data.materials), 1)
+        bpy.ops.luxfer.apply("EXEC_DEFAULT", True)
+        self.assertEqual(len(bpy.data.objects["Ceiling"].data.materials), 2)
+        bpy.ops.ed.undo()
+        self.assertEqual(len(bpy.data.objects["Ceiling"].data.materials), 1)
+
+    def test_the_interface_stays_free_and_cancelling_ends_the_work(self):
+        self.load_photo()
+        before = len(bpy.data.materials)
+        start = time.monotonic()
+        work.start("Transfer", lambda: lighting.LUXFER_OT_transfer.make(self.scene))
+        self.assertIsNotNone(work.step())
+        self.assertTrue(bpy.app.timers.is_registered(work.step))
+        self.assertIn("running", self.refusal(bpy.ops.luxfer.cancel.poll))
+        progress = [work.current().progress]
+        while work.current() and progress[-1] < 0.05:
+            work.step()
+            progress.append(work.current().progress)
+        self.assertEqual(progress, sorted(progress))
+        start = time.monotonic()
+        bpy.ops.luxfer.cancel()
+        self.assertLess(time.monotonic() - start, 1)
+        self.assertIsNone(work.current())
+        self.assertEqual(work.message, "Cancelled")
+        self.assertEqual(len(bpy.data.materials), before)
+
+    @staticmethod
+    def refusal(poll):
+        return "running" if poll() else ""
+
+    def test_masks(self):
+        self.load_photo()
+        bpy.ops.luxfer.preview_masks()
+        masks = convert.pixels(bpy.data.images[lighting.MASKS])[..., :3]
+        photo = convert.pixels(self.scene.luxfer.photo)[..., :3]
+        self.assertEqual(masks.shape, photo.shape)
+        self.assertGreater((masks != photo).any(-1).mean(), 0.05)
+
+    def test_what_is_missing_is_told(self):
+        for message, prepare in (
+            ("surface", lambda: None),
+            ("photo", lambda: setattr(self.scene.luxfer, "target", bpy.data.objects["Ceiling"])),
+            ("strokes", lambda: setattr(self.scene.luxfer, "photo", bpy.data.images.new("p", 8, 8))),
+        ):
+            prepare()
+            with self.assertRaisesRegex(RuntimeError, message):
+                bpy.ops.luxfer.transfer()
+        with self.assertRaisesRegex(RuntimeError, "artwork"):
+            bpy.ops.luxfer.stylise()
+
+    def test_stylising(self):
+        settings = self.scene.luxfer
+        settings.exemplar_width, settings.exemplar_height, settings.guide_samples = 96, 72, 8
+        light = bpy.data.objects.new("Lamp", bpy.data.lights.new("Lamp", "POINT"))
+        light.data.energy = 5000
+        light.location = (SIZE[0] / 2, SIZE[1] / 2, SIZE[2] - 0.3)
+        self.scene.collection.objects.link(light)
+        bpy.ops.luxfer.exemplar()
+        self.assertEqual(tuple(bpy.data.images[painting.EXEMPLAR].size), (96, 72))
+        bpy.ops.luxfer.sample_artwork(style="paint")
+        bpy.ops.luxfer.stylise()
+        picture = convert.pixels(bpy.data.images[painting.PICTURE])[..., :3]
+        self.assertEqual(picture.shape, (72, 96, 3))
+        self.assertGreater(picture.std(), 0.02)
+
+
+class Conversion(unittest.TestCase):
+    def test_the_camera_sees_what_blender_s_sees(self):
+        """Depth of a tilted view of the room by both."""
+        scene = build()
+        scene.camera.rotation_euler = (1.2, 0.3, 0.4)
+        room = convert.scene(context := luxfer.Context(), scene)
+        render = luxfer.Render(context, room, aovs="distance")
+        render.set_camera(**convert.camera(scene))
+        width, height = convert.resolution(scene)
+        ours = render.run(width=width, height=height, samples=64).layer("Distance").numpy()[..., 0]
+        graph = bpy.context.evaluated_depsgraph_get()
+        frame = [scene.camera.matrix_world @ corner for corner in scene.camera.data.view_frame(scene=scene)]
+        right_top, right_bottom, left_bottom, left_top = frame
+        origin = scene.camera.matrix_world.translation
+        wrong = 0
+        for row in range(4, height, 8):
+            for column in range(4, width, 8):
+                s, t = (column + 0.5) / width, (row + 0.5) / height
+                point = left_top.lerp(right_top, s).lerp(left_bottom.lerp(right_bottom, s), t)
+                hit, place, *_ = scene.ray_cast(graph, origin, (point - origin).normalized())
+                self.assertTrue(hit)
+                wrong += abs((place - origin).length - ours[row, column]) > 0.06
+        self.assertEqual(wrong, 0)
+
+    def test_images_go_there_and_back(self):
+        context = luxfer.Context()
+        values = np.random.default_rng(1).random((5, 7, 3)).astype(np.float32)
+        stored = convert.store("there", values, linear=True)
+        np.testing.assert_array_equal(convert.image(context, stored).numpy(), values)
+        codes = np.round(values * 255) / np.float32(255)
+        stored = convert.store("there", codes, linear=False)
+        np.testing.assert_allclose(convert.pixels(stored)[..., :3], codes, atol=1e-6)
+        np.testing.assert_array_equal(convert.image(context, stored).numpy(np.uint8, "srgb"), np.round(codes * 255))
+
+
+if __name__ == "__main__":
+    unittest.main()
