@@ -84,7 +84,7 @@ by_pkg_config "$scratch/moved/$lib"
 by_cmake moved_build -DSHARED_ONLY=ON -DCMAKE_PREFIX_PATH="$scratch/moved"
 mv moved prefix
 
-step "add_subdirectory"
+step "FetchContent and add_subdirectory"
 by_cmake part -DSHARED_ONLY=ON -DLUXFER_SOURCE="$source" -DLUXFER_LIB_DIR="$built"
 
 step "split-debug"

@@ -1,0 +1,246 @@
+// Every stage through the C++ wrapper, on small inputs that the library makes itself: what wrapper.cpp does not reach. That
+// the results are right is tested elsewhere; here each method must get to its function, with its arguments in their places.
+#include "check.hpp"
+
+#include <luxfer.hpp>
+
+#include <cmath>
+#include <cstring>
+#include <fstream>
+
+namespace {
+
+using luxfer::Context, luxfer::Image, luxfer::Scene;
+
+// A copy shares the object, and keeps it when the original goes.
+template <class Object>
+Object copied(Object object) {
+    Object copy = object;
+    CHECK(copy.get() == object.get());
+    object = Object();
+    return copy;
+}
+
+bool has_size(const Image &image, std::uint32_t width, std::uint32_t height, std::uint32_t channels) {
+    const luxfer::ImageSize size = image.size();
+    return size.width == width && size.height == height && size.channels == channels;
+}
+
+// One channel of one value.
+Image filled(const Context &context, std::uint32_t width, std::uint32_t height, float value) {
+    return Image::create(context, {std::vector<float>(std::size_t(width) * height, value), width, height, 1});
+}
+
+// From a photo to an emissive texture, stage by stage; each result then takes its place in a transfer.
+void lighting_transfer(const Context &context) {
+    const auto demo = copied(luxfer::DemoPhoto::create(context));
+    luxfer::DemoPhotoParams size;
+    size.width = 300;
+    size.height = 200;
+    size.samples = 4;
+    demo.start(size).wait();
+    const Image photo = demo.image(LUXFER_DEMO_PHOTO_PICTURE), strokes = demo.image(LUXFER_DEMO_PHOTO_STROKES);
+
+    const auto rectify = copied(luxfer::Rectify::create(context));
+    rectify.set_photo(photo);
+    rectify.start().wait();
+    CHECK(rectify.report().segments > 0 && rectify.report().is_unwarped == 0);
+
+    const auto features = copied(luxfer::Features::create(context));
+    features.set_photo(photo);
+    features.set_view(rectify);
+    features.start().wait();
+    CHECK(features.report().depth_source == LUXFER_DEPTH_FROM_LAYOUT);
+    const Image channels = features.image(LUXFER_FEATURES_CHANNELS);
+    CHECK(has_size(channels, 300, 200, 10));
+
+    const auto plane = copied(luxfer::Segment::create(context));
+    plane.set_features(channels);
+    plane.add_strokes("plane 2 1 1 20 20", LUXFER_PHASE_PLANE);
+    plane.clear_strokes();
+    plane.add_strokes(strokes, LUXFER_PHASE_PLANE);
+    plane.start().wait();
+    CHECK(plane.report().positive_samples > 0);
+    const auto lights = luxfer::Segment::create(context);
+    lights.set_features(channels);
+    lights.set_within(plane.image(LUXFER_SEGMENT_MASK));
+    lights.add_strokes(strokes, LUXFER_PHASE_LIGHTS);
+    luxfer::SegmentParams colour;
+    colour.channels = 7;
+    lights.start(colour).wait();
+
+    rectify.set_mask(plane.image(LUXFER_SEGMENT_MASK));
+    luxfer::RectifyParams small;
+    small.max_side = 256;
+    rectify.start(small).wait();
+    const luxfer_rectify_report view = rectify.report();
+    CHECK(view.is_unwarped == 1);
+    const auto emission = copied(luxfer::Emission::create(context));
+    emission.set_exemplar(rectify.image(LUXFER_RECTIFY_UNWARPED), rectify.warp(lights.image(LUXFER_SEGMENT_CONFIDENCE)),
+                          rectify.image(LUXFER_RECTIFY_VALID));
+    emission.set_photo(photo, view.to_photo);
+    luxfer::EmissionParams texture;
+    texture.width = 96;
+    texture.height = 64;
+    texture.working_side = 64;
+    texture.scale = 2;
+    emission.start(texture).wait();
+    CHECK(has_size(emission.image(LUXFER_EMISSION_TEXTURE), 96, 64, 3));
+    const luxfer_emission_report made = emission.report();
+    CHECK(made.luminaires > 0 && emission.luminaire(0).corners > 2);
+    const std::array<double, 2> corner = emission.corner(0, 1);
+    CHECK(corner[0] >= 0 && corner[0] <= 96 && corner[1] >= 0 && corner[1] <= 64);
+
+    // The same as one transfer, the last stages on those results; a texture of the caller's in place of one it would make.
+    const auto transfer = copied(luxfer::Transfer::create(context));
+    transfer.set_photo(photo);
+    transfer.set_depth(filled(context, 300, 200, 3), LUXFER_DEPTH_ALONG_RAY);
+    transfer.set_scene(Scene::demo(context, LUXFER_DEMO_TARGET_ROOM), "Ceiling");
+    transfer.add_strokes(strokes);
+    transfer.clear_strokes();
+    transfer.add_strokes("light 2 1 1 20 20");
+    const float points[] = {10, 10, 30, 10};
+    transfer.add_stroke(LUXFER_PHASE_PLANE, points, 2, true);
+    transfer.set_texture(emission.image(LUXFER_EMISSION_TEXTURE));
+    transfer.use(rectify);
+    transfer.use(features);
+    transfer.use(LUXFER_PHASE_PLANE, plane);
+    transfer.use(LUXFER_PHASE_LIGHTS, lights.image(LUXFER_SEGMENT_CONFIDENCE));
+    luxfer::CameraParams camera;
+    std::copy_n(std::array<float, 3>{5.65f, 1.55f, 3.75f}.data(), 3, camera.position);
+    std::copy_n(std::array<float, 3>{2.2f, 1.3f, 1.15f}.data(), 3, camera.target);
+    transfer.set_camera(camera);
+    luxfer::RelightParams rough;
+    rough.paths = 1 << 12;
+    luxfer::RenderParams tiny;
+    tiny.width = 32;
+    tiny.height = 18;
+    tiny.samples = 2;
+    luxfer::TransferParams params;
+    params.relight = &rough;
+    params.render = &tiny;
+    transfer.start(LUXFER_STAGE_EMISSION, LUXFER_STAGE_RENDER, params).wait();
+    CHECK(has_size(transfer.image(LUXFER_TRANSFER_RENDER), 32, 18, 3));
+    CHECK(transfer.scene().counts().meshes == transfer.scene(LUXFER_SCENE_UNSOLVED).counts().meshes);
+    CHECK(transfer.report().fixtures > 0 && transfer.fixture(0).area > 0);
+    transfer.save_fixtures("wrapper_stages.csv");
+    CHECK(std::ifstream("wrapper_stages.csv").good());
+    CHECK(transfer.view().focal == view.focal && transfer.solution().scale[0] > 0);
+}
+
+// A lamp, textures and an environment of the caller's; the lamp is solved for, and measured.
+void light(const Context &context) {
+    const Scene scene = copied(Scene::demo(context, LUXFER_DEMO_TARGET_ROOM));
+    const Image white = Image::create(context, {std::vector<float>(2 * 2 * 3, 1.0f), 2, 2});
+    scene.set_environment(white, {1, 2, 3});
+    const std::uint32_t texture = scene.add_texture(white, LUXFER_WRAP_CLAMP, LUXFER_WRAP_MIRROR);
+    const float transform[] = {2, 0, 0, 0, 2, 0};
+    scene.set_material_texture(0, LUXFER_TEXTURE_BASE_COLOR, texture, 0, transform);
+    const luxfer_texture_use use = scene.material_texture(0, LUXFER_TEXTURE_BASE_COLOR);
+    CHECK(use.texture == texture && use.wrap_u == LUXFER_WRAP_CLAMP && use.wrap_v == LUXFER_WRAP_MIRROR);
+    CHECK(use.transform[4] == 2 && has_size(scene.texture(texture), 2, 2, 3));
+    luxfer_material_params material = scene.material(0);
+    material.roughness = 0.25f;
+    scene.set_material(0, material);
+    CHECK(scene.material(0).roughness == 0.25f);
+    scene.set_material_texture(0, LUXFER_TEXTURE_BASE_COLOR, LUXFER_NONE);
+    CHECK(scene.material_texture(0, LUXFER_TEXTURE_BASE_COLOR).texture == LUXFER_NONE);
+
+    std::vector<float> lit(4 * 4 * 3, 0.0f);
+    std::fill_n(&lit[3 * 5], 3, 1.0f);
+    const luxfer::PlacedEmission lamp =
+        scene.place_emission("Ceiling", Image::create(context, {lit, 4, 4}), {100, 100, 100});
+    const auto relight = copied(luxfer::Relight::create(context));
+    relight.set_scene(scene, lamp);
+    relight.set_target({50, 40, 30});
+    luxfer::RelightParams rough;
+    rough.paths = 1 << 12;
+    relight.start(rough).wait();
+    const luxfer_relight_report solution = relight.report();
+    CHECK(solution.scale[0] > 0 && solution.paths > 0);
+
+    const auto illuminance = copied(luxfer::Illuminance::create(context));
+    illuminance.set_scene(scene);
+    luxfer::IlluminanceParams few;
+    few.columns = few.rows = 2;
+    few.samples = 16;
+    illuminance.start_mesh(lamp.mesh, false, few).wait();
+    CHECK(has_size(illuminance.image(), 2, 2, 1) && has_size(illuminance.image(LUXFER_ILLUMINANCE_ERROR), 2, 2, 1));
+
+    const auto render = copied(luxfer::Render::create(context));
+    render.set_scene(scene);
+    render.set_camera(luxfer::CameraParams());
+    render.set_emitter_as(LUXFER_EMITTER_AS_OBJECT);
+    render.add_expression("all", "C.*");
+    render.clear_expressions();
+    render.set_aovs(LUXFER_AOV_ALPHA | LUXFER_AOV_NORMAL);
+    luxfer::RenderParams tiny;
+    tiny.width = tiny.height = 8;
+    tiny.samples = 2;
+    const luxfer::Job job = copied(luxfer::Job(render.start(tiny)));
+    job.wait();
+    CHECK(render.layer_count() == 2);
+    render.write_exr("wrapper_stages.exr");
+    scene.save("wrapper_stages.glb");
+    std::ifstream file("wrapper_stages.exr", std::ios::binary);
+    const std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+    CHECK(has_size(Image::load_memory(context, bytes), 8, 8, 4));
+    CHECK(Scene::load(context, "wrapper_stages.glb").counts().triangles == scene.counts().triangles);
+}
+
+luxfer::Guides guides_of(const Context &context, luxfer_demo which) {
+    const auto guides = copied(luxfer::Guides::create(context));
+    guides.set_scene(Scene::demo(context, which));
+    luxfer::GuidesParams small;
+    small.width = 48;
+    small.height = 36;
+    small.samples = 2;
+    guides.start(small).wait();
+    return guides;
+}
+
+void stylisation(const Context &context) {
+    const luxfer::Guides source = guides_of(context, LUXFER_DEMO_SPHERE_ON_TABLE);
+    const luxfer::Guides target = guides_of(context, LUXFER_DEMO_STILL_LIFE);
+    const Image artwork = source.demo_artwork(LUXFER_ARTWORK_PEN), all = filled(context, 48, 36, 1);
+    const auto stylize = copied(luxfer::Stylize::create(context));
+    stylize.set_artwork(artwork);
+    stylize.add_guide("height", filled(context, 48, 36, 0.5f), filled(context, 48, 36, 0.5f), 1, LUXFER_GUIDE_DATA);
+    stylize.clear_guides();
+    stylize.add_guides(source, target, LUXFER_GUIDES_WITH_NORMALS, 0.5f);
+    stylize.set_source_mask(all);
+    stylize.set_target_mask(all, artwork);
+    luxfer::StylizeParams params(LUXFER_STYLIZE_FAST);
+    params.keep_for_update = 1;
+    stylize.start(params).wait();
+    CHECK(has_size(stylize.image(), 48, 36, artwork.size().channels));
+    const luxfer_stylize_report report = stylize.report();
+    CHECK(report.finished == 1 && report.levels > 0);
+    const luxfer::Stylize::Level finest = stylize.level(report.levels - 1);
+    CHECK(finest.width == 48 && finest.height == 36 && finest.rounds > 0);
+    CHECK(stylize.round(report.levels - 1, 0).passes > 0 && stylize.pass(report.levels - 1, 0, 0).coverage > 0);
+    stylize.update(artwork, all).wait();
+    CHECK(has_size(stylize.image(LUXFER_STYLIZE_IMAGE_SOURCES), 48, 36, 2));
+
+    stylize.set_motion(target.motion(target));
+    stylize.set_motion(Image());
+    stylize.set_painted(all);
+    CHECK(has_size(target.image(LUXFER_GUIDES_EDGES), 48, 36, 1));
+
+    // Printed, and the print itself aligned as if it were a scan.
+    luxfer::SheetParams paper;
+    paper.dpi = 60;
+    const luxfer::Sheet::Aligned aligned = luxfer::Sheet::align(luxfer::Sheet::print(artwork, paper), 48, 36, paper);
+    CHECK(aligned.report.marks >= 6 && has_size(aligned.artwork, 48, 36, 3));
+}
+
+} // namespace
+
+int main() {
+    const Context context = Context::create();
+    CHECK(std::strcmp(luxfer_version_string(), "") != 0);
+    lighting_transfer(context);
+    light(context);
+    stylisation(context);
+    return check::summary("wrapper_stages");
+}
