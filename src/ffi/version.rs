@@ -3,9 +3,9 @@
 //! The macros say what this header was made for, the functions what library is loaded. Before 1.0 libraries of one minor
 //! version are compatible (libluxfer.so.0.1); from 1.0 on those of one major version.
 //!
-//! A program that finds its library at run time (dlopen, a plug-in folder) asks at its start whether it is such a one:
-//!
-//!     if (luxfer_version() / 100 != LUXFER_VERSION / 100) ...  (from 1.0 on: / 10000, and not older)
+//! A program that meets its library at run time (dlopen, a folder of plug-ins) asks at its start whether
+//! luxfer_version() / 100 == LUXFER_VERSION / 100; from 1.0 on, whether the two are equal when divided by 10000 and the
+//! library is not the older one. luxfer::Context::create of bindings/cpp does.
 
 use std::ffi::c_char;
 
