@@ -7,7 +7,7 @@
 #
 # PREFIX=/usr/local   where it will be used; LIBDIR (such as $(PREFIX)/lib/x86_64-linux-gnu), INCLUDEDIR and DOCDIR below it
 # DESTDIR=            a folder to stage it in, for packages
-# Strip and split-debug are left to those who want them: Debian and Fedora split the symbols themselves.
+# The library is installed as built, with its symbols, because Debian and Fedora split those themselves.
 
 PREFIX     ?= /usr/local
 LIBDIR     ?= $(PREFIX)/lib
@@ -17,10 +17,11 @@ INSTALL    ?= install
 OBJCOPY    ?= objcopy
 
 HEADERS     := luxfer.h luxfer.hpp $(patsubst bindings/cpp/%,%,$(wildcard bindings/cpp/luxfer/*.hpp))
-INSTALLED    = $(addprefix $(LIBDIR)/,libluxfer.so libluxfer.so.$(ABI) libluxfer.so.$(VERSION) libluxfer.a \
-                 .debug/libluxfer.so.$(VERSION).debug pkgconfig/luxfer.pc) \
-               $(addprefix $(INCLUDEDIR)/,$(HEADERS))
-INSTALLED_DIRS = $(LIBDIR)/cmake/luxfer $(INCLUDEDIR)/luxfer $(DOCDIR)
+DOCUMENTS   := LICENSE-APACHE LICENSE-MIT README.md $(PROFILE)/THIRD-PARTY.txt
+FOLDERS      = $(LIBDIR)/pkgconfig $(LIBDIR)/cmake/luxfer $(INCLUDEDIR)/luxfer $(DOCDIR)
+INSTALLED    = $(addprefix $(LIBDIR)/,libluxfer.so libluxfer.so.$(ABI) libluxfer.so.$(VERSION) libluxfer.a pkgconfig/luxfer.pc \
+                 .debug/libluxfer.so.$(VERSION).debug cmake/luxfer/luxferConfig.cmake cmake/luxfer/luxferConfigVersion.cmake) \
+               $(addprefix $(INCLUDEDIR)/,$(HEADERS)) $(addprefix $(DOCDIR)/,$(notdir $(DOCUMENTS)))
 
 # The path from one folder to another, which need not exist.
 relative = $(shell realpath -m --relative-to='$(1)' '$(2)')
@@ -39,14 +40,14 @@ $(PROFILE)/THIRD-PARTY.txt: Cargo.lock
 	CARGO='$(CARGO)' bindings/third_party.sh >$@.part && mv $@.part $@
 
 install: $(LIB) $(PROFILE)/libluxfer.a $(PROFILE)/THIRD-PARTY.txt
-	$(INSTALL) -d '$(DESTDIR)$(LIBDIR)/pkgconfig' $(foreach dir,$(INSTALLED_DIRS),'$(DESTDIR)$(dir)')
+	$(INSTALL) -d $(foreach folder,$(FOLDERS),'$(DESTDIR)$(folder)')
 	$(INSTALL) -m 755 $(LIB) '$(DESTDIR)$(LIBDIR)/libluxfer.so.$(VERSION)'
 	ln -sf libluxfer.so.$(VERSION) '$(DESTDIR)$(LIBDIR)/libluxfer.so.$(ABI)'
 	ln -sf libluxfer.so.$(ABI) '$(DESTDIR)$(LIBDIR)/libluxfer.so'
 	$(INSTALL) -m 644 $(PROFILE)/libluxfer.a '$(DESTDIR)$(LIBDIR)'
 	$(INSTALL) -m 644 include/luxfer.h bindings/cpp/luxfer.hpp '$(DESTDIR)$(INCLUDEDIR)'
 	$(INSTALL) -m 644 bindings/cpp/luxfer/*.hpp '$(DESTDIR)$(INCLUDEDIR)/luxfer'
-	$(INSTALL) -m 644 LICENSE-APACHE LICENSE-MIT README.md $(PROFILE)/THIRD-PARTY.txt '$(DESTDIR)$(DOCDIR)'
+	$(INSTALL) -m 644 $(DOCUMENTS) '$(DESTDIR)$(DOCDIR)'
 	$(call fill,bindings/pkgconfig/luxfer.pc.in,$(LIBDIR)/pkgconfig)
 	$(call fill,bindings/cmake/luxferConfig.cmake.in,$(LIBDIR)/cmake/luxfer)
 	$(call fill,bindings/cmake/luxferConfigVersion.cmake.in,$(LIBDIR)/cmake/luxfer)
@@ -56,10 +57,10 @@ split-debug:
 	cd '$(DESTDIR)$(LIBDIR)' && $(OBJCOPY) --only-keep-debug libluxfer.so.$(VERSION) .debug/libluxfer.so.$(VERSION).debug
 	cd '$(DESTDIR)$(LIBDIR)' && $(OBJCOPY) --strip-debug --add-gnu-debuglink=.debug/libluxfer.so.$(VERSION).debug libluxfer.so.$(VERSION)
 
+# Only what install has put there by name, and its folders if they are empty then.
 uninstall:
 	rm -f $(foreach file,$(INSTALLED),'$(DESTDIR)$(file)')
-	rm -rf $(foreach dir,$(INSTALLED_DIRS),'$(DESTDIR)$(dir)')
-	-rmdir '$(DESTDIR)$(LIBDIR)/.debug' 2>/dev/null
+	rmdir $(foreach folder,$(FOLDERS) $(LIBDIR)/.debug,'$(DESTDIR)$(folder)') 2>/dev/null || true
 
 dist:
 	@mkdir -p out
