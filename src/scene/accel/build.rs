@@ -3,7 +3,7 @@
 use super::collapse::{self, Source};
 use super::lines::Lines;
 use super::node::Child;
-use super::{Accel, SHORT_STACK, units};
+use super::{Accel, SHORT_STACK, pages, units};
 use crate::error::{Error, Result};
 use crate::job::Job;
 use glam::{Vec3, Vec4};
@@ -11,6 +11,10 @@ use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
+
+/// Bytes that the builder of the binary tree takes per leaf, with a margin: boxes (32) and indices (4); two lists of nodes
+/// and the sort keys (32 each); two nodes per leaf (64) with their parents and marks (10).
+const BUILDER_BYTES: usize = 256;
 
 pub(super) fn build(triangles: &[[Vec3; 3]], job: Job) -> Result<Accel> {
     if triangles.len() >= 1 << 31 {
@@ -33,6 +37,8 @@ pub(super) fn build(triangles: &[[Vec3; 3]], job: Job) -> Result<Accel> {
     (accel.low, accel.high) = (units.low, units.high);
     accel.largest = units.low.abs().max(units.high.abs()).extend(0.0);
     job.report(0.1);
+    // The builder's own allocations end the process where they fail.
+    pages::expect_room(units.list.len().saturating_mul(BUILDER_BYTES))?;
     let tree = binary_tree(&units.boxes(triangles), job.part(0.1, 0.8))?;
     collapse::run(&Source { triangles, units: &units.list, tree: &tree }, &mut accel, job)?;
     job.report(1.0);

@@ -148,7 +148,7 @@ impl Accel {
         self.traverse::<lanes::Avx2, ANY>(ray, accept, stack)
     }
 
-    /// Visits boxes nearest first; if `ANY`, in any order.
+    /// Visits boxes nearest first; if `ANY`, from the last lane to the first, which is how they promise most.
     #[inline(always)]
     fn traverse<L: Lanes, const ANY: bool>(
         &self,

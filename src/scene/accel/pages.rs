@@ -6,6 +6,7 @@
 
 use crate::error::{Error, ErrorKind, Result};
 use rayon::prelude::*;
+use std::hint::black_box;
 use std::mem::MaybeUninit;
 
 /// All parts one after the other, copied in parallel.
@@ -25,13 +26,24 @@ pub(super) fn join<T: Send + Sync + Copy>(parts: &[&[T]]) -> Result<Vec<T>> {
     Ok(all)
 }
 
-/// An empty list with room for `len` items.
-fn room<T>(len: usize) -> Result<Vec<T>> {
-    let mut list = Vec::<T>::new();
+/// An error where there is no room for so many bytes.
+pub(super) fn expect_room(bytes: usize) -> Result<()> {
+    // A reservation that nothing uses might be optimised away, and found possible.
+    reserve::<u8>(bytes).map(|room| drop(black_box(room)))
+}
+
+fn reserve<T>(len: usize) -> Result<Vec<T>> {
+    let mut list = Vec::new();
     list.try_reserve_exact(len).map_err(|_| {
         let mib = (len as f64) * size_of::<T>() as f64 / (1 << 20) as f64;
         Error::new(ErrorKind::OutOfMemory, format!("could not allocate {mib:.1} MiB"))
     })?;
+    Ok(list)
+}
+
+/// An empty list with room for `len` items.
+fn room<T>(len: usize) -> Result<Vec<T>> {
+    let list = reserve::<T>(len)?;
     #[cfg(target_os = "linux")]
     {
         // Whole huge pages inside of it only.
@@ -45,4 +57,17 @@ fn room<T>(len: usize) -> Result<Vec<T>> {
         }
     }
     Ok(list)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn room_that_no_machine_has_is_an_error() {
+        assert!(expect_room(1 << 20).is_ok());
+        for bytes in [1 << 60, usize::MAX] {
+            assert_eq!(expect_room(bytes).unwrap_err().kind, ErrorKind::OutOfMemory);
+        }
+    }
 }
