@@ -117,7 +117,8 @@ impl<'a> Layers<'a> {
     /// Adds what a recorder has gathered to a pixel's sums, and leaves it empty.
     pub fn keep(&self, recorder: &mut Recorder, tile: usize, pixel: usize) {
         let mut tile = self.tiles[tile].lock().unwrap_or_else(PoisonError::into_inner);
-        let (colours, surfaces) = tile[pixel * self.width..][..self.width].split_at_mut(3 * self.outputs.expressions.len());
+        let (colours, surfaces) =
+            tile[pixel * self.width..][..self.width].split_at_mut(3 * self.outputs.expressions.len());
         // What a list of expressions shares is added to each of them.
         let lists = self.table.lists().iter().zip(&mut recorder.sums);
         for (list, sum) in lists.filter(|(_, sum)| **sum != DVec3::ZERO) {

@@ -87,9 +87,8 @@ mod tests {
         }
         let level = level(&pixels, job.job()).unwrap().unwrap();
         assert_eq!(level, DVec3::new(2.0, 2.0, 0.0));
-        let worth = |tile: usize, pixel: &Pixel| {
-            Surroundings::of(&pixels[tile * AREA..(tile + 1) * AREA], level).worth(pixel)
-        };
+        let worth =
+            |tile: usize, pixel: &Pixel| Surroundings::of(&pixels[tile * AREA..(tile + 1) * AREA], level).worth(pixel);
         assert!((worth(0, &pixels[0]) - Vec3::ONE).abs().max_element() < 1e-5);
         assert!((worth(2, &pixels[2 * AREA]) - Vec3::new(4.0, 4.0, 1.0)).abs().max_element() < 0.05);
         // Few paths say little: the tile speaks for a pixel that happens to be dark.

@@ -472,7 +472,9 @@ fn a_sample_states_the_density_that_scattering_into_it_would() {
         let receiver =
             Receiver { position: within(&mut rng, 4.0), normal: (direction(&mut rng) + Vec3::Y).normalize() };
         let block = Sampler::new(7, i).next();
-        let Some(sample) = world.lights().sample(world.scene(), &receiver, (block.fine(0), block.get(1))) else { continue };
+        let Some(sample) = world.lights().sample(world.scene(), &receiver, (block.fine(0), block.get(1))) else {
+            continue;
+        };
         let stated = match sample.end {
             Some(LightEnd::Emitter(index, b)) => {
                 surfaces += 1;
