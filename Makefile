@@ -1,6 +1,7 @@
 # make demo   builds the library and two C programs, and runs a lighting transfer and a stylisation, into out/
 # make test   sets up what is missing (Debian packages, Mitsuba and numpy from PyPI) and runs every test
 # make bench  runs the benches and prints the headline figures; make bench ONLY=rays runs one; plots go to out/bench/
+# make blender  builds the Blender extension, with the library inside, into out/blender/
 # make clean  removes what was built
 #
 # make install PREFIX=/usr/local DESTDIR=, make uninstall, make dist and more: bindings/install.mk
@@ -18,7 +19,7 @@ PACKAGES := cmake g++ binutils libopencv-dev libembree-dev python3-venv pkg-conf
 BENCHES  := $(patsubst benches/%.rs,%,$(wildcard benches/*.rs))
 ONLY     ?= $(BENCHES)
 
-.PHONY: all lib demo test bench peers setup clean
+.PHONY: all lib demo test bench blender peers setup clean
 
 all: lib $(PROFILE)/THIRD-PARTY.txt
 
@@ -62,6 +63,10 @@ bench: peers
 	@for bench in $(ONLY); do $(CARGO) bench --quiet --bench $$bench | tee out/bench/$$bench.log || exit 1; done
 	@grep -h '^figure ' out/bench/*.log >out/bench/figures.txt
 	@python3 benches/table.py
+
+blender: lib
+	@benches/peers/install.sh python
+	@target/peers/python/bin/python bindings/blender/build.py out/blender
 
 peers:
 	@benches/peers/install.sh

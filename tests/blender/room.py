@@ -23,6 +23,7 @@ def material(name: str, colour: tuple[float, float, float]) -> bpy.types.Materia
     surface.inputs["Base Color"].default_value = (*colour, 1)
     surface.inputs["Roughness"].default_value = 1
     surface.inputs["Specular IOR Level"].default_value = 0
+    surface.inputs["IOR"].default_value = 1  # what glTF without KHR_materials_specular has for it
     return out
 
 
@@ -70,6 +71,7 @@ def cycles(scene: bpy.types.Scene, samples: int) -> np.ndarray:
     scene.cycles.max_bounces = scene.cycles.diffuse_bounces = 64
     scene.cycles.sample_clamp_indirect = scene.cycles.sample_clamp_direct = 0
     scene.cycles.blur_glossy = 0
+    scene.cycles.pixel_filter_type = "BOX"  # as ours
     scene.render.image_settings.file_format = "OPEN_EXR"
     scene.render.image_settings.color_depth = "32"
     with tempfile.TemporaryDirectory() as folder:

@@ -1,13 +1,15 @@
 """The add-on in a Blender without a window (bpy from PyPI): its operators on a scene made here, the result by Cycles."""
 
+import os
 import time
 import unittest
+from types import SimpleNamespace
 
 from room import SIZE, bpy, build, cycles, np
 
 import luxfer
 import luxfer_lighting
-from luxfer_lighting import convert, lighting, painting, work
+from luxfer_lighting import convert, lighting, painting, panels, work
 
 EXEMPLAR = {"width": 240, "height": 160, "samples": 8}
 
@@ -30,11 +32,6 @@ class AddOn(unittest.TestCase):
         settings.strokes = convert.store(lighting.STROKES, np.where(painted[..., None], strokes, pale), linear=False)
         settings.target = bpy.data.objects["Ceiling"]
         settings.texels = 256
-
-    def finish(self):
-        """What Blender's timer does, without a window."""
-        while work.step() is not None:
-            time.sleep(work.POLL_SECONDS)
 
     def test_register_and_unregister_twice(self):
         luxfer_lighting.unregister()
@@ -77,15 +74,18 @@ class AddOn(unittest.TestCase):
         first.set_camera(**convert.camera(self.scene))
         seen = first.run(width=width, height=height, samples=16).layer("IndexOB").numpy()[..., 0].astype(int) - 1
         names = [room.mesh_name(i) for i in range(room.counts.meshes)]
+        far = []
         for name in ("Ceiling", "Floor"):
-            where = seen == max(i for i, n in enumerate(names) if n == name)  # the lit surface comes last
+            where = seen == names.index("Ceiling (lights)" if name == "Ceiling" else name)
             where[1:-1, 1:-1] &= where[:-2, 1:-1] & where[2:, 1:-1] & where[1:-1, :-2] & where[1:-1, 2:]  # not its edges
             self.assertGreater(where.sum(), 100)
             mine, other = ours[where].mean(0), theirs[where].mean(0)
             my_error = np.sqrt(variance[where].sum(0)) / where.sum()
             other_error = np.std([b[where].mean(0) for b in batches], axis=0, ddof=1) / 2
             print(f"{name}: ours {mine.round(3)} ± {1.96 * my_error.round(4)}, Cycles {other.round(3)} ± {3.18 * other_error.round(4)} cd/m²")
-            self.assertTrue((np.abs(mine - other) <= 1.96 * my_error + 3.18 * other_error).all())
+            far.append((name, np.abs(mine - other) / (1.96 * my_error + 3.18 * other_error)))
+        for name, shares in far:
+            self.assertTrue((shares <= 1).all(), f"{name}: {shares} of the interval")
 
     def test_applying_can_be_undone(self):
         self.load_photo()
@@ -102,11 +102,11 @@ class AddOn(unittest.TestCase):
     def test_the_interface_stays_free_and_cancelling_ends_the_work(self):
         self.load_photo()
         before = len(bpy.data.materials)
-        start = time.monotonic()
-        work.start("Transfer", lambda: lighting.LUXFER_OT_transfer.make(self.scene))
+        work.start("Transfer", lambda: lighting.transfer_work(self.scene))
         self.assertIsNotNone(work.step())
         self.assertTrue(bpy.app.timers.is_registered(work.step))
-        self.assertIn("running", self.refusal(bpy.ops.luxfer.cancel.poll))
+        self.assertTrue(bpy.ops.luxfer.cancel.poll())
+        self.assertFalse(bpy.ops.luxfer.transfer.poll())
         progress = [work.current().progress]
         while work.current() and progress[-1] < 0.05:
             work.step()
@@ -119,9 +119,29 @@ class AddOn(unittest.TestCase):
         self.assertEqual(work.message, "Cancelled")
         self.assertEqual(len(bpy.data.materials), before)
 
-    @staticmethod
-    def refusal(poll):
-        return "running" if poll() else ""
+    def test_panels_name_what_exists(self):
+        """Drawn into a stub of a layout that looks up every property and operator it is given."""
+
+        class Layout:
+            def __getattr__(self, name):
+                return lambda *arguments, **_: self.check(name, *arguments)
+
+            def check(self, name, *arguments):
+                if name in ("prop", "template_ID"):
+                    arguments[0].bl_rna.properties[arguments[1]]
+                elif name in ("operator", "operator_menu_enum"):
+                    module, verb = arguments[0].split(".")
+                    getattr(getattr(bpy.ops, module), verb).get_rna_type()
+                return self
+
+        self.load_photo()
+        work.start("Masks", lambda: (lighting.mask_steps(lighting.prepared(self.scene), lighting.photo_pixels(self.scene)), 1))
+        for kind in panels.CLASSES:
+            kind.draw(SimpleNamespace(layout=Layout()), bpy.context)
+        work.cancel()
+        for kind in panels.CLASSES:
+            kind.draw(SimpleNamespace(layout=Layout()), bpy.context)
+        self.assertEqual(panels.lines("a word too long for it all", 10), ["a word too", "long for", "it all"])
 
     def test_masks(self):
         self.load_photo()
@@ -156,6 +176,8 @@ class AddOn(unittest.TestCase):
         bpy.ops.luxfer.stylise()
         picture = convert.pixels(bpy.data.images[painting.PICTURE])[..., :3]
         self.assertEqual(picture.shape, (72, 96, 3))
+        if folder := os.environ.get("LUXFER_LOOK"):
+            luxfer.Image(work.context(), picture, "srgb").save(os.path.join(folder, "stylised.png"))
         self.assertGreater(picture.std(), 0.02)
 
 

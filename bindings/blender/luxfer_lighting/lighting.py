@@ -51,35 +51,31 @@ def prepared(scene: bpy.types.Scene) -> luxfer.Transfer:
     return transfer
 
 
-def mask_steps(scene: bpy.types.Scene, transfer: luxfer.Transfer) -> Generator[luxfer.Job, Any, None]:
+def mask_steps(transfer: luxfer.Transfer, photo: np.ndarray) -> Generator[luxfer.Job, Any, None]:
     yield transfer.start("view", "lights")
-    photo = convert.pixels(scene.luxfer.photo)[..., :3]
     store_masks(photo, transfer)
 
 
 def store_masks(photo: np.ndarray, transfer: luxfer.Transfer) -> None:
     """The photo with the plane in green and the lights in yellow."""
-    plane, lights = (transfer.image(which).numpy() for which in ("plane-confidence", "lights-mask"))
-    tinted = photo + (plane > 0.5) * (0.5 * (np.float32((0, 0.6, 0)) - photo))
+    plane, lights = (transfer.image(which).numpy() for which in ("plane-mask", "lights-mask"))
+    tinted = photo + plane * (0.5 * (np.float32((0, 0.6, 0)) - photo))
     tinted += lights * (0.8 * (np.float32((1, 1, 0)) - tinted))
     convert.store(MASKS, tinted, linear=False)
 
 
-def transfer_steps(scene: bpy.types.Scene, transfer: luxfer.Transfer, room: luxfer.Scene) -> Generator[luxfer.Job, Any, None]:
+def transfer_steps(
+    transfer: luxfer.Transfer, photo: np.ndarray, room: luxfer.Scene, name: str, params: dict[str, Any], apply: bool
+) -> Generator[luxfer.Job, Any, None]:
     global result
-    settings = scene.luxfer
-    name = settings.target.name
-    yield transfer.start(
-        "view", "relight",
-        max_texels=settings.texels, plane_distance=settings.distance, white_luminance=settings.white,
-    )
-    store_masks(convert.pixels(settings.photo)[..., :3], transfer)
+    yield transfer.start("view", "relight", **params)
+    store_masks(photo, transfer)
     lit = transfer.scene("lit")
     emission = lit.material(lit.counts.materials - 1)["emission"]  # that of the surface is the last one
     texture = transfer.image("emission").numpy()
     result = Result(name, room.find_surface(name), texture, emission, transfer.solution.error)
     write_lamps(transfer.fixtures)
-    if settings.apply_when_done:
+    if apply:
         bpy.ops.luxfer.apply("EXEC_DEFAULT", True)
 
 
@@ -151,14 +147,10 @@ class LUXFER_OT_preview_masks(work.Background, bpy.types.Operator):
 
     bl_idname = "luxfer.preview_masks"
     bl_label = "Preview Masks"
+    title = "Masks"
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        return work.current() is None
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        scene = context.scene
-        return self.begin(context, "Masks", lambda: (mask_steps(scene, prepared(scene)), 1))
+    def make(self, context: bpy.types.Context) -> tuple[Generator[luxfer.Job, Any, None], int]:
+        return mask_steps(prepared(context.scene), photo_pixels(context.scene)), 1
 
 
 class LUXFER_OT_transfer(work.Background, bpy.types.Operator):
@@ -166,22 +158,26 @@ class LUXFER_OT_transfer(work.Background, bpy.types.Operator):
 
     bl_idname = "luxfer.transfer"
     bl_label = "Transfer Light"
+    title = "Transfer"
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        return work.current() is None
+    def make(self, context: bpy.types.Context) -> tuple[Generator[luxfer.Job, Any, None], int]:
+        return transfer_work(context.scene)
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        return self.begin(context, "Transfer", lambda: self.make(context.scene))
 
-    @staticmethod
-    def make(scene: bpy.types.Scene) -> tuple[Generator[luxfer.Job, Any, None], int]:
-        if scene.luxfer.target is None:
-            raise ValueError("choose the surface that receives the lights first")
-        transfer = prepared(scene)
-        room = convert.scene(work.context(), scene)
-        transfer.set_scene(room, scene.luxfer.target.name)
-        return transfer_steps(scene, transfer, room), 1
+def transfer_work(scene: bpy.types.Scene) -> tuple[Generator[luxfer.Job, Any, None], int]:
+    """Reads all that a transfer needs."""
+    settings = scene.luxfer
+    if settings.target is None:
+        raise ValueError("choose the surface that receives the lights first")
+    transfer = prepared(scene)
+    room, name = convert.scene(work.context(), scene), settings.target.name
+    transfer.set_scene(room, name)
+    params = {"max_texels": settings.texels, "plane_distance": settings.distance, "white_luminance": settings.white}
+    return transfer_steps(transfer, photo_pixels(scene), room, name, params, settings.apply_when_done), 1
+
+
+def photo_pixels(scene: bpy.types.Scene) -> np.ndarray:
+    return convert.pixels(scene.luxfer.photo)[..., :3]
 
 
 class LUXFER_OT_apply(bpy.types.Operator):

@@ -20,34 +20,31 @@ def ball(width: int, height: int, samples: int) -> tuple[luxfer.Guides, luxfer.J
     return guides, guides.start(width=width, height=height, samples=samples)
 
 
-def exemplar_steps(scene: bpy.types.Scene) -> Generator[luxfer.Job, Any, None]:
-    settings = scene.luxfer
-    guides, job = ball(settings.exemplar_width, settings.exemplar_height, settings.guide_samples)
+def exemplar_steps(width: int, height: int, samples: int) -> Generator[luxfer.Job, Any, None]:
+    guides, job = ball(width, height, samples)
     yield job
     light = guides.image("full").numpy()
     shown = luxfer.Image(work.context(), light * (0.9 / np.percentile(light, 98)))
     convert.store(EXEMPLAR, shown.numpy(np.uint8, "srgb") / np.float32(255), linear=False)
 
 
-def sample_steps(scene: bpy.types.Scene, style: str) -> Generator[luxfer.Job, Any, None]:
-    settings = scene.luxfer
-    guides, job = ball(settings.exemplar_width, settings.exemplar_height, settings.guide_samples)
+def sample_steps(width: int, height: int, samples: int, style: str) -> Generator[luxfer.Job, Any, None]:
+    guides, job = ball(width, height, samples)
     yield job
     artwork = guides.demo_artwork(style).numpy(np.uint8, "srgb")[..., :3]
-    settings.artwork = convert.store(ARTWORK, artwork / np.float32(255), linear=False)
+    bpy.context.scene.luxfer.artwork = convert.store(ARTWORK, artwork / np.float32(255), linear=False)
 
 
-def stylise_steps(scene: bpy.types.Scene, target: luxfer.Scene, camera: int) -> Generator[luxfer.Job, Any, None]:
-    settings = scene.luxfer
-    artwork = settings.artwork
-    source, job = ball(*artwork.size, settings.guide_samples)
+def stylise_steps(
+    artwork: luxfer.Image, target: luxfer.Scene, params: dict[str, int], preset: str
+) -> Generator[luxfer.Job, Any, None]:
+    source, job = ball(*artwork.size[:2], params["samples"])
     yield job
     guides = luxfer.Guides(work.context(), target)
-    width, height = convert.resolution(scene)
-    yield guides.start(width=width, height=height, samples=settings.guide_samples, camera=camera)
-    stylize = luxfer.Stylize(work.context(), convert.image(work.context(), artwork))
+    yield guides.start(**params)
+    stylize = luxfer.Stylize(work.context(), artwork)
     stylize.add_guides(source, guides)
-    yield stylize.start(settings.preset)
+    yield stylize.start(preset)
     painted = stylize.image().numpy(np.uint8, "srgb")
     convert.store(PICTURE, painted[..., :3] / np.float32(255), linear=False)
 
@@ -57,13 +54,11 @@ class LUXFER_OT_exemplar(work.Background, bpy.types.Operator):
 
     bl_idname = "luxfer.exemplar"
     bl_label = "Render Exemplar"
+    title = "Exemplar"
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        return work.current() is None
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        return self.begin(context, "Exemplar", lambda: (exemplar_steps(context.scene), 1))
+    def make(self, context: bpy.types.Context) -> tuple[Generator[luxfer.Job, Any, None], int]:
+        settings = context.scene.luxfer
+        return exemplar_steps(settings.exemplar_width, settings.exemplar_height, settings.guide_samples), 1
 
 
 class LUXFER_OT_sample_artwork(work.Background, bpy.types.Operator):
@@ -71,6 +66,7 @@ class LUXFER_OT_sample_artwork(work.Background, bpy.types.Operator):
 
     bl_idname = "luxfer.sample_artwork"
     bl_label = "Sample Artwork"
+    title = "Artwork"
 
     style: bpy.props.EnumProperty(
         name="Style",
@@ -81,12 +77,9 @@ class LUXFER_OT_sample_artwork(work.Background, bpy.types.Operator):
         ),
     )
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        return work.current() is None
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        return self.begin(context, "Artwork", lambda: (sample_steps(context.scene, self.style), 1))
+    def make(self, context: bpy.types.Context) -> tuple[Generator[luxfer.Job, Any, None], int]:
+        settings = context.scene.luxfer
+        return sample_steps(settings.exemplar_width, settings.exemplar_height, settings.guide_samples, self.style), 1
 
 
 class LUXFER_OT_stylise(work.Background, bpy.types.Operator):
@@ -94,23 +87,19 @@ class LUXFER_OT_stylise(work.Background, bpy.types.Operator):
 
     bl_idname = "luxfer.stylise"
     bl_label = "Stylise"
+    title = "Stylisation"
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        return work.current() is None
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        return self.begin(context, "Stylisation", lambda: self.make(context.scene))
-
-    @staticmethod
-    def make(scene: bpy.types.Scene) -> tuple[Generator[luxfer.Job, Any, None], int]:
+    def make(self, context: bpy.types.Context) -> tuple[Generator[luxfer.Job, Any, None], int]:
+        scene, settings = context.scene, context.scene.luxfer
         view = convert.camera(scene)
-        if scene.luxfer.artwork is None:
+        if settings.artwork is None:
             raise ValueError("choose an artwork first: the exemplar, painted over")
         if view is None:
             raise ValueError("the scene has no camera")
         target = convert.scene(work.context(), scene)
-        return stylise_steps(scene, target, target.add_camera(**view)), 3
+        width, height = convert.resolution(scene)
+        params = {"width": width, "height": height, "samples": settings.guide_samples, "camera": target.add_camera(**view)}
+        return stylise_steps(convert.image(work.context(), settings.artwork), target, params, settings.preset), 3
 
 
 CLASSES = (LUXFER_OT_exemplar, LUXFER_OT_sample_artwork, LUXFER_OT_stylise)

@@ -97,17 +97,13 @@ def step() -> float | None:
 def finish() -> None:
     """Waits for the work: for scripts and without a user interface. Raises if it failed."""
     while _current is not None:
-        _current.job.finished or _wait(_current.job)
+        try:
+            _current.job.wait()
+        except luxfer.Error:
+            pass  # step() meets it again
         step()
     if message:
         raise RuntimeError(message)
-
-
-def _wait(job: luxfer.Job) -> None:
-    try:
-        job.wait()
-    except luxfer.Error:
-        pass  # step() meets it again
 
 
 def cancel() -> None:
@@ -128,21 +124,36 @@ def redraw() -> None:
 
 
 class Background:
-    """For operators: begin() starts the work; with a user interface the operator stays modal for Esc."""
+    """For operators that say in make() what is to be done. From the user interface they run behind it, and stay modal for
+    Esc; from scripts they return when it is done."""
 
-    def begin(self, context: bpy.types.Context, title: str, make: Callable[[], Any]) -> set[str]:
+    title: str
+
+    def make(self, context: bpy.types.Context) -> tuple[Generator[luxfer.Job, Any, None], int]:
+        """The steps and how many jobs they have. Blender's data is read here: an undo may replace it while a job runs."""
+        raise NotImplementedError
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return _current is None
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
         try:
-            start(title, make)
+            start(self.title, lambda: self.make(context))
+            finish()
         except Exception as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
+        return {"FINISHED"}
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         if bpy.app.background:
-            try:
-                finish()
-            except RuntimeError as error:
-                self.report({"ERROR"}, str(error))
-                return {"CANCELLED"}
-            return {"FINISHED"}
+            return self.execute(context)
+        try:
+            start(self.title, lambda: self.make(context))
+        except Exception as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
