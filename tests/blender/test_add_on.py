@@ -205,6 +205,32 @@ class Conversion(unittest.TestCase):
                 wrong += abs((place - origin).length - ours[row, column]) > 0.06
         self.assertEqual(wrong, 0)
 
+    def test_lights_are_as_bright_as_in_cycles(self):
+        """On a floor straight below, alone: of each kind, and of area lights each shape."""
+        context = luxfer.Context()
+        for kind, shape in (("POINT", ""), ("SPOT", ""), ("SUN", ""), ("AREA", "SQUARE"), ("AREA", "RECTANGLE"), ("AREA", "DISK"), ("AREA", "ELLIPSE")):
+            scene = build()
+            for name in ("Ceiling", "Left", "Right", "Back", "Front"):
+                bpy.data.objects.remove(bpy.data.objects[name])
+            light = bpy.data.lights.new("Lamp", kind)
+            light.energy, light.color = (3 if kind == "SUN" else 100), (1, 0.5, 0.25)
+            if kind == "AREA":
+                light.shape, light.size, light.size_y = shape, 0.4, 0.2
+            elif kind == "SUN":
+                light.angle = 0
+            else:
+                light.shadow_soft_size = 0
+            lamp = bpy.data.objects.new("Lamp", light)
+            lamp.location = (3, 2, 2)
+            scene.collection.objects.link(lamp)
+            scene.camera.location, scene.camera.rotation_euler, scene.camera.data.lens = (3, 2, 1.9), (0, 0, 0), 200
+            scene.render.resolution_x = scene.render.resolution_y = 8
+            render = luxfer.Render(context, convert.scene(context, scene))
+            render.set_camera(**convert.camera(scene))
+            ours = render.run(width=8, height=8, samples=256).image().numpy().mean((0, 1))
+            with self.subTest(kind=kind, shape=shape):
+                np.testing.assert_allclose(ours, cycles(scene, 64).mean((0, 1)), rtol=0.01)
+
     def test_images_go_there_and_back(self):
         context = luxfer.Context()
         values = np.random.default_rng(1).random((5, 7, 3)).astype(np.float32)

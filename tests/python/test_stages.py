@@ -32,6 +32,9 @@ class Transfer(Case):
             np.testing.assert_allclose(fixture.normal, surface.normal, atol=1e-5)
             self.assertAlmostEqual(fixture.position[1], surface.origin[1], places=4)
 
+        transfer.save_fixtures(self.folder / "lamps.csv")
+        self.assertEqual(len((self.folder / "lamps.csv").read_text().splitlines()), 1 + report.fixtures)
+
         # The lit scene goes through a file in memory.
         lit = luxfer.Scene.from_bytes(context(), transfer.scene("lit").to_bytes())
         self.assertEqual(lit.counts.triangles, transfer.scene("lit").counts.triangles)

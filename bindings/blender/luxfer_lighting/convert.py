@@ -95,16 +95,26 @@ def place_light(context: luxfer.Context, out: luxfer.Scene, thing: bpy.types.Obj
 
 
 def add_area_light(out: luxfer.Scene, thing: bpy.types.Object) -> None:
-    """A rectangle that shines with the radiance that Cycles gives an area light: power / (4 area)."""
+    """A mesh that shines with the radiance that Cycles gives an area light: power / (pi area)."""
     light = thing.data
     width = light.size
     height = light.size_y if light.shape in ("RECTANGLE", "ELLIPSE") else light.size
+    if light.shape in ("DISK", "ELLIPSE"):
+        turns = np.linspace(0, -2 * np.pi, 64, endpoint=False)
+        outline = [(math.cos(t) / 2, math.sin(t) / 2) for t in turns]
+        share = math.pi / 4
+    else:
+        outline = [(-0.5, -0.5), (-0.5, 0.5), (0.5, 0.5), (0.5, -0.5)]
+        share = 1.0
     matrix = TO_LUXFER @ thing.matrix_world
-    corners = [matrix @ Vector((x * width / 2, y * height / 2, 0)) for x, y in ((-1, -1), (-1, 1), (1, 1), (1, -1))]
-    area = (corners[1] - corners[0]).length * (corners[3] - corners[0]).length
-    emission = [light.energy * c / (4 * area) for c in light.color]
-    material = out.add_material(name=thing.name, base_color=(0, 0, 0), emission=emission, double_sided=0)
-    out.add_mesh(np.array(corners, np.float32), [[0, 1, 2], [0, 2, 3]], material=material, name=thing.name)
+    corners = [matrix @ Vector((x * width, y * height, 0)) for x, y in outline]
+    sides = matrix.to_3x3() @ Vector((width, 0, 0)), matrix.to_3x3() @ Vector((0, height, 0))
+    area = share * sides[0].cross(sides[1]).length
+    if area > 0:
+        emission = [light.energy * c / (math.pi * area) for c in light.color]
+        material = out.add_material(name=thing.name, base_color=(0, 0, 0), emission=emission, double_sided=0)
+        fan = [[0, k, k + 1] for k in range(1, len(corners) - 1)]
+        out.add_mesh(np.array(corners, np.float32), fan, material=material, name=thing.name)
 
 
 def world_colour(source: bpy.types.Scene) -> tuple[float, float, float]:

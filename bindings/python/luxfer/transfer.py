@@ -165,3 +165,7 @@ class Transfer(StageBase):
     def save_fixtures(self, path: str | os.PathLike[str]) -> None:
         """Writes the lamps to a .csv or .json file."""
         self._call("save_fixtures", _params.text(os.fspath(path), "path"))
+
+    def save_fixtures(self, path: str | os.PathLike[str]) -> None:
+        """Writes the lamps to a .csv or a .json file, units in the names of the columns; .json also has their outlines."""
+        self._call("save_fixtures", _params.text(os.fspath(path), "path"))
