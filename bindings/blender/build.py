@@ -5,6 +5,7 @@
 Install the .zip in Blender by Edit > Preferences > Get Extensions > Install from Disk. numpy comes with Blender.
 """
 
+import importlib.util
 import platform
 import subprocess
 import sys
@@ -27,6 +28,8 @@ def build(folder: Path) -> Path:
     folder.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as temporary:
         pip = [sys.executable, "-m", "pip", "--disable-pip-version-check", "wheel", "--quiet", "--no-deps"]
+        if importlib.util.find_spec("setuptools.command.bdist_wheel"):  # new enough: nothing to download
+            pip.append("--no-build-isolation")
         subprocess.run([*pip, "--wheel-dir", temporary, ROOT / "bindings" / "python"], check=True, stdin=subprocess.DEVNULL)
         (wheel,) = Path(temporary).glob("*.whl")
         version = wheel.name.split("-")[1]

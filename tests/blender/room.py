@@ -23,7 +23,6 @@ def material(name: str, colour: tuple[float, float, float]) -> bpy.types.Materia
     surface.inputs["Base Color"].default_value = (*colour, 1)
     surface.inputs["Roughness"].default_value = 1
     surface.inputs["Specular IOR Level"].default_value = 0
-    surface.inputs["IOR"].default_value = 1  # what glTF without KHR_materials_specular has for it
     return out
 
 

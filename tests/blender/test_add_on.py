@@ -117,7 +117,19 @@ class AddOn(unittest.TestCase):
         self.assertLess(time.monotonic() - start, 1)
         self.assertIsNone(work.current())
         self.assertEqual(work.message, "Cancelled")
+        self.assertIsNone(work.step())
         self.assertEqual(len(bpy.data.materials), before)
+
+    def test_escape_ends_the_work(self):
+        """Of an operator that runs behind the interface, which gets Blender's events here from the test."""
+        self.load_photo()
+        reports = []
+        operator = SimpleNamespace(report=lambda kind, text: reports.append(text))
+        work.start("Transfer", lambda: lighting.transfer_work(self.scene))
+        for key, answer in (("MOUSEMOVE", "PASS_THROUGH"), ("ESC", "PASS_THROUGH"), ("MOUSEMOVE", "CANCELLED")):
+            self.assertEqual(work.Background.modal(operator, bpy.context, SimpleNamespace(type=key)), {answer})
+        self.assertIsNone(work.current())
+        self.assertEqual(reports, ["Cancelled"])
 
     def test_panels_name_what_exists(self):
         """Drawn into a stub of a layout that looks up every property and operator it is given."""

@@ -5,8 +5,10 @@ Blender has Z up and rows from the bottom; luxfer has Y up and rows from the top
 
 from __future__ import annotations
 
+import json
 import math
 import os
+import struct
 import tempfile
 from typing import Any
 
@@ -69,7 +71,8 @@ def scene(context: luxfer.Context, source: bpy.types.Scene) -> luxfer.Scene:
             filepath=path, export_format="GLB", export_apply=True, export_yup=True, export_cameras=True, export_lights=True,
             export_import_convert_lighting_mode="COMPAT", export_animations=False, use_active_scene=True, use_renderable=True,
         )
-        out = luxfer.Scene.load(context, path)
+        with open(path, "rb") as file:
+            out = luxfer.Scene.from_bytes(context, with_specular_levels(file.read()))
     for thing in source.objects:
         if thing.type == "LIGHT" and thing.data.type == "AREA" and not thing.hide_render:
             add_area_light(out, thing)
@@ -79,6 +82,29 @@ def scene(context: luxfer.Context, source: bpy.types.Scene) -> luxfer.Scene:
     if any(colour):
         out.set_environment(colour)
     return out
+
+
+def with_specular_levels(glb: bytes) -> bytes:
+    """A GLB file whose specular factors (KHR_materials_specular), which luxfer does not know, have become part of the index
+    of refraction: that with the same reflectance at normal incidence."""
+    length, _ = struct.unpack_from("<II", glb, 12)
+    document = json.loads(glb[20 : 20 + length])
+    for material in document.get("materials", ()):
+        extensions = material.get("extensions", {})
+        factor = extensions.get("KHR_materials_specular", {}).get("specularFactor")
+        if factor is None:
+            continue
+        ior = extensions.get("KHR_materials_ior", {}).get("ior", 1.5)
+        root = abs(ior - 1) / (ior + 1) * math.sqrt(factor)
+        extensions["KHR_materials_ior"] = {"ior": (1 + root) / (1 - root)}
+    used = document.setdefault("extensionsUsed", [])
+    if "KHR_materials_ior" not in used:
+        used.append("KHR_materials_ior")
+    text = json.dumps(document).encode()
+    text += b" " * (-len(text) % 4)
+    rest = glb[20 + length :]
+    head = struct.pack("<4sIIII", b"glTF", 2, 20 + len(text) + len(rest), len(text), 0x4E4F534A)
+    return head + text + rest
 
 
 def place_light(context: luxfer.Context, out: luxfer.Scene, thing: bpy.types.Object) -> None:
