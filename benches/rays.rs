@@ -54,7 +54,10 @@ fn main() {
         ("apartment", scenes::apartment()),
         ("sponza", scenes::sponza()),
     ];
-    for (name, setting) in settings {
+    // Names on the command line choose among the scenes: `cargo bench --bench rays -- demo kitchen`.
+    let chosen: Vec<String> = std::env::args().skip(1).filter(|arg| !arg.starts_with("--")).collect();
+    let all = chosen.is_empty();
+    for (name, setting) in settings.into_iter().filter(|(name, _)| all || chosen.iter().any(|c| c == name)) {
         match setting {
             Ok(setting) => measure(&setting, &pool, engines.as_ref(), &mut table, &mut built),
             Err(reason) => {
@@ -68,8 +71,10 @@ fn main() {
     }
     table.print("Rays per second on one thread; ratios are ours over Embree's");
     built.print("Building on two threads; ratios are our time over Embree's");
-    ties(&pool);
-    peak_of_10m();
+    if all {
+        ties(&pool);
+        peak_of_10m();
+    }
 }
 
 /// Peak memory of a scene of ten million triangles made ready for rendering, in a process of its own.
