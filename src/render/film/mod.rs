@@ -65,7 +65,7 @@ impl<'a> Canvas<'a> {
     pub fn extend(&mut self, pass: &Pass, deadline: Option<Instant>, job: Job) -> Result<()> {
         let Self { world, eye, seed, grid, pixels, layers, discarded } = self;
         let layers = layers.as_ref();
-        let level = worth::level(pixels, job)?;
+        let level = worth::level(pixels, job.part(0.0, 0.0))?;
         let is_over = || job.is_cancelled() || deadline.is_some_and(|d| Instant::now() >= d);
         exec::for_rows(pixels, AREA, job, |tile, pixels| {
             // Coarse passes leave most tiles alone.
