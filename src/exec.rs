@@ -89,6 +89,11 @@ pub fn map<T: Send>(count: usize, job: Job, work: impl Fn(usize) -> T + Sync) ->
         .collect()
 }
 
+/// Sorts in parallel. Equal elements must be the same to the bit, or their order depends on the number of threads.
+pub fn sort<T: Ord + Send>(data: &mut [T]) {
+    data.par_sort_unstable();
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -112,6 +112,21 @@ impl Search<'_> {
     }
 }
 
+impl Search<'_> {
+    /// Lets each active patch continue a neighbour's match where that lowers its distance plus `seam` for each of its four
+    /// neighbours that its match does not continue: one round of iterated conditional modes (Besag 1986) there and back.
+    /// Nothing is searched for, so the sum of distances and seams of a tile never rises.
+    pub fn join(&self, field: &mut Field, seam: u32, job: Job, active: impl Fn(usize) -> bool + Sync) -> Result<()> {
+        let (columns, rows) = (field.width.div_ceil(TILE), field.height.div_ceil(TILE));
+        let tiles = exec::map(columns * rows, job, |t| {
+            let mut tile = Tile::cut(field, t % columns * TILE, t / columns * TILE);
+            tile.join(self, field, seam, &active).then_some(tile)
+        })?;
+        tiles.into_iter().flatten().for_each(|tile| tile.paste(field));
+        Ok(())
+    }
+}
+
 /// A copy of a part of the field.
 struct Tile {
     x0: usize,
@@ -194,6 +209,51 @@ impl Tile {
         busy
     }
 
+    /// Joins forwards and backwards; says whether anything changed.
+    fn join(&mut self, search: &Search, before: &Field, seam: u32, active: &(impl Fn(usize) -> bool + Sync)) -> bool {
+        let count = self.width * self.height;
+        let mut changed = false;
+        for step in 0..2 * count {
+            let i = if step < count { step } else { 2 * count - 1 - step };
+            let (x, y) = (self.x0 + i % self.width, self.y0 + i / self.width);
+            // What each neighbour would continue to here.
+            let around = [(-1, 0), (1, 0), (0, -1), (0, 1)].map(|(dx, dy)| {
+                let at = self.neighbour(before, x as isize + dx, y as isize + dy)?;
+                let (px, py) = unpack(at);
+                let (px, py) = (px as isize - dx, py as isize - dy);
+                let inside =
+                    px >= 0 && py >= 0 && (px as usize) < search.allowed.width && (py as usize) < search.allowed.height;
+                inside.then(|| pack(px as usize, py as usize))
+            });
+            let seams = |at: u32| around.iter().filter(|&&a| a != Some(at)).count() as u64 * u64::from(seam);
+            let own = self.at[i];
+            let measured = self.error[i] != u32::MAX;
+            let joined = measured && around.iter().all(|&a| a.is_none() || a == Some(own));
+            if joined || !active(y * before.width + x) {
+                continue;
+            }
+            let (mut best, mut error) = (own, self.error[i]);
+            let mut cost = u64::from(error) + seams(own);
+            for at in around.into_iter().flatten() {
+                let (px, py) = unpack(at);
+                let fixed = seams(at);
+                if (at == best && measured) || fixed >= cost || !search.allowed.contains(px, py) {
+                    continue;
+                }
+                let limit = (cost - fixed).min(u64::from(u32::MAX)) as u32;
+                let distance = search.distance(x, y, px, py, limit);
+                if distance < limit {
+                    (best, error, cost) = (at, distance, u64::from(distance) + fixed);
+                }
+            }
+            if error != self.error[i] || best != own {
+                (self.at[i], self.error[i]) = (best, error);
+                changed = true;
+            }
+        }
+        changed
+    }
+
     /// The match of a patch: this tile's newest, or from outside it what was known before the sweep.
     fn neighbour(&self, before: &Field, x: isize, y: isize) -> Option<u32> {
         if x < 0 || y < 0 || x as usize >= before.width || y as usize >= before.height {
@@ -234,5 +294,55 @@ impl Best {
         if error < self.error {
             (self.at, self.error) = (at, error);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Quantiser;
+    use super::*;
+    use crate::image::Image;
+    use crate::job::Monitor;
+
+    fn noise(width: usize, height: usize) -> Features {
+        let image = Image::from_fn(width, height, |x, y| [Rng::new(4, &[x as u64, y as u64]).next_f32()]);
+        let mut out = Features::new(width, height, 1).unwrap();
+        out.fill(0, &Quantiser::for_weights(&[1.0], 5), &image.unwrap(), Monitor::default().job()).unwrap();
+        out
+    }
+
+    #[test]
+    fn joining_mends_strays_lowers_its_cost_and_leaves_what_fits() {
+        let (query, base) = (noise(70, 60), noise(70, 60));
+        let allowed = Domain::new(70, 60, 5, None, false).unwrap();
+        let search =
+            Search { query: &query, base: &base, allowed: &allowed, patch: 5, kernel: Kernel::detect(), seed: 1 };
+        let monitor = Monitor::default();
+        let truth = {
+            let mut field = Field::proportional(66, 56, &allowed).unwrap();
+            search.rescore(&mut field, monitor.job(), |_| true).unwrap();
+            field
+        };
+        let mut field = truth.clone();
+        search.join(&mut field, 1000, monitor.job(), |_| true).unwrap();
+        assert_eq!(field, truth);
+
+        // Every third match is wrong.
+        (0..field.at.len()).step_by(3).for_each(|i| field.at[i] = pack(i * 7 % 66, i * 5 % 56));
+        search.rescore(&mut field, monitor.job(), |_| true).unwrap();
+        let seams = |f: &Field| {
+            let open = |i: usize, step: usize, one: u32| u32::from(f.at[i + step] != f.at[i].wrapping_add(one));
+            let along = (0..f.at.len()).filter(|i| i % 66 != 65).map(|i| open(i, 1, pack(1, 0))).sum::<u32>();
+            along + (0..f.at.len() - 66).map(|i| open(i, 66, pack(0, 1))).sum::<u32>()
+        };
+        let seam = (field.energy() / field.at.len() as f64) as u32;
+        let cost = |f: &Field| f.energy() + 2.0 * f64::from(seam) * f64::from(seams(f));
+        for active in [3, 2, 1] {
+            let before = field.clone();
+            search.join(&mut field, seam, monitor.job(), |i| i % active == 0).unwrap();
+            assert!(cost(&field) <= cost(&before) && seams(&field) <= seams(&before));
+            assert!((0..field.at.len()).all(|i| i % active == 0 || field.at[i] == before.at[i]));
+        }
+        assert_eq!(field, truth);
     }
 }

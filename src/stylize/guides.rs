@@ -2,9 +2,10 @@
 
 use crate::error::{Error, Result, check_range};
 use crate::exec;
-use crate::image::Image;
 use crate::image::colour::linear_to_srgb;
+use crate::image::{Image, try_vec};
 use crate::job::Job;
+use crate::patch::{halve, level_size};
 
 /// What the numbers of a guide mean.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,20 +45,28 @@ pub(super) struct Channels {
 }
 
 impl Channels {
-    pub fn new(guides: &[Guide], match_appearance: f32, job: Job) -> Result<Self> {
-        let first = guides.first().ok_or_else(|| Error::argument("guides is empty; give at least one pair"))?;
+    /// Takes the guides in, at half the resolution if `half`: then everything else is done on a quarter of the pixels.
+    pub fn new(guides: &[Guide], match_appearance: f32, half: bool, job: Job) -> Result<Self> {
+        let first = guides.first().ok_or_else(no_guides)?;
         let count: usize = guides.iter().map(|g| g.source.channels).sum();
         if count > MAX_CHANNELS {
             return Err(Error::argument(format!(
                 "the guides have {count} channels; there may be 1 to {MAX_CHANNELS} in all"
             )));
         }
-        let mut source = Image::new(first.source.width, first.source.height, count)?;
-        let mut target = Image::new(first.target.width, first.target.height, count)?;
+        let new = |of: &Image| Image::new(level_size(of.width, half.into()), level_size(of.height, half.into()), count);
+        let (mut source, mut target) = (new(first.source)?, new(first.target)?);
         let total: f64 = guides.iter().map(|g| f64::from(g.weight)).sum();
         let mut weights = Vec::with_capacity(count);
         for guide in guides {
             guide.check(first)?;
+            let halved;
+            let guide = if half {
+                halved = (halve(guide.source, job)?, halve(guide.target, job)?);
+                &Guide { source: &halved.0, target: &halved.1, ..*guide }
+            } else {
+                guide
+            };
             let channels = guide.source.channels;
             let normalise = guide.normalisation(job)?;
             for (from, into) in [(guide.source, &mut source), (guide.target, &mut target)] {
@@ -71,8 +80,8 @@ impl Channels {
             let weight = if total > 0.0 { f64::from(guide.weight) / total / channels as f64 } else { 0.0 };
             weights.extend(std::iter::repeat_n(weight, channels));
         }
-        let broken_source = clear_broken(&mut source);
-        let broken_target = clear_broken(&mut target);
+        let broken_source = clear_broken(&mut source, job)?;
+        let broken_target = clear_broken(&mut target, job)?;
         if match_appearance > 0.0 {
             let light = guides.iter().flat_map(|g| std::iter::repeat_n(g.range == Range::Light, g.source.channels));
             for channel in light.enumerate().filter(|c| c.1).map(|c| c.0) {
@@ -82,6 +91,10 @@ impl Channels {
         }
         Ok(Self { source, target, weights, broken_source, broken_target })
     }
+}
+
+pub(super) fn no_guides() -> Error {
+    Error::argument("guides is empty; give at least one pair")
 }
 
 /// Moves a channel's range from that of the source towards that of the target: its 5th and 95th percentile.
@@ -104,14 +117,20 @@ fn match_channel(source: &mut Image, target: &Image, channel: usize, strength: f
 }
 
 /// Replaces samples that are no numbers by 0 and says which pixels had one.
-fn clear_broken(image: &mut Image) -> Vec<bool> {
-    let channels = image.channels;
-    let clear = |pixel: &mut [f32]| {
-        let broken = pixel.iter().any(|v| !v.is_finite());
-        pixel.iter_mut().filter(|v| !v.is_finite()).for_each(|v| *v = 0.0);
-        broken
-    };
-    image.data.chunks_exact_mut(channels).map(clear).collect()
+fn clear_broken(image: &mut Image, job: Job) -> Result<Vec<bool>> {
+    let (channels, row_len) = (image.channels, image.row_len());
+    let mut broken = try_vec(image.width * image.height, false)?;
+    exec::for_rows(&mut broken, image.width, job, |y, row| {
+        for (broken, pixel) in row.iter_mut().zip(image.row(y).chunks_exact(channels)) {
+            *broken = pixel.iter().any(|v| !v.is_finite());
+        }
+    })?;
+    if broken.contains(&true) {
+        exec::for_rows(&mut image.data, row_len, job, |_, row| {
+            row.iter_mut().filter(|v| !v.is_finite()).for_each(|v| *v = 0.0);
+        })?;
+    }
+    Ok(broken)
 }
 
 /// A scale and offset, then perhaps the sRGB curve. NaN and infinity pass through, to be found later.
@@ -159,9 +178,15 @@ impl Guide<'_> {
     }
 
     fn normalisation(&self, job: Job) -> Result<Normalisation> {
-        job.check()?;
         let finite = || self.source.data.iter().chain(&self.target.data).copied().filter(|v| v.is_finite());
-        let (low, high) = finite().fold((f32::MAX, f32::MIN), |(l, h), v| (l.min(v), h.max(v)));
+        let (low, high) = [self.source, self.target].into_iter().try_fold((f32::MAX, f32::MIN), |ends, image| {
+            let wider = |(l, h): (f32, f32), (low, high): (f32, f32)| (l.min(low), h.max(high));
+            let row = |y| {
+                let finite = image.row(y).iter().copied().filter(|v| v.is_finite());
+                finite.fold((f32::MAX, f32::MIN), |ends, v| wider(ends, (v, v)))
+            };
+            Ok(exec::map(image.height, job, row)?.into_iter().fold(ends, wider))
+        })?;
         Ok(match self.range {
             Range::Data if high > low => Normalisation { offset: low, scale: 1.0 / (high - low), curve: false },
             Range::Data => Normalisation { offset: 0.0, scale: 0.0, curve: false },

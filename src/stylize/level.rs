@@ -1,11 +1,11 @@
 //! One resolution of the problem, quantised for matching.
 
-use super::guides::Channels;
+use super::guides::{Channels, no_guides};
 use super::{Input, Mode, Params, check_side, pca};
 use crate::error::{Error, Result};
 use crate::exec;
-use crate::image::Image;
 use crate::image::colour::linear_to_srgb;
+use crate::image::{Image, try_vec};
 use crate::job::Job;
 use crate::patch::{Domain, Features, Kernel, Quantiser, Search, halve, halve_mask};
 
@@ -32,27 +32,38 @@ impl Problem {
         if ![1, 3, 4].contains(&artwork.channels) {
             return Err(Error::argument(format!("artwork has {} channels; it must have 1, 3 or 4", artwork.channels)));
         }
-        let mut guides = Channels::new(input.guides, params.match_appearance, job)?;
-        let first = input.guides[0];
-        check_side(&first.side("target"), &guides.target)?;
-        artwork.check_same_size("artwork", &guides.source, &first.side("source"))?;
+        let first = input.guides.first().ok_or_else(no_guides)?;
+        check_side(&first.side("target"), first.target)?;
+        artwork.check_same_size("artwork", first.source, &first.side("source"))?;
+        // A preview works on half the resolution, if patches fit into that.
+        let sides = [artwork.width, artwork.height, first.target.width, first.target.height];
+        let shortest = sides.into_iter().min().unwrap_or(1);
+        let half = params.preview && shortest >= 2 * params.patch;
+        let mut guides = Channels::new(input.guides, params.match_appearance, half, job)?;
         let mut style = artwork.clone();
-        let mut source_mask = mask("source_mask", input.source_mask, &guides.source)?;
-        let target_mask = mask("target_mask", input.target_mask, &guides.target)?;
+        let mut source_mask = mask("source_mask", input.source_mask, first.source)?;
+        let mut target_mask = mask("target_mask", input.target_mask, first.target)?;
 
         // Exemplar pixels that are no numbers are masked out.
-        let broken: Vec<bool> = (style.data.chunks_exact(style.channels))
-            .zip(&guides.broken_source)
-            .map(|(p, &b)| b || p.iter().any(|v| !v.is_finite()))
-            .collect();
+        let mut broken: Vec<bool> =
+            (style.data.chunks_exact(style.channels)).map(|p| p.iter().any(|v| !v.is_finite())).collect();
+        encode(&mut style, job)?;
+        let mut known =
+            input.known.map(|known| encode_known(known, first.target, artwork.channels, job)).transpose()?;
+        if half {
+            (broken, style) = (halve_mask(&broken, style.width, style.height, true), halve(&style, job)?);
+            source_mask = halve_source_mask(&source_mask, artwork);
+            target_mask = target_mask.map(|m| halve_mask(&m, first.target.width, first.target.height, true));
+            known = known.map(|k| halve(&k, job)).transpose()?;
+        }
+        broken.iter_mut().zip(&guides.broken_source).for_each(|(a, b)| *a |= b);
         let counts = (broken.iter().filter(|b| **b).count(), guides.broken_target.iter().filter(|b| **b).count());
         if counts.0 > 0 {
             let mask = source_mask.get_or_insert_with(|| vec![true; broken.len()]);
             mask.iter_mut().zip(&broken).for_each(|(m, b)| *m &= !b);
         }
-        encode(&mut style, job)?;
         if let Some(motion) = input.motion {
-            motion.check_same_size("motion", &guides.target, "the target of the guides")?;
+            motion.check_same_size("motion", first.target, "the target of the guides")?;
             if motion.channels != 2 || input.previous.is_none() {
                 return Err(Error::argument(format!(
                     "motion has {} channels and previous is {}; it must have 2, and there must be a previous field",
@@ -61,21 +72,16 @@ impl Problem {
                 )));
             }
         }
-        let known = input.known.map(|known| encode_known(known, &guides.target, artwork.channels, job)).transpose()?;
-
         if params.preview {
             pca::compress(&mut guides, job)?;
         }
-        let sides = [style.width, style.height, guides.target.width, guides.target.height];
-        let shortest = sides.into_iter().min().unwrap_or(1);
         // The Lit Sphere looks up single pixels; elsewhere an odd width that fits.
         let patch = match params.mode {
             Mode::LitSphere => 1,
             _ if params.patch <= shortest => params.patch,
             _ => (shortest - 1) | 1,
         };
-        let whole = Self { patch, style, guides, source_mask, target_mask, known, broken: counts };
-        if params.preview && shortest >= 2 * patch { whole.halve(job) } else { Ok(whole) }
+        Ok(Self { patch, style, guides, source_mask, target_mask, known, broken: counts })
     }
 
     /// Shortest side of exemplar and target.
@@ -100,19 +106,11 @@ impl Problem {
     /// The problem at half the resolution.
     pub fn halve(&self, job: Job) -> Result<Self> {
         let (source, target) = (&self.guides.source, &self.guides.target);
-        let shrink_mask = |mask: &Option<Vec<bool>>, of: &Image, any: bool| {
-            mask.as_ref().map(|m| halve_mask(m, of.width, of.height, any))
-        };
-        let mut source_mask = shrink_mask(&self.source_mask, source, false);
-        // A region thinner than two pixels must not vanish.
-        if source_mask.as_ref().is_some_and(|m| !m.contains(&true)) {
-            source_mask = shrink_mask(&self.source_mask, source, true);
-        }
         Ok(Self {
             patch: self.patch,
             style: halve(&self.style, job)?,
-            source_mask,
-            target_mask: shrink_mask(&self.target_mask, target, true),
+            source_mask: halve_source_mask(&self.source_mask, source),
+            target_mask: self.target_mask.as_ref().map(|m| halve_mask(m, target.width, target.height, true)),
             known: self.known.as_ref().map(|k| halve(k, job)).transpose()?,
             guides: Channels {
                 source: halve(source, job)?,
@@ -124,6 +122,14 @@ impl Problem {
             broken: self.broken,
         })
     }
+}
+
+/// Half the mask of pixels that may be used, an image of the size of `of`: all four under a pixel must be, but a region
+/// thinner than two pixels must not vanish.
+fn halve_source_mask(mask: &Option<Vec<bool>>, of: &Image) -> Option<Vec<bool>> {
+    let mask = mask.as_ref()?;
+    let inside = halve_mask(mask, of.width, of.height, false);
+    Some(if inside.contains(&true) { inside } else { halve_mask(mask, of.width, of.height, true) })
 }
 
 /// Reads a mask of the size of `of`.
@@ -212,6 +218,20 @@ impl<'a> Level<'a> {
     /// Takes over the colours of the picture so far.
     pub fn set_picture(&mut self, picture: &Image, job: Job) -> Result<()> {
         self.target.fill(0, &self.colours, picture, job)
+    }
+
+    /// The wanted patches that would look different with another picture: the distances of all others stay as they are.
+    pub fn changed_by(&self, picture: &Image, job: Job) -> Result<Domain> {
+        let (width, lanes) = (picture.width, self.target.lanes);
+        let mut differs = try_vec(width * picture.height, false)?;
+        exec::for_rows(&mut differs, width, job, |y, row| {
+            let old = self.target.data[y * self.target.row_len()..].chunks_exact(lanes);
+            for ((differs, old), new) in row.iter_mut().zip(old).zip(picture.row(y).chunks_exact(picture.channels)) {
+                *differs = old.iter().zip(new).zip(&self.colours).any(|((o, n), q)| q.quantise(*n) != *o);
+            }
+        })?;
+        let touched = Domain::new(width, picture.height, self.problem.patch, Some(&differs), true)?;
+        Ok(touched.filtered(|i| self.wanted.contains_index(i)))
     }
 
     /// Takes over the colour of one pixel.

@@ -6,8 +6,8 @@
 //! or a pass brings next to nothing, the remaining target patches look for their nearest exemplar patch instead.
 //!
 //! A field made this way is rich but frayed: neighbouring places are painted from patches that were never neighbours. So
-//! in the end a target patch may continue a neighbour's match where that is closer than its own (`Params::settle`, not
-//! in the paper). Nothing is searched for anew, so what is used stays as varied as the budget made it, in larger pieces;
+//! in the end a target patch may continue a neighbour's match where that is closer than its own, or so nearly as close that
+//! it is worth a seam less (`Params::settle`, not in the paper). Nothing is searched for anew, so what is used stays as varied as the budget made it, in larger pieces;
 //! on the pair in `tests/real_stylize.rs` it brings Eq. 3 down threefold and keeps more of the texture.
 //!
 //! A pass starts from the last one: an exemplar patch whose target was taken looks around it; the others stay.
@@ -17,8 +17,9 @@ use super::finder::Nearest;
 use super::level::Level;
 use super::{Mode, Params};
 use crate::error::Result;
+use crate::exec;
 use crate::job::Job;
-use crate::patch::{Domain, Field, NONE, Sweep, pack, unpack};
+use crate::patch::{Domain, Field, NONE, pack, unpack};
 
 /// What a retrieval pass did.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,14 +32,21 @@ pub struct Pass {
     pub coverage: f64,
 }
 
+/// What a seam between two neighbouring patches costs while they settle, as a share of the mean error.
+///
+/// On the pair of `benches/stylit.rs` 0, 0.1, 0.3 and 1 make 72.8, 76.5, 77.5 and 77.7 % of the picture's patches verbatim
+/// copies and raise Eq. 3 from 1.62e-3 by 2, 10 and 19 %; texture power kept is 0.955, 0.975, 0.997 and 0.994.
+const SEAM: f64 = 0.2;
+
 /// A pass that covers less than this share of the target is the last.
 const LEAST_GAIN: f64 = 0.005;
 
-/// Matches every wanted target patch; `field` holds matches or hints of the last iteration, and what it returns has the
-/// distances of this one. Where `kept` is set the match of `field` stays as it is.
+/// Matches every wanted target patch; `field` holds matches or hints of the last iteration, with distances that hold but
+/// where `changed`, and what it returns has the distances of this one. Where `kept` is set the match of `field` stays as it is.
 pub(super) fn retrieve(
     level: &Level,
     field: &mut Field,
+    changed: &Domain,
     kept: &[bool],
     params: &Params,
     round: u64,
@@ -47,7 +55,7 @@ pub(super) fn retrieve(
     let wanted = level.wanted.len();
     let nearest = Nearest::new(level, params, job.part(0.0, 0.02))?;
     let search = level.forward();
-    search.rescore(field, job.part(0.02, 0.05), |i| level.wanted.contains_index(i))?;
+    search.rescore(field, job.part(0.02, 0.05), |i| changed.contains_index(i))?;
     let mut free = level.wanted.clone();
     let mut reverse = field.invert(&level.allowed)?;
     let mut matched = Field::new(field.width, field.height)?;
@@ -79,10 +87,10 @@ pub(super) fn retrieve(
         (matched.at[i], matched.error[i]) = (field.at[i], field.error[i]);
     }
     nearest.forward(&mut matched, 2000 * round + 1500, job.part(0.8, 0.9), |i| free.contains_index(i))?;
-    // Let patches continue their neighbours' matches where those fit better.
-    for k in 0..params.settle {
-        let sweep = Sweep { index: k as u64, reach: 0, fresh: 0 };
-        search.sweep(&mut matched, sweep, job.part(0.9, 1.0), |i| level.wanted.contains_index(i) && !is_kept(i))?;
+    // Let patches continue their neighbours' matches where those fit better, seams counted.
+    let seam = (SEAM * matched.energy() / wanted.max(1) as f64).min(1e9) as u32;
+    for _ in 0..params.settle {
+        search.join(&mut matched, seam, job.part(0.9, 1.0), |i| level.wanted.contains_index(i) && !is_kept(i))?;
     }
     *field = matched;
     Ok(passes)
@@ -96,7 +104,7 @@ fn accept(matched: &mut Field, free: &mut Domain, reverse: &mut Field, mode: Mod
         .filter(|(_, e)| **e != u32::MAX)
         .map(|(i, &e)| u64::from(e) << 32 | i as u64)
         .collect();
-    order.sort_unstable();
+    exec::sort(&mut order);
     let errors: Vec<u32> = order.iter().map(|o| (o >> 32) as u32).collect();
     let budget = budget(&errors);
     let total = if mode == Mode::Uniform { f64::INFINITY } else { budget.total };

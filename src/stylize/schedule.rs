@@ -11,7 +11,7 @@ use crate::exec;
 use crate::image::Image;
 use crate::image::colour::srgb_to_linear;
 use crate::job::Job;
-use crate::patch::{Field, NONE, Sweep, Vote, level_count, origins, unpack, vote};
+use crate::patch::{Domain, Field, NONE, Sweep, Vote, level_count, origins, unpack, vote};
 use crate::rng::hash;
 
 /// Up to this many pairs of patches the first field is found by comparing all.
@@ -100,14 +100,24 @@ pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Pu
                 let n = iterations as f64;
                 job.part(0.12 + 0.88 * (k as f64 + from) / n, 0.12 + 0.88 * (k as f64 + to) / n)
             };
+            // Only where the picture changed since the last iteration can a distance have changed.
+            let changed = if k == 0 { level.wanted.clone() } else { level.changed_by(&picture, part(0.0, 0.01))? };
             level.set_picture(&picture, part(0.0, 0.01))?;
             match params.mode {
                 Mode::Budget | Mode::Uniform => {
-                    report.passes.push(retrieve(&level, &mut current, &kept, params, k as u64, part(0.0, 0.9))?);
+                    report.passes.push(retrieve(
+                        &level,
+                        &mut current,
+                        &changed,
+                        &kept,
+                        params,
+                        k as u64,
+                        part(0.0, 0.9),
+                    )?);
                 }
-                Mode::Nearest | Mode::LitSphere => nearest(&level, &mut current, params, k, part(0.0, 0.9))?,
+                Mode::Nearest | Mode::LitSphere => nearest(&level, &mut current, &changed, params, k, part(0.0, 0.9))?,
                 Mode::Greedy => {
-                    nearest(&level, &mut current, params, k, part(0.0, 0.5))?;
+                    nearest(&level, &mut current, &changed, params, k, part(0.0, 0.5))?;
                     greedy::run(&mut level, &mut current, &mut picture, l, part(0.5, 0.9))?;
                 }
             }
@@ -141,11 +151,11 @@ pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Pu
     Err(Error::new(crate::error::ErrorKind::Internal, "the pyramid has no levels"))
 }
 
-/// Each target patch's nearest exemplar patch.
-fn nearest(level: &Level, field: &mut Field, params: &Params, round: usize, job: Job) -> Result<()> {
-    let wanted = |i: usize| level.wanted.contains_index(i);
-    level.forward().rescore(field, job.part(0.0, 0.1), wanted)?;
-    Nearest::new(level, params, job.part(0.1, 0.2))?.forward(field, round as u64, job.part(0.2, 1.0), wanted)
+/// The nearest exemplar patch of each target patch that has changed; the others have found theirs.
+fn nearest(level: &Level, field: &mut Field, changed: &Domain, params: &Params, round: usize, job: Job) -> Result<()> {
+    let changed = |i: usize| changed.contains_index(i);
+    level.forward().rescore(field, job.part(0.0, 0.1), changed)?;
+    Nearest::new(level, params, job.part(0.1, 0.2))?.forward(field, round as u64, job.part(0.2, 1.0), changed)
 }
 
 /// A field that follows the guides only; among equals the same relative position wins, so that equal guides give the

@@ -197,6 +197,11 @@ fn extremes_have_an_answer() {
         let output = finite(stylise(&input(&art, &[guide(&hot, &a)]), &params).unwrap());
         let same = output.image.data.iter().zip(&art.data).filter(|(x, y)| x == y).count();
         assert!(mode == Mode::Uniform || same * 10 > art.data.len() * 8, "{mode:?} {same}");
+        // Guides that are all saturated, each pixel far beyond white.
+        let mut bright = a.clone();
+        bright.data.iter_mut().for_each(|v| *v = 1e9 * (1.0 + *v));
+        let output = finite(stylise(&input(&art, &[guide(&bright, &bright)]), &params).unwrap());
+        assert!(mode == Mode::LitSphere || output.image == art, "{mode:?}");
         // No weight, and nothing but weight.
         let guides = [Guide { weight: 0.0, ..guide(&a, &a) }];
         finite(stylise(&input(&art, &guides), &params).unwrap());
@@ -288,6 +293,45 @@ fn each_level_is_published_progress_ends_at_one_and_cancel_is_obeyed() {
     let error = run_and_publish(&input(&art, &guides), &Params::default(), &stop, monitor.job()).unwrap_err();
     assert_eq!(error.kind, ErrorKind::Cancelled);
     assert!(monitor.progress() < 1.0);
+}
+
+#[test]
+fn a_cancel_is_answered_soon_wherever_it_comes() {
+    let (a, b) = (scene(300, 240, 150.0, 120.0, 80.0), scene(1000, 800, 450.0, 350.0, 220.0));
+    let art = artwork(&a);
+    let guides = [guide(&a, &b)];
+    let pool = Pool::new(2).unwrap();
+    for after in [0.02, 0.2, 0.5, 0.8] {
+        let monitor = Monitor::default();
+        let waited = std::thread::scope(|scope| {
+            let run = scope.spawn(|| pool.run(|| run(&input(&art, &guides), &Params::fast(), monitor.job())));
+            while monitor.progress() < after {
+                std::thread::sleep(std::time::Duration::from_millis(1));
+            }
+            let asked = std::time::Instant::now();
+            monitor.cancel();
+            assert_eq!(run.join().unwrap().unwrap_err().kind, ErrorKind::Cancelled);
+            asked.elapsed()
+        });
+        // 100 ms are promised on a machine that has nothing else to do.
+        assert!(waited.as_millis() < 1000, "{waited:?} after {after}");
+    }
+}
+
+#[test]
+fn only_patches_over_pixels_that_changed_are_looked_at_again() {
+    let a = scene(40, 30, 20.0, 15.0, 10.0);
+    let mut picture = artwork(&a);
+    let guides = [guide(&a, &a)];
+    let monitor = Monitor::default();
+    let problem = level::Problem::new(&input(&picture, &guides), &Params::default(), monitor.job()).unwrap();
+    let mut level = level::Level::new(&problem, &Params::default(), 1.0, 1, monitor.job()).unwrap();
+    level.set_picture(&picture, monitor.job()).unwrap();
+    assert!(level.changed_by(&picture, monitor.job()).unwrap().is_empty());
+    picture.pixel_mut(12, 9)[1] += 0.1;
+    let changed = level.changed_by(&picture, monitor.job()).unwrap();
+    assert_eq!(changed.len(), 25);
+    assert!(changed.contains(8, 5) && changed.contains(12, 9) && !changed.contains(13, 9));
 }
 
 #[test]
