@@ -2633,6 +2633,11 @@ typedef int32_t luxfer_guides_image;
 #define LUXFER_GUIDES_MATERIALS 7
 
 /**
+ * Light that glossy things throw onto matt ones (LS+DE).
+ */
+#define LUXFER_GUIDES_CAUSTICS 8
+
+/**
  * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
  */
 luxfer_status luxfer_guides_params_init(luxfer_guides_params *params,
@@ -2821,6 +2826,11 @@ luxfer_status luxfer_stylize_params_preset(luxfer_stylize_params *params,
 
 /** Flag: the colour code of materials too, so that things of one material are painted from things of the same. */
 #define LUXFER_GUIDES_WITH_MATERIALS 4
+
+/**
+ * Flag: caustics too, light at the common exposure, for scenes in which glossy things throw light onto others.
+ */
+#define LUXFER_GUIDES_WITH_CAUSTICS 8
 
 /** A stylisation. See luxfer_stylize_create. */
 typedef struct luxfer_stylize luxfer_stylize;

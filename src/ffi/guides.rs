@@ -41,6 +41,8 @@ pub const LUXFER_GUIDES_NORMALS: luxfer_guides_image = 5;
 pub const LUXFER_GUIDES_EDGES: luxfer_guides_image = 6;
 /// A colour for each material, made from its name; 3 channels.
 pub const LUXFER_GUIDES_MATERIALS: luxfer_guides_image = 7;
+/// Light that glossy things throw onto matt ones (LS+DE).
+pub const LUXFER_GUIDES_CAUSTICS: luxfer_guides_image = 8;
 
 /// Settings of guides. Fill them with luxfer_guides_params_init.
 #[repr(C)]
@@ -175,6 +177,7 @@ pub unsafe extern "C" fn luxfer_guides_get_image(
             LUXFER_GUIDES_NORMALS => |g| &g.normals,
             LUXFER_GUIDES_EDGES => |g| &g.edges,
             LUXFER_GUIDES_MATERIALS => |g| &g.materials,
+            LUXFER_GUIDES_CAUSTICS => |g| &g.light[5],
             _ => return Err(Error::argument(format!("which is {which}; it must be a LUXFER_GUIDES_ value"))),
         };
         out.set(handle::give(Pixels::part(stage.context(), stage.output()?, pick)));

@@ -44,6 +44,8 @@ pub const LUXFER_GUIDES_WITH_NORMALS: u32 = 1;
 pub const LUXFER_GUIDES_WITH_EDGES: u32 = 2;
 /// Flag: the colour code of materials too, so that things of one material are painted from things of the same.
 pub const LUXFER_GUIDES_WITH_MATERIALS: u32 = 4;
+/// Flag: caustics too, light at the common exposure, for scenes in which glossy things throw light onto others.
+pub const LUXFER_GUIDES_WITH_CAUSTICS: u32 = 8;
 
 #[derive(Clone, Default)]
 pub(super) struct Inputs {
@@ -157,7 +159,8 @@ pub unsafe extern "C" fn luxfer_stylize_add_guide(
 
 /// Adds the guides of two scenes, both rendered: the five of light at a common exposure, named after LUXFER_GUIDES_FULL to
 /// LUXFER_GUIDES_TWO_BOUNCES "full", "direct", "specular", "indirect" and "two bounces", each with weight 1; and for each of
-/// the LUXFER_GUIDES_WITH_ flags in extras the one it names, with weight extra_weight. Any thread.
+/// the LUXFER_GUIDES_WITH_ flags in extras the one it names ("caustics", "normals", "edges", "materials"), with weight
+/// extra_weight. Any thread.
 /// LUXFER_NOT_READY before both are rendered; LUXFER_INVALID_ARGUMENT if an argument is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_stylize_add_guides(
@@ -171,7 +174,10 @@ pub unsafe extern "C" fn luxfer_stylize_add_guides(
         let context = stage.context();
         let source = handle::borrow_in(context, source, "source")?.output()?;
         let target = handle::borrow_in(context, target, "target")?.output()?;
-        let known = LUXFER_GUIDES_WITH_NORMALS | LUXFER_GUIDES_WITH_EDGES | LUXFER_GUIDES_WITH_MATERIALS;
+        let known = LUXFER_GUIDES_WITH_NORMALS
+            | LUXFER_GUIDES_WITH_EDGES
+            | LUXFER_GUIDES_WITH_MATERIALS
+            | LUXFER_GUIDES_WITH_CAUSTICS;
         if extras & !known != 0 {
             return Err(Error::argument(format!("extras is {extras:#x}; only LUXFER_GUIDES_WITH_ flags may be set")));
         }
@@ -180,6 +186,7 @@ pub unsafe extern "C" fn luxfer_stylize_add_guides(
             normals: extras & LUXFER_GUIDES_WITH_NORMALS != 0,
             edges: extras & LUXFER_GUIDES_WITH_EDGES != 0,
             materials: extras & LUXFER_GUIDES_WITH_MATERIALS != 0,
+            caustics: extras & LUXFER_GUIDES_WITH_CAUSTICS != 0,
         };
         let own = |image: Image| Pixels::counted(context, image.width, image.height, image.channels, || Ok(image));
         let mut added = Vec::new();
@@ -188,7 +195,7 @@ pub unsafe extern "C" fn luxfer_stylize_add_guides(
                 name: pair.name.to_string(),
                 source: own(pair.source)?,
                 target: own(pair.target)?,
-                weight: if pair.is_light { 1.0 } else { extra_weight },
+                weight: if pair.is_extra { extra_weight } else { 1.0 },
                 range: if pair.is_light { Range::Light } else { Range::Data },
             });
         }
@@ -356,6 +363,9 @@ pub unsafe extern "C" fn luxfer_stylize_set_painted(
             let artwork = need(&inputs.artwork, "luxfer_stylize_set_artwork")?;
             let mask = painted.image();
             mask.check_same_size("painted", artwork.image(), "the artwork")?;
+            if mask.channels != 1 {
+                return Err(Error::argument(format!("painted has {} channels; it must have 1", mask.channels)));
+            }
             let unpainted = Pixels::counted(stage.context(), mask.width, mask.height, mask.channels, || {
                 let mut opposite = mask.clone();
                 opposite.data.iter_mut().for_each(|v| *v = if *v > 0.5 { 0.0 } else { 1.0 });

@@ -70,13 +70,14 @@ pub struct luxfer_stylize_params {
     pub iterations: u32,
     /// Rounds on the finest level, in [1, 100]; default 2.
     pub finest_iterations: u32,
-    /// Sweeps of a search, in [1, 100]; default 1.
+    /// Sweeps of a search, in [1, 100]; default 2.
     pub sweeps: u32,
-    /// Share of the target that is matched under the budget before the rest is matched without, in [0, 1]; default 0.95.
+    /// Share of the target that is matched under the budget before the rest is matched without, in [0, 1]; default 0.9.
     pub coverage: f32,
-    /// Most passes of matching under the budget in a round, in [1, 1000]; default 12.
+    /// Most passes of matching under the budget in a round, in [1, 1000]; default 6.
     pub passes: u32,
-    /// Sweeps in which places may continue their neighbours' matches, in [0, 100]; default 2; 0 is the paper's.
+    /// Sweeps in which places may continue their neighbours' matches, for fewer seams, in [0, 100]; default 2; 0 is the
+    /// paper's.
     pub settle: u32,
     /// LUXFER_STYLIZE_VOTE_ value; default LUXFER_STYLIZE_VOTE_WEIGHTED.
     pub vote: luxfer_stylize_vote,

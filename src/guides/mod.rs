@@ -30,9 +30,18 @@ use crate::scene::Camera;
 use glam::Vec3;
 
 /// The kinds of light, each a name and its expression (Heckbert's notation): all; reflected once by something matt; once by
-/// something glossy; matt after matt, which is where colours bleed; and once or twice matt, which tells shadows apart.
-pub const LIGHT: [(&str, &str); 5] =
-    [("full", "L.*E"), ("direct", "LDE"), ("specular", "LSE"), ("indirect", "L.*DDE"), ("two bounces", "LD{1,2}E")];
+/// something glossy; matt after matt, which is where colours bleed; once or twice matt, which tells shadows apart; and
+/// light that glossy things throw onto matt ones: caustics.
+pub const LIGHT: [(&str, &str); 6] = [
+    ("full", "L.*E"),
+    ("direct", "LDE"),
+    ("specular", "LSE"),
+    ("indirect", "L.*DDE"),
+    ("two bounces", "LD{1,2}E"),
+    ("caustics", "LS+DE"),
+];
+/// Index of the caustics, which [`pairs`] only gives when asked for.
+const CAUSTICS: usize = 5;
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Params {
@@ -55,7 +64,7 @@ impl Default for Params {
 #[derive(Clone, Debug)]
 pub struct Guides {
     /// In the order of [`LIGHT`]: linear RGB in cd/m².
-    pub light: [Image; 5],
+    pub light: [Image; 6],
     /// Unit normals as the camera has them: x right, y up, z towards the viewer; 0 where nothing is. 3 channels.
     pub normals: Image,
     /// 1 on edges of shapes, 0 away from them; 1 channel.
@@ -90,7 +99,7 @@ pub fn run(world: &World, camera: &Camera, params: &Params, job: Job) -> Result<
     // The layers come in the order they were asked for.
     let mut layers = film.layers.into_iter().map(|l| l.image);
     let mut next = || layers.next().ok_or_else(|| crate::error::Error::degenerate("the rendering has no layers"));
-    let mut light = [film.beauty, next()?, next()?, next()?, next()?];
+    let mut light = [film.beauty, next()?, next()?, next()?, next()?, next()?];
     let (mut normals, material, depth) = (next()?, next()?, next()?);
 
     // Normals as the camera has them: what matters is how a surface lies in the picture.
@@ -136,6 +145,8 @@ pub struct Extras {
     pub edges: bool,
     /// For scenes whose materials are painted differently.
     pub materials: bool,
+    /// For scenes in which glossy things throw light onto others.
+    pub caustics: bool,
 }
 
 /// One guide of two scenes.
@@ -144,8 +155,10 @@ pub struct Pair {
     pub name: &'static str,
     pub source: Image,
     pub target: Image,
-    /// Whether it is light, in `[0, 1]` but for highlights, or data.
+    /// Whether it is light, in `[0, 1]`, or data.
     pub is_light: bool,
+    /// Whether it was asked for in [`Extras`].
+    pub is_extra: bool,
 }
 
 /// The guides of an exemplar and a target at a common exposure: the luminance that nine tenths of both full pictures stay
@@ -153,7 +166,7 @@ pub struct Pair {
 pub fn pairs(source: &Guides, target: &Guides, extras: Extras) -> Result<Vec<Pair>> {
     let exposure = exposure(&source.light[0], &target.light[0]);
     let mut pairs = Vec::new();
-    for (i, (name, _)) in LIGHT.iter().enumerate() {
+    for (i, (name, _)) in LIGHT.iter().enumerate().filter(|(i, _)| *i != CAUSTICS || extras.caustics) {
         // As a screen would show it: what is beyond white is white.
         let expose = |image: &Image| {
             let mut exposed = image.clone();
@@ -161,7 +174,7 @@ pub fn pairs(source: &Guides, target: &Guides, extras: Extras) -> Result<Vec<Pai
             exposed
         };
         let (source, target) = (expose(&source.light[i]), expose(&target.light[i]));
-        pairs.push(Pair { name, source, target, is_light: true });
+        pairs.push(Pair { name, source, target, is_light: true, is_extra: i == CAUSTICS });
     }
     let more: [(bool, &'static str, fn(&Guides) -> &Image); 3] = [
         (extras.normals, "normals", |g| &g.normals),
@@ -169,7 +182,13 @@ pub fn pairs(source: &Guides, target: &Guides, extras: Extras) -> Result<Vec<Pai
         (extras.materials, "materials", |g| &g.materials),
     ];
     for (_, name, pick) in more.into_iter().filter(|m| m.0) {
-        pairs.push(Pair { name, source: pick(source).clone(), target: pick(target).clone(), is_light: false });
+        pairs.push(Pair {
+            name,
+            source: pick(source).clone(),
+            target: pick(target).clone(),
+            is_light: false,
+            is_extra: true,
+        });
     }
     Ok(pairs)
 }

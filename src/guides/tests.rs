@@ -15,11 +15,13 @@ fn rendered(scene: crate::scene::Scene, width: usize, samples: u32) -> Guides {
 fn the_kinds_of_light_are_told_apart() {
     let g = rendered(demo::sphere_on_table().unwrap(), 120, 32);
     let mean = |image: &Image| image.data.iter().map(|v| f64::from(*v)).sum::<f64>() / image.data.len() as f64;
-    let [full, direct, specular, indirect, two] = [0, 1, 2, 3, 4].map(|i| mean(&g.light[i]));
+    let [full, direct, specular, indirect, two, caustics] = [0, 1, 2, 3, 4, 5].map(|i| mean(&g.light[i]));
     assert!(
-        direct < two && two < full && specular < direct && indirect < direct,
-        "{full} {direct} {specular} {indirect} {two}"
+        direct < two && two < full && specular < direct && indirect < direct && caustics < direct,
+        "{full} {direct} {specular} {indirect} {two} {caustics}"
     );
+    // The ball throws light onto table and wall, and being convex none onto itself.
+    assert!(caustics > 0.0 && f64::from(g.light[5].pixel(60, 45)[0]) < 0.1 * caustics);
     // Only the ball is glossy, and only there the normal turns.
     assert!(g.light[2].pixel(5, 5).iter().all(|v| *v == 0.0));
     let middle = g.normals.pixel(60, 42);
@@ -56,9 +58,12 @@ fn smoothing_keeps_the_light_and_lowers_its_noise() {
 fn pairs_share_their_exposure() {
     let a = rendered(demo::sphere_on_table().unwrap(), 48, 4);
     let mut b = a.clone();
-    let all = Extras { normals: true, edges: true, materials: true };
+    let all = Extras { normals: true, edges: true, materials: true, caustics: true };
     let names: Vec<&str> = pairs(&a, &b, all).unwrap().iter().map(|p| p.name).collect();
-    assert_eq!(names, ["full", "direct", "specular", "indirect", "two bounces", "normals", "edges", "materials"]);
+    assert_eq!(
+        names,
+        ["full", "direct", "specular", "indirect", "two bounces", "caustics", "normals", "edges", "materials"]
+    );
     assert_eq!(pairs(&a, &b, Extras::default()).unwrap().len(), 5);
     // A scene twice as bright stays twice as bright.
     b.light[0].data.iter_mut().for_each(|v| *v *= 2.0);

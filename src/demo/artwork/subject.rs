@@ -39,7 +39,7 @@ pub struct Subject {
 
 impl Subject {
     pub fn new(guides: &Guides) -> Result<Self> {
-        let [full, direct, specular, indirect, _] = &guides.light;
+        let [full, direct, specular, indirect, ..] = &guides.light;
         let exposure = guides::exposure(full, full);
         let lightness = |image: &Image, x: usize, y: usize, factor: f32| {
             linear_to_srgb((luminance(image.rgb(x, y)) * exposure * factor).clamp(0.0, 1.0))
