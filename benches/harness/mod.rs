@@ -8,6 +8,8 @@
 #![allow(dead_code)]
 
 pub mod embree;
+#[cfg(feature = "stylize")]
+pub mod judge;
 pub mod plot;
 pub mod scenes;
 
@@ -112,6 +114,11 @@ pub fn quantile(values: &[f64], p: f64) -> f64 {
     let below = at.floor() as usize;
     let above = (below + 1).min(last);
     sorted[below] + (sorted[above] - sorted[below]) * (at - below as f64)
+}
+
+/// Starts [`peak_memory`] anew, where the system lets it.
+pub fn forget_peak_memory() {
+    let _ = std::fs::write("/proc/self/clear_refs", "5");
 }
 
 /// Highest resident memory of this process so far, in bytes.

@@ -21,7 +21,20 @@ install mitsuba mitsuba numpy
 # Cycles; its wheels fit one version of Python each.
 install bpy 'bpy==5.0.*' 'numpy<2'
 
+# What `stylit_judge.py` beside the test data runs on.
+install judge numpy scipy pillow
+
 [ -z "$wanted" ] || exit 0
+
+# ebsynth, CPU back end: in no package registry, so only where its source can be reached.
+if [ ! -x target/peers/ebsynth/bin/ebsynth ] && command -v git >/dev/null && command -v g++ >/dev/null; then
+  rm -rf target/peers/ebsynth
+  if GIT_TERMINAL_PROMPT=0 timeout 60 git clone --quiet --depth 1 https://github.com/jamriska/ebsynth target/peers/ebsynth; then
+    (cd target/peers/ebsynth && sh build-linux-cpu_only.sh) || rm -rf target/peers/ebsynth
+  else
+    echo "ebsynth could not be fetched" >&2
+  fi
+fi
 
 # Mitsuba's vectorised back end needs a shared LLVM that knows this processor.
 if ! ls /usr/lib/*/libLLVM*19* >/dev/null 2>&1 && [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null; then
