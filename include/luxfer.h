@@ -2632,9 +2632,7 @@ typedef int32_t luxfer_guides_image;
 /** A colour for each material, made from its name; 3 channels. */
 #define LUXFER_GUIDES_MATERIALS 7
 
-/**
- * Light that glossy things throw onto matt ones (LS+DE).
- */
+/** Light that glossy things throw onto matt ones (LS+DE). */
 #define LUXFER_GUIDES_CAUSTICS 8
 
 /**
@@ -2718,15 +2716,18 @@ typedef struct luxfer_stylize_params {
     uint32_t iterations;
     /** Rounds on the finest level, in [1, 100]; default 2. */
     uint32_t finest_iterations;
-    /** Sweeps of a search, in [1, 100]; default 1. */
+    /** Sweeps of a search, in [1, 100]; default 2. */
     uint32_t sweeps;
     /**
-     * Share of the target that is matched under the budget before the rest is matched without, in [0, 1]; default 0.95.
+     * Share of the target that is matched under the budget before the rest is matched without, in [0, 1]; default 0.9.
      */
     float coverage;
-    /** Most passes of matching under the budget in a round, in [1, 1000]; default 12. */
+    /** Most passes of matching under the budget in a round, in [1, 1000]; default 6. */
     uint32_t passes;
-    /** Sweeps in which places may continue their neighbours' matches, in [0, 100]; default 2; 0 is the paper's. */
+    /**
+     * Sweeps in which places may continue their neighbours' matches, for fewer seams, in [0, 100]; default 2; 0 is the
+     * paper's.
+     */
     uint32_t settle;
     /** LUXFER_STYLIZE_VOTE_ value; default LUXFER_STYLIZE_VOTE_WEIGHTED. */
     luxfer_stylize_vote vote;
@@ -2827,9 +2828,7 @@ luxfer_status luxfer_stylize_params_preset(luxfer_stylize_params *params,
 /** Flag: the colour code of materials too, so that things of one material are painted from things of the same. */
 #define LUXFER_GUIDES_WITH_MATERIALS 4
 
-/**
- * Flag: caustics too, light at the common exposure, for scenes in which glossy things throw light onto others.
- */
+/** Flag: caustics too, light at the common exposure, for scenes in which glossy things throw light onto others. */
 #define LUXFER_GUIDES_WITH_CAUSTICS 8
 
 /** A stylisation. See luxfer_stylize_create. */
@@ -2877,7 +2876,8 @@ luxfer_status luxfer_stylize_add_guide(luxfer_stylize *stylize,
 /**
  * Adds the guides of two scenes, both rendered: the five of light at a common exposure, named after LUXFER_GUIDES_FULL to
  * LUXFER_GUIDES_TWO_BOUNCES "full", "direct", "specular", "indirect" and "two bounces", each with weight 1; and for each of
- * the LUXFER_GUIDES_WITH_ flags in extras the one it names, with weight extra_weight. Any thread.
+ * the LUXFER_GUIDES_WITH_ flags in extras the one it names ("caustics", "normals", "edges", "materials"), with weight
+ * extra_weight. Any thread.
  * LUXFER_NOT_READY before both are rendered; LUXFER_INVALID_ARGUMENT if an argument is out of range.
  */
 luxfer_status luxfer_stylize_add_guides(luxfer_stylize *stylize,
