@@ -28,7 +28,9 @@ def build(folder: Path) -> Path:
     folder.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as temporary:
         pip = [sys.executable, "-m", "pip", "--disable-pip-version-check", "wheel", "--quiet", "--no-deps"]
-        if importlib.util.find_spec("setuptools") and importlib.util.find_spec("setuptools.command.bdist_wheel"):  # new enough: nothing to download
+        if importlib.util.find_spec("setuptools") and importlib.util.find_spec(
+            "setuptools.command.bdist_wheel"
+        ):  # new enough: nothing to download
             pip.append("--no-build-isolation")
         subprocess.run([*pip, "--wheel-dir", temporary, ROOT / "bindings" / "python"], check=True, stdin=subprocess.DEVNULL)
         (wheel,) = Path(temporary).glob("*.whl")

@@ -155,7 +155,9 @@ def enumerations(header: Header) -> dict[str, Enumeration]:
         out[name] = Enumeration(camel(name), match[1], False, header.docs[name])
     prose = "\n".join(list(header.docs.values()) + [f.doc for s in header.structs.values() for f in s])
     for prefix in sorted(set(re.findall(r"(LUXFER_[A-Z_]+_) flags", prose))):
-        out[prefix] = Enumeration(camel(prefix.removeprefix("LUXFER_")), prefix, True, f"{prefix} flags, to be combined with |.")
+        out[prefix] = Enumeration(
+            camel(prefix.removeprefix("LUXFER_")), prefix, True, f"{prefix} flags, to be combined with |."
+        )
     by_length = sorted(out.values(), key=lambda e: -len(e.prefix))
     for constant in header.constants:
         for e in by_length:
@@ -205,7 +207,9 @@ class Writer:
         text = re.sub(r"\s*(Fill (it|them)|Set struct_size) [^.]*\.(?=$|\s)", "", " ".join(self.prose(text).split()))
         if not text:
             return ""
-        return textwrap.fill(f'"""{text}"""', 112, initial_indent=indent, subsequent_indent=indent, break_long_words=False) + "\n"
+        return (
+            textwrap.fill(f'"""{text}"""', 112, initial_indent=indent, subsequent_indent=indent, break_long_words=False) + "\n"
+        )
 
     # -- _abi.py
 
@@ -247,7 +251,9 @@ class Writer:
                 out.append(f"    enumerations: dict[str, type] = {{{', '.join(enums)}}}\n")
             if name in self.is_output:
                 out.append(f"    result = types.{camel(name)}\n")
-        out.append("\n\n#: What each function returns, and takes: names and types.\nFUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {\n")
+        out.append(
+            "\n\n#: What each function returns, and takes: names and types.\nFUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {\n"
+        )
         for name, (returns, arguments) in h.functions.items():
             result = "c_char_p" if "*" in returns else C_TYPES.get(returns, "c_int32")
             types = ", ".join(f'("{a.name}", {self.c_type(a)})' for a in arguments)
@@ -292,7 +298,9 @@ class Writer:
         out.append("from collections.abc import Sequence\nfrom dataclasses import dataclass\n")
         out.append("from enum import IntEnum, IntFlag\nfrom typing import TypedDict\n")
         for e in self.enums.values():
-            out.append(f"\n\nclass {e.name}({'IntFlag' if e.is_flags else 'IntEnum'}):\n{self.comment(e.doc.split(': a LUXFER')[0].rstrip('.') + '.', '    ')}\n")
+            out.append(
+                f"\n\nclass {e.name}({'IntFlag' if e.is_flags else 'IntEnum'}):\n{self.comment(e.doc.split(': a LUXFER')[0].rstrip('.') + '.', '    ')}\n"
+            )
             for name, constant in e.members.items():
                 safe = name if name.isidentifier() else f"_{name}"
                 out.append(f"    {safe} = {h.constants[constant]}\n{self.comment(h.docs[constant], '    ')}")

@@ -40,7 +40,11 @@ def build() -> bpy.types.Scene:
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene
     x, y, z = SIZE
-    white, red, green = material("White", (0.7, 0.7, 0.7)), material("Red", (0.6, 0.2, 0.15)), material("Green", (0.2, 0.5, 0.25))
+    white, red, green = (
+        material("White", (0.7, 0.7, 0.7)),
+        material("Red", (0.6, 0.2, 0.15)),
+        material("Green", (0.2, 0.5, 0.25)),
+    )
     plane("Floor", [(0, 0, 0), (x, 0, 0), (x, y, 0), (0, y, 0)], white)
     plane("Ceiling", [(0, 0, z), (0, y, z), (x, y, z), (x, 0, z)], white)
     plane("Left", [(0, 0, 0), (0, y, 0), (0, y, z), (0, 0, z)], red)

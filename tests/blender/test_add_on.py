@@ -54,7 +54,9 @@ class AddOn(unittest.TestCase):
 
         # Nits: the strongest channel of the emission, and an image of floats.
         surface = next(n for n in lit.node_tree.nodes if n.type == "BSDF_PRINCIPLED")
-        self.assertAlmostEqual(surface.inputs["Emission Strength"].default_value, max(found.emission), delta=1e-4 * max(found.emission))
+        self.assertAlmostEqual(
+            surface.inputs["Emission Strength"].default_value, max(found.emission), delta=1e-4 * max(found.emission)
+        )
         self.assertTrue(bpy.data.images["Luxfer light Ceiling"].is_float)
 
         # Ours, of the scene as it is exported now; and Cycles', in batches whose scatter is its error.
@@ -82,7 +84,9 @@ class AddOn(unittest.TestCase):
             mine, other = ours[where].mean(0), theirs[where].mean(0)
             my_error = np.sqrt(variance[where].sum(0)) / where.sum()
             other_error = np.std([b[where].mean(0) for b in batches], axis=0, ddof=1) / 2
-            print(f"{name}: ours {mine.round(3)} ± {1.96 * my_error.round(4)}, Cycles {other.round(3)} ± {3.18 * other_error.round(4)} cd/m²")
+            print(
+                f"{name}: ours {mine.round(3)} ± {1.96 * my_error.round(4)}, Cycles {other.round(3)} ± {3.18 * other_error.round(4)} cd/m²"
+            )
             far.append((name, np.abs(mine - other) / (1.96 * my_error + 3.18 * other_error)))
         for name, shares in far:
             self.assertTrue((shares <= 1).all(), f"{name}: {shares} of the interval")
@@ -220,7 +224,15 @@ class Conversion(unittest.TestCase):
     def test_lights_are_as_bright_as_in_cycles(self):
         """On a floor straight below, alone: of each kind, and of area lights each shape."""
         context = luxfer.Context()
-        for kind, shape in (("POINT", ""), ("SPOT", ""), ("SUN", ""), ("AREA", "SQUARE"), ("AREA", "RECTANGLE"), ("AREA", "DISK"), ("AREA", "ELLIPSE")):
+        for kind, shape in (
+            ("POINT", ""),
+            ("SPOT", ""),
+            ("SUN", ""),
+            ("AREA", "SQUARE"),
+            ("AREA", "RECTANGLE"),
+            ("AREA", "DISK"),
+            ("AREA", "ELLIPSE"),
+        ):
             scene = build()
             for name in ("Ceiling", "Left", "Right", "Back", "Front"):
                 bpy.data.objects.remove(bpy.data.objects[name])

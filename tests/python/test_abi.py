@@ -14,6 +14,7 @@ from luxfer import abi, errors, types
 # Functions that Python has no use for, and those that wait for a place in the modules: call them through luxfer.library.
 ABI_ONLY = {"luxfer_status_name"}
 
+
 class Drift(Case):
     def test_what_is_generated_is_what_the_header_says(self):
         check = subprocess.run([sys.executable, PACKAGE / "generate.py", "--check"], capture_output=True, text=True)
@@ -57,7 +58,9 @@ class Drift(Case):
                 lines.append(f'printf("{name} %zu\\n", sizeof({name}));')
                 expected.append(f"{name} {ctypes.sizeof(struct)}")
                 for field, *_ in struct._fields_:
-                    lines.append(f'printf("{name}.{field} %zu %zu\\n", offsetof({name}, {field}), sizeof((({name} *)0)->{field}));')
+                    lines.append(
+                        f'printf("{name}.{field} %zu %zu\\n", offsetof({name}, {field}), sizeof((({name} *)0)->{field}));'
+                    )
                     member = getattr(struct, field)
                     expected.append(f"{name}.{field} {member.offset} {member.size}")
         self.assertGreater(len(expected), 200)

@@ -10,8 +10,19 @@ from luxfer import _arrays
 class Images(Case):
     def test_float_arrays_come_back_to_the_bit(self):
         pixels = np.random.default_rng(1).normal(size=(7, 5, 3)).astype(np.float32)
-        for layout in (pixels, pixels[::-1], pixels[::2], pixels[:, ::2], pixels[1:6, 1:4], pixels[:, ::-1], pixels[..., ::-1],
-                       np.asfortranarray(pixels), pixels[..., 1], pixels[..., :2], pixels.astype(">f4")):
+        for layout in (
+            pixels,
+            pixels[::-1],
+            pixels[::2],
+            pixels[:, ::2],
+            pixels[1:6, 1:4],
+            pixels[:, ::-1],
+            pixels[..., ::-1],
+            np.asfortranarray(pixels),
+            pixels[..., 1],
+            pixels[..., :2],
+            pixels.astype(">f4"),
+        ):
             with self.subTest(shape=layout.shape, strides=layout.strides):
                 image = luxfer.Image(context(), layout)
                 self.assertEqual(image.numpy().tobytes(), np.ascontiguousarray(layout, np.float32).tobytes())
@@ -54,7 +65,9 @@ class Images(Case):
         codes = np.arange(256, dtype=np.uint8).reshape(16, 16)
         image = luxfer.Image(context(), codes, "srgb")
         x = codes / 255
-        np.testing.assert_allclose(image.numpy()[..., 0], np.where(x <= 0.04045, x / 12.92, ((x + 0.055) / 1.055) ** 2.4), atol=2e-6)
+        np.testing.assert_allclose(
+            image.numpy()[..., 0], np.where(x <= 0.04045, x / 12.92, ((x + 0.055) / 1.055) ** 2.4), atol=2e-6
+        )
         np.testing.assert_array_equal(image.numpy(np.uint8, "srgb")[..., 0], codes)
 
     def test_masks_and_lists(self):
@@ -91,8 +104,12 @@ class Images(Case):
 
     def test_what_is_no_image(self):
         for wrong, kind in (
-            (np.zeros(3), ValueError), (np.zeros((2, 2, 2, 2)), ValueError), (np.zeros((2, 2), complex), TypeError),
-            (np.array([["a"]]), TypeError), (np.zeros((2, 2, 5)), ValueError), (np.zeros((0, 4, 3), np.float32), ValueError),
+            (np.zeros(3), ValueError),
+            (np.zeros((2, 2, 2, 2)), ValueError),
+            (np.zeros((2, 2), complex), TypeError),
+            (np.array([["a"]]), TypeError),
+            (np.zeros((2, 2, 5)), ValueError),
+            (np.zeros((0, 4, 3), np.float32), ValueError),
         ):
             with self.subTest(shape=wrong.shape), self.assertRaises(kind):
                 luxfer.Image(context(), wrong)

@@ -68,7 +68,9 @@ class Transfer(Case):
         lights.run(channels=7)
         view.set_mask(plane.image())
         view.run(max_side=256)
-        emission = luxfer.Emission(context(), view.image("unwarped"), view.warp(lights.image("confidence")), view.image("valid"))
+        emission = luxfer.Emission(
+            context(), view.image("unwarped"), view.warp(lights.image("confidence")), view.image("valid")
+        )
         emission.set_photo(photo, view.report.to_photo)
         emission.run(width=128, height=96)
         lamps = emission.luminaires
@@ -106,7 +108,9 @@ class Rendering(Case):
         layers = {name: image.numpy() for name, image in render.layers.items()}
         self.assertEqual(list(layers), ["seen", "once", "more", "Depth", "Normal", "Alpha"])
         beauty = render.image().numpy()
-        np.testing.assert_allclose(sum(layers[n] for n in ("seen", "once", "more")), beauty, rtol=1e-4, atol=1e-4 * beauty.mean())
+        np.testing.assert_allclose(
+            sum(layers[n] for n in ("seen", "once", "more")), beauty, rtol=1e-4, atol=1e-4 * beauty.mean()
+        )
         np.testing.assert_array_equal(render.layer("once").numpy(), layers["once"])
         lengths = np.linalg.norm(layers["Normal"], axis=-1)
         self.assertTrue((lengths < 1.001).all())
@@ -130,7 +134,9 @@ class Rendering(Case):
     def test_illuminance_of_a_point_light(self):
         scene = luxfer.Scene(context())
         scene.add_material(base_color=(0, 0, 0))
-        floor = scene.add_mesh([[-9, 0, -9], [9, 0, -9], [9, 0, 9], [-9, 0, 9]], [[0, 2, 1], [0, 3, 2]], uvs=[[0, 0], [1, 0], [1, 1], [0, 1]])
+        floor = scene.add_mesh(
+            [[-9, 0, -9], [9, 0, -9], [9, 0, 9], [-9, 0, 9]], [[0, 2, 1], [0, 3, 2]], uvs=[[0, 0], [1, 0], [1, 1], [0, 1]]
+        )
         scene.add_light(kind="point", position=(0, 2, 0), intensity=(100, 100, 100))
         lux = luxfer.Illuminance(context(), scene)
         lux.run_grid({"origin": (-1, 0.001, -1), "across": (2, 0, 0), "down": (0, 0, 2)}, columns=5, rows=5, samples=16)
@@ -161,7 +167,9 @@ class Scenes(Case):
         vertices["t"] = vertices["p"][:, ::2]
         scene = luxfer.Scene(context())
         red = scene.add_material(base_color=(0.5, 0, 0), roughness=0.25)
-        index = scene.add_mesh(vertices["p"], [[0, 2, 1], [0, 3, 2]], normals=vertices["n"], uvs=vertices["t"], material=red, name="Böden")
+        index = scene.add_mesh(
+            vertices["p"], [[0, 2, 1], [0, 3, 2]], normals=vertices["n"], uvs=vertices["t"], material=red, name="Böden"
+        )
         out = scene.mesh_arrays(index)
         np.testing.assert_array_equal(out["positions"], vertices["p"])
         np.testing.assert_array_equal(out["normals"], vertices["n"])
@@ -208,7 +216,9 @@ class Scenes(Case):
         texture = scene.add_texture(np.ones((2, 3, 3)), "clamp", "mirror")
         scene.set_material_texture(index, "base-color", texture, transform=[[2, 0, 0], [0, 3, 0.5]])
         use = scene.material_texture(index, "base-color")
-        self.assertEqual((use.texture, use.wrap_u.name, use.wrap_v.name, use.transform), (0, "CLAMP", "MIRROR", (2, 0, 0, 0, 3, 0.5)))
+        self.assertEqual(
+            (use.texture, use.wrap_u.name, use.wrap_v.name, use.transform), (0, "CLAMP", "MIRROR", (2, 0, 0, 0, 3, 0.5))
+        )
         scene.set_material_texture(index, "base-color", None)
         self.assertEqual(scene.material_texture(index, "base-color").texture, luxfer.abi.LUXFER_NONE)
 
@@ -227,8 +237,12 @@ class Scenes(Case):
         scene.add_material()
         corners = np.zeros((3, 3), np.float32)
         for positions, indices, more in (
-            (corners[:, :2], [[0, 1, 2]], {}), (corners, [[0, 1, -1]], {}), (corners, [[0.5, 1, 2]], {}),
-            (corners, [[0, 1, 3]], {}), (corners, [[0, 1, 2]], {"normals": corners[:2]}), (corners * np.nan, [[0, 1, 2]], {}),
+            (corners[:, :2], [[0, 1, 2]], {}),
+            (corners, [[0, 1, -1]], {}),
+            (corners, [[0.5, 1, 2]], {}),
+            (corners, [[0, 1, 3]], {}),
+            (corners, [[0, 1, 2]], {"normals": corners[:2]}),
+            (corners * np.nan, [[0, 1, 2]], {}),
         ):
             with self.assertRaises(ValueError):
                 scene.add_mesh(positions, indices, **more)
@@ -240,7 +254,10 @@ class Stylisation(Case):
 
     def setUp(self):
         super().setUp()
-        self.ball, self.still = (luxfer.Guides(context(), luxfer.Scene.demo(context(), s)).run(**self.SIZE) for s in ("sphere-on-table", "still-life"))
+        self.ball, self.still = (
+            luxfer.Guides(context(), luxfer.Scene.demo(context(), s)).run(**self.SIZE)
+            for s in ("sphere-on-table", "still-life")
+        )
 
     def test_a_picture_and_where_it_was_copied_from(self):
         artwork = self.ball.demo_artwork("paint")

@@ -68,8 +68,16 @@ def scene(context: luxfer.Context, source: bpy.types.Scene) -> luxfer.Scene:
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "scene.glb")
         bpy.ops.export_scene.gltf(
-            filepath=path, export_format="GLB", export_apply=True, export_yup=True, export_cameras=True, export_lights=True,
-            export_import_convert_lighting_mode="COMPAT", export_animations=False, use_active_scene=True, use_renderable=True,
+            filepath=path,
+            export_format="GLB",
+            export_apply=True,
+            export_yup=True,
+            export_cameras=True,
+            export_lights=True,
+            export_import_convert_lighting_mode="COMPAT",
+            export_animations=False,
+            use_active_scene=True,
+            use_renderable=True,
         )
         with open(path, "rb") as file:
             out = luxfer.Scene.from_bytes(context, with_specular_levels(file.read()))

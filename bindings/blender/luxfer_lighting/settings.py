@@ -21,13 +21,20 @@ class LuxferSettings(bpy.types.PropertyGroup):
         type=bpy.types.Object, name="Surface", poll=is_mesh, description="Object whose flat side receives the lights"
     )
     distance: FloatProperty(
-        name="Distance", default=1.2, min=0.01, max=1e4, subtype="DISTANCE", unit="LENGTH",
+        name="Distance",
+        default=1.2,
+        min=0.01,
+        max=1e4,
+        subtype="DISTANCE",
+        unit="LENGTH",
         description="Distance of the photo's camera from the plane of the lights: the scale of the pattern",
     )
     white: FloatProperty(
         name="White", default=100.0, min=1e-3, max=1e6, description="Luminance in cd/m² that the photo's white stands for"
     )
-    texels: IntProperty(name="Texture Size", default=1024, min=16, max=16384, description="Longest side of the emissive texture")
+    texels: IntProperty(
+        name="Texture Size", default=1024, min=16, max=16384, description="Longest side of the emissive texture"
+    )
     apply_when_done: BoolProperty(name="Apply When Done", default=True, description="Give the surface its new material at once")
 
     artwork: PointerProperty(

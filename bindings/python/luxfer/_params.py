@@ -1,4 +1,5 @@
-"""Keyword arguments to the library's structs, and its structs to dataclasses. A name that is none is an error that names the nearest."""
+"""Keyword arguments to the library's structs, and its structs to dataclasses. A name that is none is an error that names
+the nearest."""
 
 from __future__ import annotations
 
@@ -125,7 +126,8 @@ def settings(params: ctypes.Structure) -> dict[str, Any]:
     return {
         f[0]: plain(getattr(params, f[0]), params, f[0])
         for f in params._fields_
-        if f[0] not in ("struct_size", "reserved") and (f[1] in INTEGERS or f[1] in (ctypes.c_float, ctypes.c_double) or is_array(f[1]))
+        if f[0] not in ("struct_size", "reserved")
+        and (f[1] in INTEGERS or f[1] in (ctypes.c_float, ctypes.c_double) or is_array(f[1]))
     }
 
 

@@ -34,5 +34,5 @@ class DemoPhoto(StageBase):
         return self.start(**params).wait(progress)
 
     def image(self, which: DemoPhotoImage | str = DemoPhotoImage.PICTURE) -> Image:
-        """"picture" or "strokes"."""
+        """ "picture" or "strokes"."""
         return self._get_image("get_image", _params.member(DemoPhotoImage, which))

@@ -36,7 +36,11 @@ class Emission(StageBase):
     kind = "emission"
 
     def __init__(
-        self, context: Context, unwarped: ImageLike | None = None, light: ImageLike | None = None, valid: ImageLike | None = None
+        self,
+        context: Context,
+        unwarped: ImageLike | None = None,
+        light: ImageLike | None = None,
+        valid: ImageLike | None = None,
     ) -> None:
         super().__init__(context)
         if unwarped is not None and light is not None and valid is not None:
@@ -67,7 +71,7 @@ class Emission(StageBase):
         return self.start(**params).wait(progress)
 
     def image(self, which: EmissionImage | str = EmissionImage.TEXTURE) -> Image:
-        """"texture", "mask", "exemplar-metadata" or "metadata"."""
+        """ "texture", "mask", "exemplar-metadata" or "metadata"."""
         return self._get_image("get_image", _params.member(EmissionImage, which))
 
     @property

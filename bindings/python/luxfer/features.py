@@ -54,7 +54,7 @@ class Features(StageBase):
         return self.start(**params).wait(progress)
 
     def image(self, which: FeaturesImage | str = FeaturesImage.CHANNELS) -> Image:
-        """"channels" or "depth-confidence"."""
+        """ "channels" or "depth-confidence"."""
         return self._get_image("get_image", _params.member(FeaturesImage, which))
 
     @property

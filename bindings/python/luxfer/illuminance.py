@@ -21,7 +21,8 @@ if TYPE_CHECKING:
 class Illuminance(StageBase):
     """Lux with the standard error of every point.
 
-    >>> lux = Illuminance(context, lit_room).run_grid({"origin": (-1, 0.8, -1), "across": (2, 0, 0), "down": (0, 0, 2)}, columns=4, rows=3)
+    >>> desk = {"origin": (-1, 0.8, -1), "across": (2, 0, 0), "down": (0, 0, 2)}
+    >>> lux = Illuminance(context, lit_room).run_grid(desk, columns=4, rows=3)
     >>> lux.image("lux").size
     (4, 3, 1)
     >>> lux.report.least <= lux.report.mean <= lux.report.largest
@@ -39,13 +40,18 @@ class Illuminance(StageBase):
         """Each start calculates with the scene as it is then."""
         self._call("set_scene", scene)
 
-    def start_grid(self, grid: IlluminanceGrid | Mapping[str, Any] | None = None, **params: Unpack[IlluminanceParams]) -> Job[Illuminance]:
+    def start_grid(
+        self, grid: IlluminanceGrid | Mapping[str, Any] | None = None, **params: Unpack[IlluminanceParams]
+    ) -> Job[Illuminance]:
         """Starts a calculation on a grid: origin, across, down and normal, in metres."""
         rectangle = _params.fill(_abi.luxfer_illuminance_grid, grid or {}, [], "grid.")
         return self._job("start_grid", rectangle, _params.fill(_abi.luxfer_illuminance_params, params, []))
 
     def run_grid(
-        self, grid: IlluminanceGrid | Mapping[str, Any] | None = None, progress: Progress | None = None, **params: Unpack[IlluminanceParams]
+        self,
+        grid: IlluminanceGrid | Mapping[str, Any] | None = None,
+        progress: Progress | None = None,
+        **params: Unpack[IlluminanceParams],
     ) -> Illuminance:
         """Starts it and waits for it."""
         return self.start_grid(grid, **params).wait(progress)
@@ -61,7 +67,7 @@ class Illuminance(StageBase):
         return self.start_mesh(mesh, back, **params).wait(progress)
 
     def image(self, which: IlluminanceImage | str = IlluminanceImage.LUX) -> Image:
-        """"lux" or "error"."""
+        """ "lux" or "error"."""
         return self._get_image("get_image", _params.member(IlluminanceImage, which))
 
     @property

@@ -71,7 +71,9 @@ class Image(Handle):
         width, height, channels = self.size
         return height, width, channels
 
-    def read(self, out: NDArray[Any], first_channel: int = 0, colour_space: ColourSpace | str = ColourSpace.LINEAR) -> NDArray[Any]:
+    def read(
+        self, out: NDArray[Any], first_channel: int = 0, colour_space: ColourSpace | str = ColourSpace.LINEAR
+    ) -> NDArray[Any]:
         """Writes the channels from first_channel on into an array of uint8, uint16, float16 or float32, which may be a
         part of a larger one as long as the channels of a pixel lie together; returns it.
 

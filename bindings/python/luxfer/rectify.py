@@ -52,7 +52,7 @@ class Rectify(StageBase):
         return self.start(**params).wait(progress)
 
     def image(self, which: RectifyImage | str) -> Image:
-        """"unwarped" or "valid"."""
+        """ "unwarped" or "valid"."""
         return self._get_image("get_image", _params.member(RectifyImage, which))
 
     def warp(self, source: ImageLike) -> Image:

@@ -12,7 +12,6 @@ from .types import RelightReport
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
-    from .context import Context
     from .scene import Scene
     from .types import RelightParams
 

@@ -13,7 +13,15 @@ from . import _abi, _arrays, _params
 from ._handle import Handle, call
 from .image import Image, image_of
 from .types import (
-    CameraParams, MaterialParams, MeshInfo, Requirements, SceneCounts, Surface, TextureRole, TextureUse, Wrap,
+    CameraParams,
+    MaterialParams,
+    MeshInfo,
+    Requirements,
+    SceneCounts,
+    Surface,
+    TextureRole,
+    TextureUse,
+    Wrap,
 )
 
 if TYPE_CHECKING:
@@ -234,9 +242,12 @@ class Scene(Handle):
             out["normals"] = np.empty((info.vertex_count, 3), np.float32)
         out["indices"] = np.empty((info.triangle_count, 3), np.uint32)
         self._call(
-            "read_mesh", index,
-            info.vertex_count, *(_arrays.pointer(out.get(k), ctypes.c_float) for k in ("positions", "normals")),
-            info.triangle_count, _arrays.pointer(out["indices"], ctypes.c_uint32),
+            "read_mesh",
+            index,
+            info.vertex_count,
+            *(_arrays.pointer(out.get(k), ctypes.c_float) for k in ("positions", "normals")),
+            info.triangle_count,
+            _arrays.pointer(out["indices"], ctypes.c_uint32),
         )
         for uv_set, name in enumerate(("uvs", "uvs1")):
             if info.uv_sets >> uv_set & 1:

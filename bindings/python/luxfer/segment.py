@@ -82,7 +82,7 @@ class Segment(StageBase):
         return self.start(**params).wait(progress)
 
     def image(self, which: SegmentImage | str = SegmentImage.MASK) -> Image:
-        """"mask", "confidence" or "unseen"."""
+        """ "mask", "confidence" or "unseen"."""
         return self._get_image("get_image", _params.member(SegmentImage, which))
 
     @property

@@ -102,7 +102,10 @@ class Stylize(StageBase):
         return self._job("start", settings)
 
     def run(
-        self, progress: Progress | None = None, preset: StylizePreset | str = StylizePreset.FULL, **params: Unpack[StylizeParams]
+        self,
+        progress: Progress | None = None,
+        preset: StylizePreset | str = StylizePreset.FULL,
+        **params: Unpack[StylizeParams],
     ) -> Stylize:
         """Starts the work and waits for it."""
         return self.start(preset, **params).wait(progress)
@@ -115,7 +118,7 @@ class Stylize(StageBase):
     # -- results
 
     def image(self, which: StylizeImage | str = StylizeImage.PICTURE) -> Image:
-        """"picture", "guide-error" or "sources"."""
+        """ "picture", "guide-error" or "sources"."""
         return self._get_image("get_image", _params.member(StylizeImage, which))
 
     @property

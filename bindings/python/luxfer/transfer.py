@@ -131,12 +131,12 @@ class Transfer(StageBase):
     # -- results
 
     def image(self, which: TransferImage | str = TransferImage.RENDER) -> Image:
-        """"features", "plane-mask", "plane-confidence", "lights-mask", "lights-confidence", "unwarped", "unwarped-valid",
+        """ "features", "plane-mask", "plane-confidence", "lights-mask", "lights-confidence", "unwarped", "unwarped-valid",
         "emission", "emission-mask", "render" or "render-variance"."""
         return self._get_image("get_image", _params.member(TransferImage, which))
 
     def scene(self, which: TransferScene | str = TransferScene.LIT) -> Scene:
-        """"lit", the result; "unsolved", before its strength is solved for; "white", its colour taken away."""
+        """ "lit", the result; "unsolved", before its strength is solved for; "white", its colour taken away."""
         pointer = ctypes.POINTER(_abi.luxfer_scene)()
         self._call("get_scene", _params.member(TransferScene, which), pointer)
         return Scene._adopt(self._context, pointer)
@@ -161,10 +161,6 @@ class Transfer(StageBase):
         """The lamps of the lit scene, in metres, cd/m² and lumens."""
         count = self.report.fixtures
         return [cast(Fixture, self._read("get_fixture", _abi.luxfer_fixture, i)) for i in range(count)]
-
-    def save_fixtures(self, path: str | os.PathLike[str]) -> None:
-        """Writes the lamps to a .csv or .json file."""
-        self._call("save_fixtures", _params.text(os.fspath(path), "path"))
 
     def save_fixtures(self, path: str | os.PathLike[str]) -> None:
         """Writes the lamps to a .csv or a .json file, units in the names of the columns; .json also has their outlines."""
