@@ -73,4 +73,4 @@ peers:
 
 clean:
 	$(CARGO) clean
-	rm -rf build out
+	rm -rf build out bindings/python/build bindings/python/luxfer.egg-info
