@@ -44,7 +44,7 @@ class Guides(StageBase):
         return self.start(**params).wait(progress)
 
     def image(self, which: GuidesImage | str = GuidesImage.FULL) -> Image:
-        """ "full", "direct", "specular", "indirect", "two-bounces", "normals", "edges" or "materials"."""
+        """ "full", "direct", "specular", "indirect", "two-bounces", "normals", "edges", "materials" or "caustics"."""
         return self._get_image("get_image", _params.member(GuidesImage, which))
 
     def motion(self, before: Guides) -> Image:

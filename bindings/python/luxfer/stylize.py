@@ -69,7 +69,7 @@ class Stylize(StageBase):
         self._call("add_guide", _params.text(name, "name"), first, second, weight, _params.member(GuideRange, range))
 
     def add_guides(self, source: Guides, target: Guides, extras: GuidesWith | str | int = 0, extra_weight: float = 1.0) -> None:
-        """Adds the guides of two scenes: the five of light, and the extras, as "normals|edges|materials"."""
+        """Adds the guides of two scenes: the five of light, and the extras, as "normals|edges|materials|caustics"."""
         self._call("add_guides", source, target, _params.member(GuidesWith, extras), extra_weight)
 
     def clear_guides(self) -> None:

@@ -368,6 +368,8 @@ class GuidesImage(IntEnum):
     """Edges of shapes, in [0, 1]; 1 channel."""
     MATERIALS = 7
     """A colour for each material, made from its name; 3 channels."""
+    CAUSTICS = 8
+    """Light that glossy things throw onto matt ones (LS+DE)."""
 
 
 class StylizeMode(IntEnum):
@@ -511,6 +513,9 @@ class GuidesWith(IntFlag):
     MATERIALS = 4
     """Flag: the colour code of materials too, so that things of one material are painted from things of the
     same."""
+    CAUSTICS = 8
+    """Flag: caustics too, light at the common exposure, for scenes in which glossy things throw light onto
+    others."""
 
 
 class Lights(IntFlag):
