@@ -21,6 +21,9 @@
 //! again (plain EM: 1.46e-3), and so is worth it at full quality; leaving the last tenth of the target to ordinary retrieval
 //! saves a tenth of the time, and costs nothing. Twice the iterations or sweeps change neither by a tenth.
 //!
+//! Memory: with four guides of three channels about 150 MiB for each megapixel of the target, and as much for the exemplar,
+//! beside the input (`benches/stylit.rs`, section `sizes`, up to 17.5 megapixels).
+//!
 //! Not modelled: rotation of strokes along the target's shapes, and sequences as a whole: each frame knows the one before.
 //!
 //! Covered by patents in the US (StyLit: US 9,881,413 and 10,176,624; patch usage: US 9,905,054; PatchMatch:
