@@ -1206,15 +1206,15 @@ class StylizeParams(TypedDict, total=False):
     finest_iterations: int
     """Rounds on the finest level, in [1, 100]; default 2."""
     sweeps: int
-    """Sweeps of a search, in [1, 100]; default 1."""
+    """Sweeps of a search, in [1, 100]; default 2."""
     coverage: float
     """Share of the target that is matched under the budget before the rest is matched without, in [0, 1];
-    default 0.95."""
+    default 0.9."""
     passes: int
-    """Most passes of matching under the budget in a round, in [1, 1000]; default 12."""
+    """Most passes of matching under the budget in a round, in [1, 1000]; default 6."""
     settle: int
-    """Sweeps in which places may continue their neighbours' matches, in [0, 100]; default 2; 0 is the
-    paper's."""
+    """Sweeps in which places may continue their neighbours' matches, for fewer seams, in [0, 100]; default 2; 0
+    is the paper's."""
     vote: StylizeVote | str | int
     """StylizeVote; default StylizeVote.WEIGHTED."""
     final_vote: StylizeVote | str | int
