@@ -19,8 +19,9 @@ const ROULETTE_FROM: u32 = 2;
 /// Paths go on for sure that promise this share of what the others bring. Ending them sooner would save less time than
 /// its scatter costs: measured on rooms, the product of time and variance is least about here.
 const ENOUGH: f32 = 0.5;
-/// The surest a path can be to go on: in a room of white walls it must end some time.
-const SUREST: f32 = 0.98;
+/// The surest a path can be to go on: in a room of white walls it must end some time. Walls whiter than the root of this make
+/// the variance infinite.
+const SUREST: f32 = 0.998;
 
 /// How often a path scatters at most: a guard against those that never end between perfect mirrors.
 pub const MOST_SCATTERINGS: u32 = 1024;

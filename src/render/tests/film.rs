@@ -89,7 +89,7 @@ fn a_target_sends_paths_to_where_the_error_is_and_darkens_little() {
         |film: &Film| film.beauty.data.iter().map(|&v| f64::from(v)).sum::<f64>() / film.beauty.data.len() as f64;
     let truth = mean(&render(&world, &viewer(), &Params { samples: 1024, ..size.clone() }));
     let count = 16;
-    for (target_error, pixel_error) in [(0.12, 0.0), (0.0, 0.6)] {
+    for (target_error, pixel_error) in [(0.06, 0.0), (0.0, 0.6)] {
         let films = repeated(&world, &Params { samples: 1024, target_error, pixel_error, ..size.clone() }, count);
         let (mut sum, mut square, mut spread) = (0.0, 0.0, 0.0f32);
         for film in &films {
