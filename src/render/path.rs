@@ -19,12 +19,12 @@ const ROULETTE_FROM: u32 = 2;
 /// Paths go on for sure that promise this share of what the others bring. Ending them sooner would save less time than
 /// its scatter costs: measured on rooms, the product of time and variance is least about here.
 const ENOUGH: f32 = 0.5;
-/// The surest a path can be to go on: in a room of white walls it must end some time. Walls whiter than the root of this make
-/// the variance infinite.
+/// The surest a path can be to go on: in a room of white walls it must end some time. Walls that give
+/// back more than the root of this make the variance infinite.
 const SUREST: f32 = 0.998;
 
-/// How often a path scatters at most: a guard against those that never end between perfect mirrors.
-pub const MOST_SCATTERINGS: u32 = 1024;
+/// How often a path scatters at most: a guard that nothing meets, as at [`SUREST`] a ten-millionth of paths would come so far.
+pub const MOST_SCATTERINGS: u32 = 8192;
 
 /// Takes what a path brings. All but [`Observer::add`] is for those that tell light apart by the way it came; the others
 /// leave these steps empty, and pay nothing for them.

@@ -172,6 +172,10 @@ fn closed_white_rooms_end_with_the_right_energy() {
     let camera = Camera::look_at(Vec3::new(0.3, 0.1, 0.2), Vec3::X, 1.0);
     let film = render(&world(scene), &camera, &Params { samples: 512, width: 8, height: 8, ..SMALL() });
     assert_mean(&film, 100.0);
+    // And 99.8 %: an eighth of their light has scattered more than a thousand times.
+    let scene = Scene { meshes: vec![inward_sphere(2.0, 0)], materials: vec![matt(0.998, 0.2)], ..Scene::default() };
+    let film = render(&world(scene), &camera, &Params { samples: 256, width: 8, height: 8, ..SMALL() });
+    assert_mean(&film, 100.0);
 }
 
 fn assert_mean(film: &Film, expected: f64) {
