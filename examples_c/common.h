@@ -39,4 +39,22 @@ static inline void finish(luxfer_job *job, const char *title) {
     check(luxfer_job_release(job), title);
 }
 
+/* A photo of the generated office; luxfer_image_load would load one. */
+static inline luxfer_image *take_photo(uint32_t width, uint32_t height, uint32_t samples) {
+    luxfer_demo_photo_params params;
+    luxfer_demo_photo *demo = NULL;
+    luxfer_image *photo = NULL;
+    luxfer_job *job = NULL;
+    check(luxfer_demo_photo_params_init(&params, sizeof params), "photo");
+    params.width = width;
+    params.height = height;
+    params.samples = samples;
+    check(luxfer_demo_photo_create(context, &demo), "photo");
+    check(luxfer_demo_photo_start(demo, &params, &job), "photo");
+    finish(job, "taking the photo");
+    check(luxfer_demo_photo_get_image(demo, LUXFER_DEMO_PHOTO_PICTURE, &photo), "photo");
+    check(luxfer_demo_photo_release(demo), "photo");
+    return photo;
+}
+
 #endif

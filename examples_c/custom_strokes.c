@@ -7,24 +7,6 @@
 #include "common.h"
 #include "panels.h"
 
-/* A photo of the generated office, 300 x 200 pixels. luxfer_image_load would load one. */
-static luxfer_image *take_photo(void) {
-    luxfer_demo_photo_params params;
-    luxfer_demo_photo *demo = NULL;
-    luxfer_image *photo = NULL;
-    luxfer_job *job = NULL;
-    check(luxfer_demo_photo_params_init(&params, sizeof params), "photo");
-    params.width = 300;
-    params.height = 200;
-    params.samples = 8;
-    check(luxfer_demo_photo_create(context, &demo), "photo");
-    check(luxfer_demo_photo_start(demo, &params, &job), "photo");
-    finish(job, "taking the photo");
-    check(luxfer_demo_photo_get_image(demo, LUXFER_DEMO_PHOTO_PICTURE, &photo), "photo");
-    luxfer_demo_photo_release(demo);
-    return photo;
-}
-
 /* Runs stages first to last, says how good the result is, and shows it. The error is that of strokes held out: it knows nothing
  * of what no stroke has touched, which LUXFER_SEGMENT_UNSEEN of a luxfer_segment shows. */
 static void run(luxfer_transfer *transfer, luxfer_stage first, luxfer_stage last, luxfer_transfer_image which, sheet *s,
@@ -56,7 +38,7 @@ int main(void) {
     sheet s = panels_begin(2, 2, 300, 200);
 
     check(luxfer_context_create(NULL, &context), "context");
-    photo = take_photo();
+    photo = take_photo(300, 200, 8);
     panels_add(&s, 0, 0, photo, 1);
     check(luxfer_transfer_create(context, &transfer), "transfer");
     check(luxfer_transfer_set_photo(transfer, photo), "photo");

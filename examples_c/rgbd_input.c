@@ -10,23 +10,6 @@
 
 enum { WIDTH = 300, HEIGHT = 200 };
 
-static luxfer_image *take_photo(void) {
-    luxfer_demo_photo_params params;
-    luxfer_demo_photo *demo = NULL;
-    luxfer_image *photo = NULL;
-    luxfer_job *job = NULL;
-    check(luxfer_demo_photo_params_init(&params, sizeof params), "photo");
-    params.width = WIDTH;
-    params.height = HEIGHT;
-    params.samples = 4;
-    check(luxfer_demo_photo_create(context, &demo), "photo");
-    check(luxfer_demo_photo_start(demo, &params, &job), "photo");
-    finish(job, "taking the photo");
-    check(luxfer_demo_photo_get_image(demo, LUXFER_DEMO_PHOTO_PICTURE, &photo), "photo");
-    luxfer_demo_photo_release(demo);
-    return photo;
-}
-
 /* The distance along the viewing axis of each pixel, in metres: a layer of a rendering by the photo's camera. */
 static luxfer_image *measure_depth(void) {
     luxfer_scene *office = NULL;
@@ -89,7 +72,7 @@ int main(int argc, char **argv) {
         check(luxfer_image_load(context, argv[1], LUXFER_COLOUR_SRGB, &photo), argv[1]);
         check(luxfer_image_load(context, argv[2], LUXFER_COLOUR_LINEAR, &depth), argv[2]); /* Data, no colour. */
     } else {
-        photo = take_photo();
+        photo = take_photo(WIDTH, HEIGHT, 4);
         depth = measure_depth();
     }
     panels_add(&s, 0, 0, photo, 1);
