@@ -43,6 +43,7 @@ int main(void) {
     check(luxfer_transfer_create(context, &transfer), "transfer");
     check(luxfer_transfer_set_photo(transfer, photo), "photo");
 
+    /* --8<-- [start:strokes] */
     /* The ceiling: 1 is on it, 0 off it. Strokes on lamps count for it as well. */
     check(luxfer_transfer_add_stroke(transfer, LUXFER_PHASE_PLANE, ceiling, 3, radius, 1), "stroke");
     check(luxfer_transfer_add_stroke(transfer, LUXFER_PHASE_PLANE, far_wall, 2, radius, 0), "stroke");
@@ -59,6 +60,7 @@ int main(void) {
     check(luxfer_transfer_add_stroke(transfer, LUXFER_PHASE_LIGHTS, far_tiles, 2, radius, 0), "stroke");
     run(transfer, LUXFER_STAGE_PLANE, LUXFER_STAGE_PLANE, LUXFER_TRANSFER_PLANE_CONFIDENCE, &s, 0, 1);
     run(transfer, LUXFER_STAGE_LIGHTS, LUXFER_STAGE_LIGHTS, LUXFER_TRANSFER_LIGHTS_CONFIDENCE, &s, 1, 1);
+    /* --8<-- [end:strokes] */
     check(panels_save(&s, context, "custom_strokes.png"), "custom_strokes.png");
 
     luxfer_transfer_release(transfer);

@@ -11,6 +11,7 @@
 
 static luxfer_context *context;
 
+/* --8<-- [start:report] */
 /* What a program does with a failure: the status is for deciding, the message for people. */
 static void report(const char *attempt, luxfer_status status, luxfer_status expected) {
     char *message;
@@ -24,6 +25,7 @@ static void report(const char *attempt, luxfer_status status, luxfer_status expe
     free(message);
     if (status != expected) exit(1);
 }
+/* --8<-- [end:report] */
 
 int main(void) {
     luxfer_image *image = NULL;
@@ -36,12 +38,14 @@ int main(void) {
     luxfer_image_view view;
     float pixels[2 * 2 * 3] = {0};
 
+    /* --8<-- [start:version] */
     /* Is the library that was loaded one for this header? Before 1.0 those of one minor version are. */
     if (luxfer_version() / 100 != LUXFER_VERSION / 100) {
         fprintf(stderr, "built for luxfer %d.%d, loaded %s\n", LUXFER_VERSION_MAJOR, LUXFER_VERSION_MINOR,
                 luxfer_version_string());
         return 1;
     }
+    /* --8<-- [end:version] */
     if (luxfer_context_create(NULL, &context) != LUXFER_OK) return 1;
 
     report("A file that is not there:", luxfer_image_load(context, "photo.jpg", LUXFER_COLOUR_SRGB, &image), LUXFER_IO);

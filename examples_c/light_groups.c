@@ -24,10 +24,12 @@ static void add_spot(luxfer_scene *scene) {
 }
 
 int main(void) {
+    /* --8<-- [start:expressions] */
     /* C is the camera, .* whatever happens on the way, <L.'name'> a light: a mesh or material of that name, light0 the first
      * light without a surface, environment what surrounds the scene. Every path ends at one light, so groups add up. */
     static const char *const names[GROUPS] = {"lamp", "spot", "surroundings"};
     static const char *const expressions[GROUPS] = {"C.*<L.'Lamp'>", "C.*<L.'light0'>", "C.*<L.'environment'>"};
+    /* --8<-- [end:expressions] */
     /* How much of each group a mixture has, per channel. */
     static const float mixtures[MIXTURES][GROUPS][3] = {{{0.05f, 0.05f, 0.05f}, {0.8f, 0.8f, 0.8f}, {0.3f, 0.3f, 0.3f}},
                                                         {{0.5f, 0.7f, 1.2f}, {0, 0, 0}, {0.4f, 0.7f, 1.6f}}};
@@ -57,6 +59,7 @@ int main(void) {
     check(luxfer_render_start(render, &params, &job), "render");
     finish(job, "rendering");
 
+    /* --8<-- [start:layers] */
     /* The picture, and its groups by their names. */
     check(luxfer_render_get_image(render, LUXFER_RENDER_BEAUTY, &image), "picture");
     panels_add(&s, 0, 0, image, 1 / WHITE);
@@ -69,6 +72,7 @@ int main(void) {
         group[g] = panels_pixels(image, &view);
         luxfer_image_release(image);
     }
+    /* --8<-- [end:layers] */
     mixture = malloc(view.byte_size);
     if (!all || !group[0] || !group[1] || !group[2] || !mixture) return 1;
 

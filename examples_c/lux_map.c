@@ -35,6 +35,7 @@ int main(void) {
     check(luxfer_illuminance_create(context, &illuminance), "illuminance");
     check(luxfer_illuminance_set_scene(illuminance, scene), "illuminance");
 
+    /* --8<-- [start:grid] */
     /* The plane: a corner and two edges; light counts from above. Points are the centres of the cells. */
     check(luxfer_illuminance_grid_init(&grid, sizeof grid), "grid");
     grid.origin[0] = 0.5f, grid.origin[1] = 1.5f, grid.origin[2] = 0.5f;
@@ -48,6 +49,7 @@ int main(void) {
     finish(job, "measuring");
 
     check(luxfer_illuminance_get_report(illuminance, &report), "report");
+    /* --8<-- [end:grid] */
     printf("mean %.0f lux (+- %.1f, 95 %%), least %.0f, largest %.0f, uniformity %.2f\n", report.mean, 1.96 * report.mean_error,
            report.least, report.largest, report.least / report.mean);
 

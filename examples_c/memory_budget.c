@@ -38,6 +38,7 @@ int main(void) {
     if (status == LUXFER_OK) status = luxfer_context_create(&params, &context);
     if (status != LUXFER_OK) return 1;
 
+    /* --8<-- [start:budget] */
     while (count < MOST && (status = load(context, &images[count])) == LUXFER_OK) count++;
     if (status == LUXFER_OUT_OF_MEMORY) {
         /* Nothing is lost: the message says how much is in use, and the context goes on working. */
@@ -52,6 +53,7 @@ int main(void) {
     images[0] = NULL;
     status = load(context, &images[0]);
     printf("after letting go of one: %s\n", luxfer_status_name(status));
+    /* --8<-- [end:budget] */
 
     for (i = 0; i < MOST; i++) luxfer_image_release(images[i]);
     luxfer_context_release(context);

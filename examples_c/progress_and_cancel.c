@@ -5,6 +5,7 @@
  */
 #include "common.h"
 
+/* --8<-- [start:progress] */
 /* Called about 50 times a second, on the thread that waits: it may call any function of the library, or of the host's. */
 typedef struct watch {
     luxfer_render *render;
@@ -22,6 +23,7 @@ static int32_t on_progress(void *user, double fraction) {
     /* Anything but 0 cancels. */
     return w->calls >= 50;
 }
+/* --8<-- [end:progress] */
 
 int main(void) {
     luxfer_scene *scene = NULL;
@@ -47,10 +49,12 @@ int main(void) {
     params.samples = 1 << 20;
 
     /* 1. Waiting inside the library. */
+    /* --8<-- [start:wait] */
     w.render = render;
     check(luxfer_render_start(render, &params, &job), "start");
     status = luxfer_job_wait(job, -1, on_progress, &w);
     printf("the wait ended with %s\n", luxfer_status_name(status));
+    /* --8<-- [end:wait] */
     luxfer_job_release(job);
     if (status != LUXFER_CANCELLED) return 1;
 
@@ -63,12 +67,14 @@ int main(void) {
 
     /* 2. In a loop of the program's own: a wait that is over after 16 ms, then a frame of the user interface. */
     check(luxfer_render_start(render, &params, &job), "start");
+    /* --8<-- [start:loop] */
     while ((status = luxfer_job_wait(job, 16, NULL, NULL)) == LUXFER_NOT_READY) {
         check(luxfer_job_poll(job, &fraction, &finished), "poll");
         if (finished) break; /* A job may have ended with LUXFER_NOT_READY itself. */
         /* Any thread may cancel; the work ends within about 100 ms, and releasing the job would do the same. */
         if (++frames == 20) check(luxfer_job_cancel(job), "cancel");
     }
+    /* --8<-- [end:loop] */
     printf("%d frames were drawn until it ended with %s\n", frames, luxfer_status_name(status));
     luxfer_job_release(job);
 

@@ -78,11 +78,13 @@ int main(int argc, char **argv) {
     panels_add(&s, 0, 0, photo, 1);
     panels_add(&s, 1, 0, depth, 0.1f);
 
+    /* --8<-- [start:features] */
     check(luxfer_features_create(context, &features), "features");
     check(luxfer_features_set_photo(features, photo), "photo");
     show_normals(features, "without depth", &s, 0);
     check(luxfer_features_set_depth(features, depth, LUXFER_DEPTH_ALONG_Z), "depth");
     show_normals(features, "with depth", &s, 1);
+    /* --8<-- [end:features] */
     check(panels_save(&s, context, "rgbd_input.png"), "rgbd_input.png");
     /* A whole transfer takes the same by luxfer_transfer_set_depth. */
 

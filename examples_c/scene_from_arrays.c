@@ -4,6 +4,7 @@
  */
 #include "common.h"
 
+/* --8<-- [start:mesh] */
 /* As a host has its vertices: attributes interleaved, and more of them than the library wants. */
 typedef struct vertex {
     float position[3], uv[2];
@@ -35,6 +36,7 @@ static void add_quad(luxfer_scene *scene, const char *name, uint32_t material, c
     mesh.indices = triangles;
     check(luxfer_scene_add_mesh(scene, &mesh, NULL), name); /* Copied: the arrays may go now. */
 }
+/* --8<-- [end:mesh] */
 
 static uint32_t add_material(luxfer_scene *scene, const char *name, float r, float g, float b, float emission) {
     luxfer_material_params material;

@@ -392,10 +392,15 @@ typedef int32_t (*luxfer_write_fn)(void *user, const void *data, size_t size);
 typedef struct luxfer_scene_counts {
     /** sizeof(luxfer_scene_counts), set by the caller. */
     uint32_t struct_size;
+    /** Number of meshes, whose indices are 0 to meshes - 1; so with what follows. */
     uint32_t meshes;
+    /** Number of materials. */
     uint32_t materials;
+    /** Number of textures. */
     uint32_t textures;
+    /** Number of lights without a surface. */
     uint32_t lights;
+    /** Number of cameras. */
     uint32_t cameras;
     /** Triangles of all meshes. */
     uint64_t triangles;

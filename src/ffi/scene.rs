@@ -36,10 +36,15 @@ pub type luxfer_write_fn = Option<unsafe extern "C" fn(user: *mut c_void, data: 
 pub struct luxfer_scene_counts {
     /// sizeof(luxfer_scene_counts), set by the caller.
     pub struct_size: u32,
+    /// Number of meshes, whose indices are 0 to meshes - 1; so with what follows.
     pub meshes: u32,
+    /// Number of materials.
     pub materials: u32,
+    /// Number of textures.
     pub textures: u32,
+    /// Number of lights without a surface.
     pub lights: u32,
+    /// Number of cameras.
     pub cameras: u32,
     /// Triangles of all meshes.
     pub triangles: u64,

@@ -599,10 +599,15 @@ class SceneCounts:
     """How much there is in a scene."""
 
     meshes: int
+    """Number of meshes, whose indices are 0 to meshes - 1; so with what follows."""
     materials: int
+    """Number of materials."""
     textures: int
+    """Number of textures."""
     lights: int
+    """Number of lights without a surface."""
     cameras: int
+    """Number of cameras."""
     triangles: int
     """Triangles of all meshes."""
 

@@ -1,0 +1,133 @@
+"""The blocks of code in the guide: what is shown is what works.
+
+    blocks.py check                    each is part of a program that a test compiles or runs, or can be run itself
+    blocks.py run FOLDER LIBRARY [LANGUAGE...]    runs those of Python and shell, page by page; what they draw goes into FOLDER
+
+A block is either nothing but `--8<--` lines, which name parts of programs, or Python or shell. A page's Python blocks are one
+program, and so are its shell blocks. Python works in FOLDER/PAGE/. Shell works in a tree of links that looks like the source
+tree with a library built in it, so that nothing is left behind.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+GUIDE = ROOT / "docs" / "guide"
+#: Programs that tests compile and run, all of them, as tests/CMakeLists.txt has it.
+TESTED = re.compile(r"examples_c/\w+\.[ch]|tests/docs/\w+\.(cpp|hpp|c)|tests/package/(CMakeLists\.txt|consumer\.(c|cpp)|check\.sh)")
+RUN = {"python": "python", "sh": "sh"}
+FENCE = re.compile(r"^([ \t]*)(`{3,}|~{3,})([^\n]*)\n(.*?)^\1\2[ \t]*$", re.S | re.M)
+
+
+def pages() -> list[Path]:
+    return sorted(GUIDE.rglob("*.md"))
+
+
+def blocks(page: Path) -> list[tuple[int, str, str]]:
+    """Line, language and text of each block of a page."""
+    text = page.read_text()
+    found = [(text.count("\n", 0, m.start()) + 1, m[3].strip(), m[4]) for m in FENCE.finditer(text)]
+    if len(re.findall(r"^[ \t]*(?:```|~~~)", text, re.M)) != 2 * len(found):
+        raise SystemExit(f"{page}: a block of code is not closed")
+    return found
+
+
+def parts(text: str) -> list[str] | None:
+    """The parts of programs that a block consists of; None if it is something else."""
+    lines = [line.strip() for line in text.strip().split("\n")]
+    names = [re.fullmatch(r'--8<-- "([^"]+)"', line) for line in lines]
+    return [name[1] for name in names if name] if all(names) else None
+
+
+def check() -> list[str]:
+    problems = []
+    for page in pages():
+        if re.search(r"<pre|<code", page.read_text()):
+            problems.append(f"{page}: code as HTML, which nothing tests")
+        for line, language, text in blocks(page):
+            place = f"{page.relative_to(ROOT)}, line {line}"
+            names = parts(text)
+            if names is None:
+                if language not in RUN:
+                    problems.append(f"{place}: a block of {language or 'no language'} that is no part of a tested program")
+                continue
+            for name in names:
+                file, _, section = name.partition(":")
+                if not TESTED.fullmatch(file) or not (ROOT / file).exists():
+                    problems.append(f"{place}: {file} is no program that a test compiles or runs")
+                elif section and f"[start:{section}]" not in (ROOT / file).read_text():
+                    problems.append(f"{place}: {file} has no part {section}")
+    return problems
+
+
+def run_python(page: Path, folder: Path, environment: dict[str, str]) -> int:
+    """Runs a page's Python blocks as one program; lines are counted as in the page."""
+    source, at = "", 1
+    for line, language, text in blocks(page):
+        if language == "python" and parts(text) is None:
+            source += "\n" * (line + 1 - at) + text
+            at = line + 1 + text.count("\n")
+    if not source:
+        return 0
+    work = folder / page.relative_to(GUIDE).with_suffix("")
+    work.mkdir(parents=True, exist_ok=True)
+    code = f"exec(compile(open(0).read(), {str(page)!r}, 'exec'), {{'__name__': '__main__'}})"
+    return subprocess.run([sys.executable, "-c", code], input=source, text=True, cwd=work, env=environment).returncode
+
+
+def run_sh(page: Path, library: Path, environment: dict[str, str]) -> int:
+    """Runs a page's shell blocks as one script."""
+    script = "\n".join(text for _, language, text in blocks(page) if language == "sh" and parts(text) is None)
+    if not script:
+        return 0
+    with tempfile.TemporaryDirectory() as scratch:
+        tree, home = Path(scratch) / "luxfer", Path(scratch) / "home"
+        tree.mkdir()
+        home.mkdir()
+        for item in ROOT.iterdir():
+            if item.name not in ("target", "out", "build", ".git"):
+                (tree / item.name).symlink_to(item)
+        (tree / "target").mkdir()
+        (tree / "target" / "release").symlink_to(library.parent)
+        return subprocess.run(
+            ["sh", "-eu"], input=script, text=True, cwd=tree, env={**environment, "HOME": str(home)}
+        ).returncode
+
+
+def run(folder: Path, library: Path, languages: list[str]) -> list[str]:
+    environment = {**os.environ, "LUXFER_LIBRARY": str(library), "PYTHONPATH": str(ROOT / "bindings" / "python")}
+    problems = []
+    for page in pages():
+        for language in languages:
+            began = time.monotonic()
+            runner = run_python(page, folder, environment) if language == "python" else run_sh(page, library, environment)
+            took = time.monotonic() - began
+            if runner != 0:
+                problems.append(f"{page.relative_to(ROOT)}: its blocks of {language} fail")
+            if took > 0.5:
+                print(f"{took:6.1f} s  {page.relative_to(GUIDE)}, {language}", flush=True)
+    return problems
+
+
+def main(arguments: list[str]) -> int:
+    if arguments == ["check"]:
+        problems = check()
+    elif len(arguments) >= 3 and arguments[0] == "run" and set(arguments[3:]) <= set(RUN):
+        problems = run(Path(arguments[1]).resolve(), Path(arguments[2]).resolve(), arguments[3:] or list(RUN))
+    else:
+        print(__doc__, file=sys.stderr)
+        return 2
+    for problem in problems:
+        print(problem, file=sys.stderr)
+    return 1 if problems else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,123 @@
+"""What mkdocs.yml asks for beyond Markdown: pictures made by programs, the reference, and values that are never typed.
+
+On a page `{{ settings luxfer_x_params }}` and `{{ fields luxfer_x_report }}` are the fields of a struct with their comments,
+`{{ limits stage }}` is what the source of a stage says it leaves out, `{{ figure name }}` is a figure of `make bench`,
+`{{ figures prefix ... }}` a table of them, and `{{ plot name }}` a plot that it has drawn. Names of the C interface in code
+spans become links; one that does not exist is an error.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import sys
+from fnmatch import fnmatch
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+
+import reference  # noqa: E402
+from mkdocs.exceptions import PluginError  # noqa: E402
+from mkdocs.structure.files import File  # noqa: E402
+
+ROOT = reference.ROOT
+BENCH = ROOT / "out" / "bench"
+#: What docs/blocks.py and the C examples have drawn.
+PICTURES = Path(os.environ.get("LUXFER_DOCS_PICTURES", ROOT / "target" / "docs"))
+
+header = reference.Header()
+python = reference.python_pages()
+
+
+def on_config(config):
+    c = [{title: f"reference/c/{reference.slug(title)}.md"} for title in header.sections]
+    config.nav += [{"C reference": c}, {"Python reference": [{title: path} for path, (title, _) in python.items()]}]
+    return config
+
+
+def on_files(files, config):
+    for title in header.sections:
+        path = f"reference/c/{reference.slug(title)}.md"
+        files.append(File.generated(config, path, content=header.page(title)))
+    for path, (_, text) in python.items():
+        files.append(File.generated(config, path, content=text))
+    for picture in sorted(PICTURES.rglob("*.png")):
+        files.append(File.generated(config, str(picture.relative_to(PICTURES)), abs_src_path=str(picture)))
+    for plot in sorted(BENCH.glob("*.svg")):
+        files.append(File.generated(config, f"plots/{plot.name}", abs_src_path=str(plot)))
+    return files
+
+
+def on_page_markdown(markdown, page, config, files):
+    path = page.file.src_uri
+    if path.startswith("reference/"):
+        return markdown
+    parts = re.split(r"(^```.*?^```$)", markdown, flags=re.S | re.M)  # every other part is a block of code
+    parts[::2] = [written(part, path, files) for part in parts[::2]]
+    return "".join(parts)
+
+
+def written(text: str, path: str, files) -> str:
+    """Prose with what it asks for in place."""
+    text = re.sub(r"\{\{ (\w+) (.*?) \}\}", lambda m: value(m[1], m[2].split(), path, files), text)
+
+    def link(match: re.Match) -> str:
+        name = match[1]
+        if name not in header.pages and not any(known.startswith(name) for known in header.pages):
+            raise PluginError(f"{path}: luxfer.h has no {name}")
+        return header.link(name, path)
+
+    return re.sub(r"(?<!\[)`((?:luxfer|LUXFER)_\w+)`", link, text)
+
+
+def value(kind: str, words: list[str], path: str, files) -> str:
+    if kind in ("settings", "fields"):
+        if words[0] not in header.fields:
+            raise PluginError(f"{path}: luxfer.h has no struct {words[0]}")
+        return header.table(words[0], path, ("struct_size", "reserved"))
+    if kind == "limits":
+        return limits(words[0], path)
+    if kind == "figure":
+        number, unit = found(words, path)[0][1:]
+        return f"{number} {unit}"
+    if kind == "figures":
+        rows = "".join(f"| `{name}` | {number} | {unit} |\n" for name, number, unit in found(words, path))
+        return f"| figure | value | unit |\n|---|---|---|\n{rows}"
+    if kind == "plot":
+        name, bench = words
+        if files.get_file_from_path(f"plots/{name}.svg") is None:
+            return f"*(`make bench ONLY={bench}` draws the plot that belongs here.)*"
+        return f"![{name}]({reference.relative(f'plots/{name}.svg', path)})"
+    raise PluginError(f"{path}: what is {{{{ {kind} }}}}?")
+
+
+def limits(stage: str, path: str) -> str:
+    """The paragraphs of a stage's overview that begin with "Not modelled" or "Known weaknesses"."""
+    lines = re.findall(r"^//! ?(.*)$", (ROOT / "src" / stage / "mod.rs").read_text(), re.M)
+    text = " ".join(re.sub(r"\[(`[^`]+`)\](?:\(\w+\))?", r"\1", line) or "\n" for line in lines)
+    out = re.findall(r"(?:Known weaknesses|Not modelled)[^\n]*", text)
+    if not out:
+        raise PluginError(f"{path}: src/{stage}/mod.rs does not say what it leaves out")
+    return "\n\n".join(part.strip() for part in out)
+
+
+def figures() -> dict[str, tuple[str, str]]:
+    """What README.md has from `make bench`, or this machine has printed since."""
+    rows = re.findall(r"^\| `([^`]+)` \| (\S+) \| (.+) \|$", (ROOT / "README.md").read_text(), re.M)
+    out = {name: (number, unit) for name, number, unit in rows}
+    if (BENCH / "figures.txt").exists():
+        for line in (BENCH / "figures.txt").read_text().splitlines():
+            if match := re.fullmatch(r"figure (\S+) (\S+) (.+)", line):
+                out[match[1]] = match[2], match[3]
+    return out
+
+
+def found(patterns: list[str], path: str) -> list[tuple[str, str, str]]:
+    known = figures()
+    out = []
+    for pattern in patterns:
+        names = [name for name in sorted(known) if fnmatch(name, pattern)]
+        if not names:
+            raise PluginError(f"{path}: `make bench` prints no figure {pattern}")
+        out += [(name, *known[name]) for name in names]
+    return out

@@ -1,0 +1,219 @@
+"""The reference part of the guide: from include/luxfer.h, and from the docstrings of the Python package.
+
+What has no description is an error, so the reference is complete whenever it can be built.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "bindings" / "python"))
+
+import generate  # noqa: E402  what reads the header for the Python package
+
+HEADER = ROOT / "include" / "luxfer.h"
+PACKAGE = ROOT / "bindings" / "python" / "luxfer"
+#: A bar in a table's cell; in code an entity would be shown as it is.
+BAR = "\\|"
+KINDS = ("constant", "integer", "callback", "opaque", "struct", "function")
+
+
+class Undocumented(Exception):
+    """Something public has no description."""
+
+
+def slug(title: str) -> str:
+    return re.sub(r"\W+", "-", title.lower()).strip("-")
+
+
+# ------------------------------------------------------------------------------------------------------------ the C header
+
+
+class Header:
+    """Sections of the header with their items, and where each item is described."""
+
+    def __init__(self) -> None:
+        self.sections: dict[str, dict] = {}
+        self.pages: dict[str, str] = {}  # item: page
+        self.fields: dict[str, list[generate.Field]] = {}
+        missing, section = [], {}
+        for match in generate.ITEM.finditer(HEADER.read_text()):
+            item = match.groupdict()
+            if item["section"]:
+                prose = "\n".join(re.sub(r"^ \* ?", "", line) for line in match[0].split("\n")[1:-1])
+                section = self.sections.setdefault(item["section"], {"prose": prose.partition("\n\n")[2], "items": []})
+                page = f"reference/c/{slug(item['section'])}.md"
+                continue
+            kind = next(k for k in KINDS if item[k])
+            name, doc = item[kind], generate.uncomment(item["doc"] or "")
+            code = re.sub(r"^\s*/\*\*(?:(?!\*/).)*\*/\s*", "", match[0], flags=re.S).strip()
+            section["items"].append((kind, name, doc, code))
+            self.pages[name] = page
+            # The three parts of the version share one comment.
+            if not doc and not name.startswith("LUXFER_VERSION_"):
+                missing.append(name)
+            if kind == "struct":
+                self.fields[name] = generate.members(item["body"])
+                missing += [f"{name}.{f.name}" for f in self.fields[name] if not f.doc]
+        if missing:
+            raise Undocumented("include/luxfer.h does not describe " + ", ".join(missing))
+
+    # -- prose
+
+    def link(self, name: str, page: str) -> str:
+        """A name as code, and as a link to where it is described if that is anywhere."""
+        known = self.pages.get(name)
+        return f"[`{name}`]({relative(known, page)}#{name})" if known else f"`{name}`"
+
+    def prose(self, text: str, page: str) -> str:
+        """A comment as Markdown: names become links, code becomes code, errors a paragraph of their own."""
+        text = re.sub(r"(?<=\.)\n(?=LUXFER_|As luxfer_)", "\n\n", text)
+        token = re.compile(r'\b(?:luxfer|LUXFER)_\w+|"[^"\n]*[<>*\[\]|^][^"\n]*"|(?<![\w*])\*\w+|[<>*|]')
+
+        def mark(match: re.Match) -> str:
+            found = match[0]
+            if found.startswith(("luxfer_", "LUXFER_")):
+                return self.link(found, page)
+            if len(found) == 1:
+                return {"<": "&lt;", ">": "&gt;"}.get(found, "\\" + found)
+            return f"`{found}`"
+
+        return token.sub(mark, text)
+
+    def table(self, struct: str, page: str, skip: tuple[str, ...] = ()) -> str:
+        """The fields of a struct."""
+        rows = ["| field | type | |", "|---|---|---|"]
+        for f in self.fields[struct]:
+            if f.name not in skip:
+                kind = f.type + " " + "*" * f.stars if f.stars else f.type
+                kind += "".join(f"[{n}]" for n in f.dims)
+                rows.append(f"| `{f.name}` | `{kind.strip()}` | {self.prose(' '.join(f.doc.split()), page)} |")
+        return "\n".join(rows) + "\n"
+
+    # -- pages
+
+    def page(self, title: str) -> str:
+        section, path = self.sections[title], f"reference/c/{slug(title)}.md"
+        out = [f"# {title}\n", self.outline(section["prose"], path)]
+        constants: list[tuple[str, str, str]] = []
+
+        def flush() -> None:
+            if constants:
+                out.append("| constant | value | |\n|---|---|---|")
+                for name, value, doc in constants:
+                    text = self.prose(" ".join(doc.split()), path)
+                    out.append(f'| <span id="{name}"></span>`{name}` | `{value}` | {text} |')
+                out.append("")
+                constants.clear()
+
+        for kind, name, doc, code in section["items"]:
+            if kind == "constant":
+                constants.append((name, code.split(None, 2)[2], doc))
+                continue
+            flush()
+            out.append(f"## {name} {{ #{name} }}\n")
+            if kind in ("callback", "function"):
+                out.append(f"```c\n{code}\n```\n")
+            out.append(self.prose(doc, path) + "\n")
+            if kind == "struct":
+                out.append(self.table(name, path))
+        flush()
+        return "\n".join(out)
+
+    def outline(self, text: str, page: str) -> str:
+        """The introduction of a section; lines set in by four are code."""
+        parts = []
+        for part in text.split("\n\n"):
+            parts.append(f"```c\n{part}\n```" if part.startswith("    ") else self.prose(part, page))
+        return "\n\n".join(parts) + "\n"
+
+
+def relative(target: str, page: str) -> str:
+    """The path from one page to another."""
+    up = page.count("/")
+    return "../" * up + target
+
+
+# --------------------------------------------------------------------------------------------------------- the Python package
+
+
+def python_pages() -> dict[str, tuple[str, str]]:
+    """Title and text of each page, by path."""
+    exported = ast.parse((PACKAGE / "__init__.py").read_text())
+    names = next(
+        {c.value for c in ast.walk(node.value) if isinstance(c, ast.Constant)}
+        for node in exported.body
+        if isinstance(node, ast.Assign) and getattr(node.targets[0], "id", "") == "__all__"
+    )
+    out = {"reference/python/index.md": ("Overview", f"# The Python package\n\n{ast.get_docstring(exported)}\n")}
+    described = {"abi", "library"}  # the C interface, described as such
+    for path in sorted(PACKAGE.glob("[a-z]*.py")):
+        tree = ast.parse(path.read_text())
+        listed = path.stem in ("types", "errors")
+        items = [
+            node
+            for node in tree.body
+            if isinstance(node, (ast.ClassDef, ast.FunctionDef))
+            and not node.name.startswith("_")
+            and (listed or node.name in names or node.name in ("Level",))
+        ]
+        if not items:
+            continue
+        described |= {node.name for node in items} | {path.stem}
+        text = [f"# luxfer.{path.stem}\n", docstring(tree, path.stem), ""]
+        for node in items:
+            text.append(klass(node) if isinstance(node, ast.ClassDef) else function(node, "##", ""))
+        out[f"reference/python/{path.stem}.md"] = (path.stem, "\n".join(text))
+    if missing := names - described:
+        raise Undocumented(f"luxfer.__all__ has what no page describes: {missing}")
+    return out
+
+
+def docstring(node: ast.AST, name: str) -> str:
+    """A docstring as Markdown, its examples as code."""
+    text = ast.get_docstring(node)
+    if not text:
+        raise Undocumented(f"{name} of the Python package has no docstring")
+    parts = []
+    for part in text.split("\n\n"):
+        parts.append(f"```pycon\n{part}\n```" if part.startswith(">>>") else escape(part))
+    return "\n\n".join(parts) + "\n"
+
+
+def escape(text: str) -> str:
+    return re.sub(r"([*<>|])", r"\\\1", text)
+
+
+def klass(node: ast.ClassDef) -> str:
+    out = [f"## {node.name}\n", docstring(node, node.name)]
+    rows = []
+    for item, following in zip(node.body, [*node.body[1:], ast.Pass()]):
+        doc = following.value.value if isinstance(following, ast.Expr) and isinstance(following.value, ast.Constant) else ""
+        if isinstance(item, ast.AnnAssign) and not item.target.id.startswith("_"):
+            rows.append((item.target.id, ast.unparse(item.annotation), doc))
+        elif isinstance(item, ast.Assign) and doc:
+            rows.append((item.targets[0].id, ast.unparse(item.value), doc))
+    if rows:
+        out.append("| | | |\n|---|---|---|")
+        out += [f"| `{name}` | `{kind.replace('|', BAR)}` | {escape(' '.join(doc.split()))} |" for name, kind, doc in rows]
+        out[-1] += "\n"
+    for item in node.body:
+        if isinstance(item, ast.FunctionDef) and (item.name == "__init__" or not item.name.startswith("_")):
+            out.append(function(item, "###", node.name))
+    return "\n".join(out)
+
+
+def function(node: ast.FunctionDef, level: str, owner: str) -> str:
+    decorators = [ast.unparse(d) for d in node.decorator_list]
+    arguments = ast.unparse(node.args).removeprefix("self, ").removeprefix("cls, ")
+    arguments = "" if arguments in ("self", "cls") else arguments
+    path = f"{owner}.{node.name}" if owner else node.name
+    if node.name == "__init__":
+        return f"```python\n{owner}({arguments})\n```\n"
+    result = f" -> {ast.unparse(node.returns)}" if node.returns else ""
+    shown = f"{path}{result.replace(' ->', ':')}" if "property" in decorators else f"{path}({arguments}){result}"
+    return f"{level} {path} {{ #{path} }}\n\n```python\n{shown}\n```\n\n{docstring(node, path)}"
