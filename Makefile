@@ -2,6 +2,7 @@
 # make test   sets up what is missing (Debian packages, Mitsuba and numpy from PyPI) and runs every test
 # make bench  runs the benches and prints the headline figures; make bench ONLY=rays runs one; plots go to out/bench/
 # make blender  builds the Blender extension, with the library inside, into out/blender/
+# make docs   builds the guide, with its pictures and the reference, into out/docs/
 # make clean  removes what was built
 #
 # make install PREFIX=/usr/local DESTDIR=, make uninstall, make dist and more: bindings/install.mk
@@ -18,8 +19,9 @@ PACKAGES := cmake g++ binutils libopencv-dev libembree-dev python3-venv pkg-conf
 
 BENCHES  := $(patsubst benches/%.rs,%,$(wildcard benches/*.rs))
 ONLY     ?= $(BENCHES)
+GUIDE    := $(filter-out lighting_transfer stylize,$(patsubst examples_c/%.c,%,$(wildcard examples_c/*.c)))
 
-.PHONY: all lib demo test bench blender peers setup clean
+.PHONY: all lib demo test bench blender docs peers setup clean
 
 all: lib $(PROFILE)/THIRD-PARTY.txt
 
@@ -48,7 +50,7 @@ setup:
 	  $$root apt-get update -qq </dev/null && \
 	  $$root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $$missing </dev/null; \
 	fi
-	@benches/peers/install.sh mitsuba python
+	@benches/peers/install.sh mitsuba python docs
 
 test: setup lib
 	$(CARGO) test
@@ -67,6 +69,16 @@ bench: peers
 blender: lib
 	@benches/peers/install.sh python
 	@target/peers/python/bin/python bindings/blender/build.py out/blender
+
+# The pictures are drawn by the guide's own blocks of code and by the examples that it shows.
+docs: lib $(addprefix out/,$(GUIDE))
+	@benches/peers/install.sh docs
+	@rm -rf target/docs
+	@for name in $(GUIDE); do mkdir -p target/docs/examples/$$name && (cd target/docs/examples/$$name && ../../../../out/$$name >/dev/null) || exit 1; done
+	@target/peers/docs/bin/python docs/blocks.py check
+	@target/peers/docs/bin/python docs/blocks.py run target/docs/pictures $(LIB) python
+	@NO_MKDOCS_2_WARNING=1 target/peers/docs/bin/mkdocs build --quiet --strict
+	@echo "look at out/docs/index.html"
 
 peers:
 	@benches/peers/install.sh

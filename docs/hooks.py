@@ -22,8 +22,15 @@ from mkdocs.structure.files import File  # noqa: E402
 
 ROOT = reference.ROOT
 BENCH = ROOT / "out" / "bench"
-#: What docs/blocks.py and the C examples have drawn.
-PICTURES = Path(os.environ.get("LUXFER_DOCS_PICTURES", ROOT / "target" / "docs"))
+#: Where docs/blocks.py has run the guide's own blocks, and the C examples have run, each in a folder of its name.
+PICTURES = Path(os.environ.get("LUXFER_DOCS_PICTURES", ROOT / "target" / "docs" / "pictures"))
+EXAMPLES = Path(os.environ.get("LUXFER_DOCS_EXAMPLES", ROOT / "target" / "docs" / "examples"))
+
+#: Names like those of the interface that are options of a build or of a binding.
+OPTIONS = re.findall(
+    r"\bLUXFER_\w+",
+    "".join((ROOT / f).read_text() for f in ("CMakeLists.txt", "bindings/cpp/luxfer/result.hpp", "bindings/python/luxfer/_library.py")),
+)
 
 header = reference.Header()
 python = reference.python_pages()
@@ -43,6 +50,8 @@ def on_files(files, config):
         files.append(File.generated(config, path, content=text))
     for picture in sorted(PICTURES.rglob("*.png")):
         files.append(File.generated(config, str(picture.relative_to(PICTURES)), abs_src_path=str(picture)))
+    for picture in sorted(EXAMPLES.glob("*/*.png")):
+        files.append(File.generated(config, f"pictures/{picture.name}", abs_src_path=str(picture)))
     for plot in sorted(BENCH.glob("*.svg")):
         files.append(File.generated(config, f"plots/{plot.name}", abs_src_path=str(plot)))
     return files
@@ -63,7 +72,8 @@ def written(text: str, path: str, files) -> str:
 
     def link(match: re.Match) -> str:
         name = match[1]
-        if name not in header.pages and not any(known.startswith(name) for known in header.pages):
+        known = name in header.pages or name in OPTIONS or "_X_" in name
+        if not known and not any(other.startswith(name) for other in header.pages):
             raise PluginError(f"{path}: luxfer.h has no {name}")
         return header.link(name, path)
 

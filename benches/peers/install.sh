@@ -17,6 +17,8 @@ install() { # name, packages...
 
 # For the tests of the Python package.
 install python numpy 'setuptools>=70.1'
+# For the guide.
+install docs -r docs/requirements.txt
 install mitsuba mitsuba numpy
 # Cycles; its wheels fit one version of Python each.
 install bpy 'bpy==5.0.*' 'numpy<2'
