@@ -1881,7 +1881,7 @@ luxfer_status luxfer_render_release(luxfer_render *render);
 #define LUXFER_AOV_LUMINANCE 512
 
 /**
- * How emissive surfaces and the environment answer to the lights of camera-first expressions: a LUXFER_EMITTER_ value.
+ * How emissive surfaces and the environment answer to the lights of camera-first expressions: a LUXFER_EMITTER_AS_ value.
  */
 typedef int32_t luxfer_emitter_as;
 

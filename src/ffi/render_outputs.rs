@@ -47,7 +47,7 @@ pub const LUXFER_AOV_ALPHA: u32 = 256;
 /// Luminance of the main image, in cd/m². Layer Luminance, channel Y.
 pub const LUXFER_AOV_LUMINANCE: u32 = 512;
 
-/// How emissive surfaces and the environment answer to the lights of camera-first expressions: a LUXFER_EMITTER_ value.
+/// How emissive surfaces and the environment answer to the lights of camera-first expressions: a LUXFER_EMITTER_AS_ value.
 pub type luxfer_emitter_as = i32;
 /// Surfaces are both L and O, the environment is both L and B: C<RD>L is all direct light. The default.
 pub const LUXFER_EMITTER_AS_BOTH: luxfer_emitter_as = 0;

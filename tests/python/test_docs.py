@@ -1,5 +1,6 @@
 """The documentation is true and complete: every example runs, everything public is described and annotated."""
 
+import ast
 import doctest
 import importlib
 import inspect
@@ -41,6 +42,24 @@ class Documentation(Case):
         finally:
             os.chdir(before)
         self.assertEqual({p.name for p in self.folder.iterdir()}, {"lit.png", "lit.glb", "layers.exr"})
+
+    def test_names_of_enumerations_are_right(self):
+        """Where a parameter is an enumeration its docstring names members by what they are called, and images all of them."""
+        tested = 0
+        for path in (PACKAGE / "luxfer").glob("[a-z]*.py"):
+            for node in ast.walk(ast.parse(path.read_text())):
+                doc = ast.get_docstring(node) if isinstance(node, ast.FunctionDef) else None
+                for name in set(re.findall(r"\bmember\((\w+),", ast.unparse(node))) if doc else ():
+                    if not (kind := getattr(luxfer.types, name, None)):
+                        continue
+                    names = {member.name.lower().replace("_", "-") for member in kind}
+                    told = {word for text in re.findall(r'"([^"\n]+)"', doc.partition(">>>")[0]) for word in text.split("|")}
+                    told = {word for word in told if re.fullmatch("[a-z-]+", word)}
+                    self.assertLessEqual(told, names, f"{path.stem}.{node.name}")
+                    if node.name == "image":
+                        self.assertEqual(told, names, f"{path.stem}.{node.name}")
+                    tested += bool(told)
+        self.assertGreater(tested, 20)
 
     def test_everything_is_described_and_annotated(self):
         missing = []

@@ -85,7 +85,7 @@ class Render(StageBase):
         return self.start(**params).wait(progress)
 
     def image(self, which: RenderImage | str = RenderImage.BEAUTY) -> Image:
-        """ "beauty", "variance", "paths" or "interval", as far as it is."""
+        """ "beauty", "variance", "paths", "interval" or, if asked for, "preview", as far as it is."""
         return self._get_image("get_image", _params.member(RenderImage, which))
 
     @property

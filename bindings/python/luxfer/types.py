@@ -244,11 +244,11 @@ class RenderImage(IntEnum):
 class EmitterAs(IntEnum):
     """How emissive surfaces and the environment answer to the lights of camera-first expressions."""
 
-    AS_BOTH = 0
+    BOTH = 0
     """Surfaces are both L and O, the environment is both L and B: C<RD>L is all direct light. The default."""
-    AS_LIGHT = 1
+    LIGHT = 1
     """Every light is L only."""
-    AS_OBJECT = 2
+    OBJECT = 2
     """As in Open Shading Language: surfaces are O, the environment is B."""
 
 
