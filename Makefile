@@ -1,5 +1,5 @@
 # make demo   builds the library and two C programs, and runs a lighting transfer and a stylisation, into out/
-# make test   sets up what is missing (Debian packages, Mitsuba and numpy from PyPI) and runs every test
+# make test   sets up what is missing (Debian packages; Mitsuba, numpy and mkdocs from PyPI) and runs every test
 # make bench  runs the benches and prints the headline figures; make bench ONLY=rays runs one; plots go to out/bench/
 # make blender  builds the Blender extension, with the library inside, into out/blender/
 # make docs   builds the guide, with its pictures and the reference, into out/docs/
