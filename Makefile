@@ -77,7 +77,7 @@ docs: lib $(addprefix out/,$(GUIDE))
 	@for name in $(GUIDE); do mkdir -p target/docs/examples/$$name && (cd target/docs/examples/$$name && ../../../../out/$$name >/dev/null) || exit 1; done
 	@target/peers/docs/bin/python docs/blocks.py check
 	@target/peers/docs/bin/python docs/blocks.py run target/docs/pictures $(LIB) python
-	@NO_MKDOCS_2_WARNING=1 target/peers/docs/bin/mkdocs build --quiet --strict
+	@NO_MKDOCS_2_WARNING=1 target/peers/docs/bin/mkdocs build --strict
 	@echo "look at out/docs/index.html"
 
 peers:
