@@ -91,7 +91,7 @@ pub fn from_segments(
     if order.is_empty() {
         return Err(Error::degenerate(format!(
             "no lines found that meet in a vanishing point ({} usable segments): use a photo with straight edges of the \
-             room in focus, or set the room axes by hand",
+             room in focus",
             evidence.len()
         )));
     }
