@@ -78,7 +78,7 @@ docs: lib $(addprefix out/,$(GUIDE))
 	@target/peers/docs/bin/python docs/blocks.py check
 	@target/peers/docs/bin/python docs/blocks.py run target/docs/pictures $(LIB) python
 	@NO_MKDOCS_2_WARNING=1 target/peers/docs/bin/mkdocs build --strict
-	@echo "look at out/docs/index.html"
+	@echo "look at out/docs/index.html (its search needs a server, such as python3 -m http.server --directory out/docs)"
 
 peers:
 	@benches/peers/install.sh
