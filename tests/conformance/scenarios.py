@@ -1,0 +1,319 @@
+"""Short programs that use the library as it is meant to be used; between them they call every function of the header."""
+
+from __future__ import annotations
+
+from script import FUNCTIONS, KINDS, Argument, Call, Script, array, plain, struct, view
+
+ROOM = ["room", 0x5A]
+
+
+class Scenario(Script):
+    """A program that begins with a context."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.context = self.make("context_create", struct("context_params", num_threads=2))
+
+    def image(self, width: int = 12, height: int = 8, channels: int = 3, fill: float = 0.5) -> Argument:
+        return self.make("image_create", self.context, view(width, height, channels, fill))
+
+    def room(self) -> Argument:
+        """A floor and a ceiling that emits, seen by a camera."""
+        scene = self.make("scene_create", self.context)
+        self.call("scene_add_material", scene, struct("material_params", name="Paint", base_color=array("float", 0.5, 0.4, 0.3)), ROOM)
+        self.call("scene_add_material", scene, struct("material_params", name="Lamp", emission=array("float", 50, 40, 30)), None)
+        for material, name, y, order in ((0, "Floor", 0.0, (0, 2, 1, 0, 3, 2)), (1, "Ceiling", 2.0, (0, 1, 2, 0, 2, 3))):
+            corners = [c for x, z in ((-1, -1), (1, -1), (1, 1), (-1, 1)) for c in (x, y, z)]
+            mesh = struct(
+                "mesh_params", material=material, name=name, vertex_count=4, positions=array("float", *corners),
+                uvs=array("float", 0, 0, 1, 0, 1, 1, 0, 1), triangle_count=2, indices=array("uint32_t", *order),
+            )  # fmt: skip
+            self.call("scene_add_mesh", scene, mesh, ROOM)
+        self.call("scene_add_camera", scene, camera(), ROOM)
+        return scene
+
+    def photograph(self) -> tuple[Argument, Argument]:
+        """A photo of the generated office, and strokes on it."""
+        stage = self.make("demo_photo_create", self.context)
+        self.references("demo_photo", stage)
+        self.run("demo_photo_start", stage, struct("demo_photo_params", width=180, height=120, samples=2))
+        return self.make("demo_photo_get_image", stage, 0), self.make("demo_photo_get_image", stage, 1)
+
+    def references(self, kind: str, thing: Argument) -> None:
+        self.call(f"{kind}_retain", thing)
+        self.call(f"{kind}_release", thing)
+
+
+def camera() -> Argument:
+    return struct("camera_params", position=array("float", 0, 1, 4), target=array("float", 0, 1, 0))
+
+
+def library() -> Scenario:
+    s = Scenario()
+    s.call("version")
+    s.call("version_string")
+    s.call("status_name", 3)
+    s.call("context_last_error", s.context, ROOM, 100, ROOM)
+    for function in FUNCTIONS:
+        name = function.removeprefix("luxfer_").removesuffix("_init")
+        if function.endswith("_init"):
+            s.call(f"{name}_init", struct(name, "raw"), 200)
+    s.references("context", s.context)
+    return s
+
+
+def images() -> Scenario:
+    s = Scenario()
+    image = s.image()
+    s.references("image", image)
+    s.call("image_size", image, ROOM, ROOM, ROOM)
+    s.call("image_read", image, 0, view(12, 8))
+    s.call("image_save", image, "a.png", 1.0)
+    s.call("image_save", image, "a.exr", 1.0)
+    s.make("image_load", s.context, "a.png", 1)
+    s.make("image_load", s.context, "a.exr", 0)
+    s.make("image_load_memory", s.context, b"\x89PNG\r\n\x1a\n" + bytes(32), 40, 1)
+    s.call("homography_from_corners", s.context, array("double", 0, 0, 1, 0, 1, 1, 0, 1), array("double", 0, 0, 9, 1, 8, 7, 1, 6), ROOM)
+    s.make("image_warp", image, array("double", 1, 0, 0, 0, 1, 0, 0, 0, 1), 7, 5)
+    return s
+
+
+def scenes() -> Scenario:
+    s = Scenario()
+    scene, image = s.room(), s.image()
+    s.references("scene", scene)
+    s.call("scene_export", scene, "a.glb")
+    s.make("scene_load", s.context, "a.glb")
+    s.make("scene_load_memory", s.context, b'{"asset":{"version":"2.0"}}', 27, None)
+    s.call("scene_export_memory", scene, ["callback", "write"], None)
+    s.call("scene_get_counts", scene, struct("scene_counts", "size"))
+    s.call("scene_set_environment", scene, 0.1, 0.2, 0.3)
+    s.call("scene_set_environment_image", scene, image, 1.0, 1.0, 1.0)
+    s.call("scene_set_emission", scene, 0, 1.0, 2.0, 3.0)
+    s.call("scene_find_surface", scene, "Ceiling", struct("surface", "size"))
+    s.call("scene_set_material", scene, 0, struct("material_params", roughness=0.5))
+    s.call("scene_get_material", scene, 0, struct("material_params", "size"))
+    s.call("scene_add_texture", scene, image, 0, 1, ROOM)
+    s.call("scene_set_material_texture", scene, 0, 0, 0, 0, array("float", 1, 0, 0, 0, 1, 0))
+    s.call("scene_get_material_texture", scene, 0, 0, struct("texture_use", "size"))
+    s.make("scene_get_texture", scene, 0)
+    s.call("scene_set_camera", scene, 0, camera())
+    s.call("scene_get_camera", scene, 0, struct("camera_params", "size"))
+    s.call("scene_add_light", scene, struct("light_params", position=array("float", 0, 1, 0)), ROOM)
+    rays = array("float", 0, 1, 0, 0, -1, 0, 9, 0, 1, 0, 0, 0, 0, 9)
+    s.call("scene_intersect", scene, rays, 2, ROOM)
+    s.call("scene_requirements", scene, 0.01, struct("requirements", "size"))
+    s.call("scene_requirements_text", scene, ROOM, 300, ROOM)
+    s.call("scene_get_mesh", scene, 0, struct("mesh_info", "size"))
+    s.call("scene_get_mesh_name", scene, 0, ROOM, 20, ROOM)
+    s.call("scene_read_mesh", scene, 0, 4, ROOM, None, 2, ROOM)
+    s.call("scene_read_mesh_uvs", scene, 0, 0, 4, ROOM)
+    s.call("scene_place_emission", scene, "Ceiling", image, 9.0, 9.0, 9.0, ROOM, ROOM)
+    s.make("demo_scene", s.context, 2)
+    return s
+
+
+def jobs() -> Scenario:
+    s = Scenario()
+    render = s.make("render_create", s.context)
+    s.call("render_set_scene", render, s.room())
+    for progress in ("go", "cancel", "later", "again"):
+        job = s.make("render_start", render, struct("render_params", width=64, height=48, samples=4 if progress == "go" else 100_000))
+        s.call("job_poll", job, ROOM, ROOM)
+        s.call("job_status", job)
+        s.call("job_wait", job, 5000 if progress == "go" else 30, ["callback", progress], None)
+        s.references("job", job)
+        s.call("job_cancel", job)
+        s.finish(job)
+    return s
+
+
+def photo() -> Scenario:
+    """Perspective, features and segmentation."""
+    s = Scenario()
+    photo, strokes = s.photograph()
+    even = s.image(180, 120, 1, 1.0)
+    rectify = s.make("rectify_create", s.context)
+    s.references("rectify", rectify)
+    s.call("rectify_set_photo", rectify, photo)
+    s.call("rectify_set_mask", rectify, even)
+    s.run("rectify_start", rectify, struct("rectify_params"))
+    s.make("rectify_get_image", rectify, 0)
+    s.make("rectify_warp", rectify, photo)
+    s.call("rectify_get_report", rectify, struct("rectify_report", "size"))
+    features = s.make("features_create", s.context)
+    s.references("features", features)
+    s.call("features_set_photo", features, photo)
+    s.call("features_set_depth", features, even, 0)
+    s.call("features_set_view", features, rectify)
+    s.run("features_start", features, struct("features_params"))
+    channels = s.make("features_get_image", features, 0)
+    s.call("features_get_report", features, struct("features_report", "size"))
+    segment = s.make("segment_create", s.context)
+    s.references("segment", segment)
+    s.call("segment_set_features", segment, channels)
+    s.call("segment_set_within", segment, even)
+    s.call("segment_clear_strokes", segment)
+    s.call("segment_add_strokes_image", segment, strokes, 0)
+    s.call("segment_add_strokes_text", segment, "plane 2 5 5 9 9\n", 0)
+    s.call("segment_add_stroke", segment, array("float", 2, 2, 9, 20), 2, 2.0, 1)
+    s.call("segment_add_stroke", segment, array("float", 40, 2, 42, 20), 2, 2.0, 0)
+    s.run("segment_start", segment, struct("segment_params"))
+    s.make("segment_get_image", segment, 0)
+    s.call("segment_get_report", segment, struct("segment_report", "size"))
+    return s
+
+
+def emission() -> Scenario:
+    s = Scenario()
+    unwarped, light, valid = s.image(40, 30), s.image(40, 30, 1, 1.0), s.image(40, 30, 1, 1.0)
+    stage = s.make("emission_create", s.context)
+    s.references("emission", stage)
+    s.call("emission_set_exemplar", stage, unwarped, light, valid)
+    s.call("emission_set_photo", stage, unwarped, array("double", 1, 0, 0, 0, 1, 0, 0, 0, 1))
+    s.run("emission_start", stage, struct("emission_params", width=48, height=40))
+    s.make("emission_get_image", stage, 0)
+    s.call("emission_get_report", stage, struct("emission_report", "size"))
+    s.call("emission_get_luminaire", stage, 0, struct("luminaire", "size"))
+    s.call("emission_get_corner", stage, 0, 0, ROOM, ROOM)
+    return s
+
+
+def rendering() -> Scenario:
+    s = Scenario()
+    scene, stage = s.room(), s.make("render_create", s.context)
+    s.references("render", stage)
+    s.call("render_set_scene", stage, scene)
+    s.call("render_set_camera", stage, camera())
+    s.call("render_set_camera_index", stage, 0)
+    s.call("render_clear_expressions", stage)
+    s.call("render_add_expression", stage, "direct", "LDE")
+    s.call("render_add_expression", stage, "all", "C.*<L.>")
+    s.call("render_set_emitter_as", stage, 0)
+    s.call("render_set_aovs", stage, 0x7F)
+    s.run("render_start", stage, struct("render_params", width=16, height=12, samples=8, preview=1.0))
+    s.make("render_get_image", stage, 0)
+    s.call("render_get_report", stage, struct("render_report", "size"))
+    s.call("render_get_layer_count", stage, ROOM)
+    s.call("render_get_layer_name", stage, 0, ROOM, 50, ROOM)
+    s.call("render_find_layer", stage, "direct", ROOM)
+    s.make("render_get_layer", stage, 0)
+    s.call("render_write_exr", stage, "layers.exr")
+    return s
+
+
+def light() -> Scenario:
+    """Lux on grids and meshes, and the emission that meets a target."""
+    s = Scenario()
+    scene, stage = s.room(), s.make("illuminance_create", s.context)
+    s.references("illuminance", stage)
+    s.call("illuminance_set_scene", stage, scene)
+    grid = struct("illuminance_grid", origin=array("float", -1, 1, -1), across=array("float", 2, 0, 0), down=array("float", 0, 0, 2))
+    small = struct("illuminance_params", columns=5, rows=4, samples=16)
+    s.run("illuminance_start_grid", stage, grid, small)
+    s.run("illuminance_start_mesh", stage, 0, 0, small)
+    s.make("illuminance_get_image", stage, 0)
+    s.call("illuminance_get_report", stage, struct("illuminance_report", "size"))
+    relight = s.make("relight_create", s.context)
+    s.references("relight", relight)
+    s.call("relight_set_scene", relight, scene, 1, 0)
+    s.call("relight_set_target", relight, 1.0, 1.0, 1.0)
+    s.run("relight_start", relight, struct("relight_params", paths=2048))
+    s.call("relight_get_report", relight, struct("relight_report", "size"))
+    return s
+
+
+def transfer() -> Scenario:
+    s = Scenario()
+    scene, (photo, strokes) = s.room(), s.photograph()
+    stage = s.make("transfer_create", s.context)
+    s.references("transfer", stage)
+    s.call("transfer_set_photo", stage, photo)
+    s.call("transfer_set_depth", stage, s.image(180, 120, 1, 1.0), 0)
+    s.call("transfer_set_scene", stage, scene, "Ceiling")
+    s.call("transfer_set_camera", stage, camera())
+    s.call("transfer_add_strokes_image", stage, strokes)
+    s.call("transfer_clear_strokes", stage)
+    s.call("transfer_add_strokes_text", stage, "plane 2 60 8 120 9\nlight 2 5 5 9 9\n")
+    s.call("transfer_add_stroke", stage, 0, array("float", 2, 2, 9, 20), 2, 2.0, 1)
+    s.call("transfer_clear_strokes", stage)
+    s.call("transfer_add_strokes_image", stage, strokes)
+    settings = struct(
+        "transfer_params", max_texels=64, target=1,
+        render=struct("render_params", width=16, height=12, samples=4), relight=struct("relight_params", paths=2048),
+    )  # fmt: skip
+    s.run("transfer_start", stage, 0, 7, settings)
+    s.make("transfer_get_image", stage, 7)
+    s.make("transfer_get_scene", stage, 0)
+    s.call("transfer_get_report", stage, struct("transfer_report", "size"))
+    s.call("transfer_get_view", stage, struct("rectify_report", "size"))
+    s.call("transfer_get_solution", stage, struct("relight_report", "size"))
+    s.call("transfer_get_fixture", stage, 0, struct("fixture", "size"))
+    s.call("transfer_save_fixtures", stage, "lamps.csv")
+    # Intermediate results in place of its own.
+    rectify = s.make("rectify_create", s.context)
+    s.call("rectify_set_photo", rectify, photo)
+    s.run("rectify_start", rectify, struct("rectify_params"))
+    s.call("transfer_use_rectify", stage, rectify)
+    features = s.make("features_create", s.context)
+    s.call("features_set_photo", features, photo)
+    s.run("features_start", features, struct("features_params"))
+    s.call("transfer_use_features", stage, features)
+    segment = s.make("segment_create", s.context)
+    s.call("segment_set_features", segment, s.make("features_get_image", features, 0))
+    s.call("segment_add_strokes_image", segment, strokes, 0)
+    s.run("segment_start", segment, struct("segment_params"))
+    s.call("transfer_use_segment", stage, 0, segment)
+    s.call("transfer_use_mask", stage, 1, s.make("transfer_get_image", stage, 1))
+    s.call("transfer_set_texture", stage, s.image(16, 16))
+    s.run("transfer_start", stage, 6, 7, settings)
+    return s
+
+
+def stylisation() -> Scenario:
+    s = Scenario()
+    guides = []
+    for which in (2, 3):
+        stage = s.make("guides_create", s.context)
+        s.call("guides_set_scene", stage, s.make("demo_scene", s.context, which))
+        s.run("guides_start", stage, struct("guides_params", width=24, height=16, samples=2))
+        guides.append(stage)
+    s.references("guides", guides[0])
+    s.make("guides_get_image", guides[0], 0)
+    s.make("guides_motion", guides[1], guides[1])
+    artwork = s.make("demo_artwork", guides[0], 0)
+    stage = s.make("stylize_create", s.context)
+    s.references("stylize", stage)
+    s.call("stylize_set_artwork", stage, artwork)
+    s.call("stylize_add_guide", stage, "own", s.image(24, 16), s.image(24, 16), 1.0, 0)
+    s.call("stylize_clear_guides", stage)
+    s.call("stylize_add_guides", stage, *guides, 0, 1.0)
+    s.call("stylize_set_source_mask", stage, s.image(24, 16, 1, 2.0))
+    s.call("stylize_set_target_mask", stage, s.image(24, 16, 1, 2.0), None)
+    s.call("stylize_params_preset", struct("stylize_params"), 0)
+    s.run("stylize_start", stage, struct("stylize_params", keep_for_update=1))
+    s.run("stylize_update", stage, artwork, s.image(24, 16, 1, 1.0))
+    s.make("stylize_get_image", stage, 0)
+    s.call("stylize_get_report", stage, struct("stylize_report", "size"))
+    s.call("stylize_get_level", stage, 0, ROOM, ROOM, ROOM)
+    s.call("stylize_get_round", stage, 0, 0, struct("stylize_round", "size"))
+    s.call("stylize_get_pass", stage, 0, 0, 0, struct("stylize_pass", "size"))
+    s.call("stylize_set_motion", stage, s.image(24, 16, 2, 0.0))
+    s.call("stylize_set_painted", stage, s.image(24, 16, 1, 1.0))
+    return s
+
+
+def sheets() -> Scenario:
+    s = Scenario()
+    settings = struct("sheet_params", dpi=40.0)
+    sheet = s.make("sheet_print", s.image(60, 40), settings)
+    place, _ = s.new()
+    s.call("sheet_align", sheet, 60, 40, settings, place, struct("sheet_report", "size"))
+    return s
+
+
+ALL = [library, images, scenes, jobs, photo, emission, rendering, light, transfer, stylisation, sheets]
+
+
+def programs() -> dict[str, list[Call]]:
+    return {scenario.__name__: scenario().calls for scenario in ALL}

@@ -1,0 +1,37 @@
+"""Every function of the C ABI with every argument wrong in turn, and programs made by chance: whatever a host does, it gets a
+status and a message, and goes on living. `play.py` plays more programs, as long as wanted."""
+
+import unittest
+
+import faults
+import scenarios
+from play import play, report
+from script import FUNCTIONS
+
+USUAL = scenarios.programs()
+
+
+class Conformance(unittest.TestCase):
+    def check(self, programs, threads=1, seed="fault"):
+        if failure := play(programs, threads):
+            self.fail(report(programs[failure.program], failure, threads, seed))
+
+    def test_scenarios_call_every_function(self):
+        called = {call[0] for calls in USUAL.values() for call in calls}
+        self.assertEqual(set(FUNCTIONS) - called, set(), "write scenarios for them")
+        self.check(list(USUAL.values()))
+
+    def test_every_argument_of_every_function_may_be_wrong(self):
+        for name, calls in USUAL.items():
+            with self.subTest(name):
+                self.check([faults.every_fault(calls)], seed=name)
+
+    def test_calls_may_come_in_any_order(self):
+        self.check([faults.random_program(USUAL, seed) for seed in range(60)])
+
+    def test_calls_may_come_from_several_threads(self):
+        self.check([faults.random_program(USUAL, seed) for seed in range(1000, 1040)], threads=3)
+
+
+if __name__ == "__main__":
+    unittest.main()
