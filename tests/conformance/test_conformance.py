@@ -4,6 +4,7 @@ status and a message, and goes on living. `play.py` plays more programs, as long
 import unittest
 
 import faults
+import files
 import scenarios
 from play import play, report
 from script import FUNCTIONS
@@ -31,6 +32,9 @@ class Conformance(unittest.TestCase):
 
     def test_calls_may_come_from_several_threads(self):
         self.check([faults.random_program(USUAL, seed) for seed in range(1000, 1040)], threads=3)
+
+    def test_damaged_files_are_errors(self):
+        self.assertIsNone(files.run(1, 1500))
 
 
 if __name__ == "__main__":
