@@ -6,6 +6,7 @@ import unittest
 import faults
 import files
 import scenarios
+import soak
 from play import play, report
 from script import FUNCTIONS
 
@@ -35,6 +36,12 @@ class Conformance(unittest.TestCase):
 
     def test_damaged_files_are_errors(self):
         self.assertIsNone(files.run(1, 1500))
+
+    def test_long_use_leaves_nothing_behind(self):
+        use = soak.Soak()
+        for what, cycles in ((use.cancel, 1000), (use.transfer, 40)):
+            with self.subTest(what.__name__):
+                self.assertIsNone(soak.growth(use.repeat(what, cycles)))
 
 
 if __name__ == "__main__":

@@ -1,0 +1,109 @@
+"""Long use in one process: jobs started, cancelled and let go of, contexts made and released, whole small transfers. Neither
+memory nor threads nor open files may grow.
+
+    python3 soak.py [--cycles 10000] [--transfers 1000]    prints what the process holds as it goes on; ends with 1 if it grows
+"""
+
+from __future__ import annotations
+
+import argparse
+import gc
+import os
+import sys
+from pathlib import Path
+
+import script  # noqa: F401: puts the package on the path
+
+import luxfer
+from luxfer import errors
+from luxfer.image import np
+
+#: Growth that is none: allocators keep what they were given for a while.
+SLACK_MIB = 24.0
+
+
+def held() -> tuple[float, int, int]:
+    """Resident memory in MiB, threads, and open files."""
+    gc.collect()
+    status = dict(line.split(":", 1) for line in Path("/proc/self/status").read_text().splitlines())
+    return int(status["VmRSS"].split()[0]) / 1024, int(status["Threads"]), len(os.listdir("/proc/self/fd"))
+
+
+def room(context: luxfer.Context) -> luxfer.Scene:
+    scene = luxfer.Scene.demo(context, "sphere-on-table")
+    scene.set_environment((1, 1, 1))
+    return scene
+
+
+class Soak:
+    """What is done again and again, in contexts of its own and in one that stays."""
+
+    def __init__(self) -> None:
+        self.context = luxfer.Context(num_threads=2)
+        self.scene = room(self.context)
+        photo = luxfer.DemoPhoto(self.context).run(width=150, height=100, samples=2)
+        self.photo, self.strokes = photo.image("picture"), photo.image("strokes")
+        self.target = luxfer.Scene.demo(self.context, "target-room")
+
+    def cancel(self, cycle: int) -> None:
+        """A job that is let go of, asked to end, or left to end, at another moment each time."""
+        render = luxfer.Render(self.context, self.scene)
+        job = render.start(width=48, height=32, samples=1 + (cycle % 5) * 1000)
+        try:
+            job.wait(timeout=(cycle % 7) * 1e-4)
+        except errors.NotReady:
+            if cycle % 3:
+                job.cancel()
+        job.close()
+        if cycle % 10 == 0:
+            with luxfer.Context(num_threads=1 + cycle % 3) as own:
+                luxfer.Image(own, np.zeros((8, 8, 3), np.float32)).close()
+
+    def transfer(self, cycle: int) -> None:
+        stage = luxfer.Transfer(self.context, self.photo, self.target, "Ceiling")
+        stage.add_strokes_image(self.strokes)
+        try:
+            stage.run(max_texels=64, target="whole-image", relight={"paths": 1024, "seed": cycle}, render={"width": 24, "height": 16, "samples": 2})
+        except errors.Error as error:
+            # So small a photo may not have an answer; it must have the same one every time.
+            if not isinstance(error, (errors.Degenerate, errors.Unreachable)):
+                raise
+
+    def repeat(self, what, cycles: int, rounds: int = 5) -> list[tuple[float, int, int]]:
+        """What the process holds after each of so many equal parts of the cycles."""
+        out = []
+        for part in range(rounds):
+            for cycle in range(part * cycles // rounds, (part + 1) * cycles // rounds):
+                what(cycle)
+            out.append(held())
+        return out
+
+
+def growth(seen: list[tuple[float, int, int]]) -> str | None:
+    """What has grown since the first part, in which everything is set up that stays."""
+    (memory, threads, files), last = seen[0], seen[-1]
+    if last[0] > memory + SLACK_MIB:
+        return f"memory grew from {memory:.0f} to {last[0]:.0f} MiB"
+    if last[1] > threads or last[2] > files:
+        return f"threads grew from {threads} to {last[1]}, open files from {files} to {last[2]}"
+    return None
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description="uses the library for long in one process")
+    parser.add_argument("--cycles", type=int, default=10_000)
+    parser.add_argument("--transfers", type=int, default=1_000)
+    asked = parser.parse_args()
+    soak, failed = Soak(), False
+    for what, cycles in ((soak.cancel, asked.cycles), (soak.transfer, asked.transfers)):
+        seen = soak.repeat(what, cycles)
+        for memory, threads, files in seen:
+            print(f"{what.__name__:9} {memory:8.1f} MiB {threads:4} threads {files:4} open files")
+        if why := growth(seen):
+            failed = True
+            print(f"{what.__name__}: {why}")
+    return failed
+
+
+if __name__ == "__main__":
+    sys.exit(main())
