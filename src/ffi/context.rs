@@ -12,7 +12,9 @@
 //! change it take turns. Only the release of the last reference must not overlap any other use.
 //!
 //! The library has no global state, prints nothing, reads no environment variables, never ends the process and installs
-//! no handlers. With equal inputs, parameters and seeds results are equal to the bit, whatever the number of threads.
+//! no handlers. With equal inputs, parameters and seeds results are equal to the bit, whatever the number of threads and
+//! whatever floating-point mode (rounding, flush to zero) the host is in: calls work in the standard mode, so do callbacks
+//! they make, and hand the host's back.
 
 use super::guard::{enter, guard, lock};
 use super::handle::{self, Handle, Owned, tag};

@@ -1,5 +1,6 @@
 //! What stands between an entry point and its host: no panic gets out, every error becomes a status.
 
+use super::float_mode::FloatMode;
 use super::handle::{self, Handle, Owned};
 use super::status::{LUXFER_OK, luxfer_status};
 use crate::error::{Error, ErrorKind, Result};
@@ -9,6 +10,7 @@ use std::sync::{Arc, Mutex, MutexGuard};
 
 /// Runs an entry point that has no object yet.
 pub(super) fn guard(work: impl FnOnce() -> Result<()>) -> luxfer_status {
+    let _mode = FloatMode::enter();
     match catch(work) {
         Ok(()) => LUXFER_OK,
         Err(error) => error.kind as luxfer_status,

@@ -15,6 +15,7 @@
 #[cfg(panic = "abort")]
 compile_error!("luxfer reports panics to its host as LUXFER_INTERNAL: build it with panic = \"unwind\"");
 
+mod float_mode;
 mod guard;
 mod handle;
 mod params;

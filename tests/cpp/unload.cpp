@@ -1,0 +1,58 @@
+// A host that loads the library as a plug-in does, uses it, and lets go of it, again and again: nothing may stay behind that
+// would call into code that is gone. The first argument is the library.
+#include <luxfer.h>
+
+#include <cstdio>
+#include <filesystem>
+
+#include <dlfcn.h>
+
+namespace {
+
+std::size_t threads_of_this_process() {
+    std::size_t count = 0;
+    for ([[maybe_unused]] const auto &thread : std::filesystem::directory_iterator("/proc/self/task"))
+        ++count;
+    return count;
+}
+
+template <class Function>
+Function *find(void *library, const char *name) {
+    return reinterpret_cast<Function *>(dlsym(library, name));
+}
+
+// Whether a job could be started, cancelled and let go of.
+bool use(void *library) {
+    luxfer_context *context = nullptr;
+    luxfer_demo_photo *photo = nullptr;
+    luxfer_job *job = nullptr;
+    return find<decltype(luxfer_context_create)>(library, "luxfer_context_create")(nullptr, &context) == LUXFER_OK &&
+           find<decltype(luxfer_demo_photo_create)>(library, "luxfer_demo_photo_create")(context, &photo) == LUXFER_OK &&
+           find<decltype(luxfer_demo_photo_start)>(library, "luxfer_demo_photo_start")(photo, nullptr, &job) == LUXFER_OK &&
+           find<decltype(luxfer_job_wait)>(library, "luxfer_job_wait")(job, 5, nullptr, nullptr) == LUXFER_NOT_READY &&
+           find<decltype(luxfer_job_release)>(library, "luxfer_job_release")(job) == LUXFER_OK &&
+           find<decltype(luxfer_demo_photo_release)>(library, "luxfer_demo_photo_release")(photo) == LUXFER_OK &&
+           find<decltype(luxfer_context_release)>(library, "luxfer_context_release")(context) == LUXFER_OK;
+}
+
+} // namespace
+
+int main(int, char **arguments) {
+    for (int round = 0; round < 20; ++round) {
+        void *library = dlopen(arguments[1], RTLD_NOW | RTLD_LOCAL);
+        if (library == nullptr) {
+            std::fprintf(stderr, "%s\n", dlerror());
+            return 1;
+        }
+        if (!use(library) || dlclose(library) != 0) {
+            std::fprintf(stderr, "round %d: the library could not be used\n", round);
+            return 1;
+        }
+        if (threads_of_this_process() != 1) {
+            std::fprintf(stderr, "round %d: %zu threads are left\n", round, threads_of_this_process());
+            return 1;
+        }
+    }
+    std::printf("unload: loaded and unloaded 20 times\n");
+    return 0;
+}
