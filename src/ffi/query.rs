@@ -88,11 +88,16 @@ fn nearest(world: &World, ray: &[u8]) -> [u32; 5] {
         *field = f32::from_ne_bytes([raw[0], raw[1], raw[2], raw[3]]);
     }
     let [ox, oy, oz, dx, dy, dz, t_max] = fields;
-    let ray = Ray { t_max, ..world.ray(Vec3::new(ox, oy, oz), Vec3::new(dx, dy, dz)) };
+    // Directions of any length: distances are counted in the power of two below theirs.
+    let direction = Vec3::new(dx, dy, dz);
+    let unit = f64::from_bits(f64::from(direction.abs().max_element()).to_bits() & f64::INFINITY.to_bits());
+    let ray = world.ray(Vec3::new(ox, oy, oz), (direction.as_dvec3() / unit).as_vec3());
+    let ray = Ray { t_max: (f64::from(t_max) * unit) as f32, ..ray };
     match world.accel().closest(&ray, |_| true) {
         Some(hit) => {
             let (mesh, triangle) = world.locate(hit.triangle);
-            [hit.t.to_bits(), mesh, triangle, hit.u.to_bits(), hit.v.to_bits()]
+            let t = (f64::from(hit.t) / unit) as f32;
+            [t.to_bits(), mesh, triangle, hit.u.to_bits(), hit.v.to_bits()]
         }
         None => [f32::INFINITY.to_bits(), LUXFER_NONE, LUXFER_NONE, 0, 0],
     }

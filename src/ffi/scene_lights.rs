@@ -9,7 +9,7 @@ use super::pointer::set_optional;
 use super::scene::{colour, luxfer_scene};
 use super::status::luxfer_status;
 use crate::error::{Error, Result, check_range};
-use crate::scene::PunctualLight;
+use crate::scene::{PunctualLight, check_place};
 use glam::Vec3;
 use std::f32::consts::FRAC_PI_2;
 
@@ -30,7 +30,7 @@ pub struct luxfer_light_params {
     pub struct_size: u32,
     /// LUXFER_LIGHT_ value; default LUXFER_LIGHT_POINT.
     pub kind: luxfer_light_kind,
-    /// Where a point or a spot stands, in metres; default (0, 0, 0).
+    /// Where a point or a spot stands, in metres, in [-1e15, 1e15]; default (0, 0, 0).
     pub position: [f32; 3],
     /// Where a spot or a directional light shines; any length but 0; default (0, -1, 0).
     pub direction: [f32; 3],
@@ -72,9 +72,7 @@ impl luxfer_light_params {
         let direction = direction.ok_or_else(|| {
             Error::argument(format!("light.direction is {:?}; it must be finite and not zero", self.direction))
         })?;
-        if !position.is_finite() {
-            return Err(Error::argument(format!("light.position is {position}; it must be finite")));
-        }
+        check_place(|| "light.position", position)?;
         match self.kind {
             LUXFER_LIGHT_POINT => Ok(PunctualLight::Point { position, intensity }),
             LUXFER_LIGHT_SPOT => {

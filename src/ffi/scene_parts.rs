@@ -10,7 +10,7 @@ use super::scene::{luxfer_scene, missing};
 use super::status::luxfer_status;
 use crate::error::{Error, Result, check_range};
 use crate::image::try_vec;
-use crate::scene::{Camera, Mesh};
+use crate::scene::{Camera, Mesh, check_place};
 use glam::{Vec2, Vec3};
 use std::ffi::{c_char, c_void};
 
@@ -26,7 +26,7 @@ pub struct luxfer_mesh_params {
     pub name: *const c_char,
     /// Number of vertices in [3, 2^32 - 1]; to be set.
     pub vertex_count: usize,
-    /// Three floats for each vertex, in metres, finite; to be set.
+    /// Three floats for each vertex, in metres, in [-1e15, 1e15]; to be set.
     pub positions: *const c_void,
     /// Bytes from a position to the next; at least 12, or 0, the default: packed.
     pub position_stride: usize,
@@ -79,9 +79,9 @@ pub struct luxfer_camera_params {
     pub struct_size: u32,
     /// Full vertical angle of view in radians, in [0.001, 3.1]; default 1.
     pub fov_y: f32,
-    /// Where it stands, in metres; default (0, 0, 0).
+    /// Where it stands, in metres, in [-1e15, 1e15]; default (0, 0, 0).
     pub position: [f32; 3],
-    /// What it looks at, another point; default (0, 0, -1).
+    /// What it looks at, another point, in [-1e15, 1e15]; default (0, 0, -1).
     pub target: [f32; 3],
     /// Direction that is up in the image, not along the view; default (0, 1, 0).
     pub up: [f32; 3],
@@ -109,10 +109,10 @@ impl luxfer_camera_params {
     pub(super) fn camera(&self) -> Result<Camera> {
         let [position, target, up] = [self.position, self.target, self.up].map(Vec3::from_array);
         check_range("camera.fov_y", self.fov_y, 0.001, 3.1)?;
-        if !(position.is_finite() && target.is_finite() && up.is_finite()) {
-            return Err(Error::argument(format!(
-                "camera.position is {position}, target {target}, up {up}; they must be finite"
-            )));
+        check_place(|| "camera.position", position)?;
+        check_place(|| "camera.target", target)?;
+        if !up.is_finite() {
+            return Err(Error::argument(format!("camera.up is {up}; it must be finite")));
         }
         let forward = (target - position).try_normalize();
         let side = forward.and_then(|f| f.cross(up).try_normalize());
@@ -180,10 +180,14 @@ fn mesh(params: &luxfer_mesh_params) -> Result<Mesh> {
     if let Some((i, bad)) = triangles.iter().enumerate().find(|(_, t)| t.iter().any(|&v| v as usize >= count)) {
         return Err(Error::argument(format!("triangle {i} of mesh.indices is {bad:?}; vertex_count is {count}")));
     }
+    let positions: Vec<Vec3> = check_finite(positions, "mesh.positions")?;
+    for (i, &position) in positions.iter().enumerate() {
+        check_place(|| format!("element {i} of mesh.positions"), position)?;
+    }
     Ok(Mesh {
         name: optional_text(params.name, "mesh.name")?,
         material: params.material as usize,
-        positions: check_finite(positions, "mesh.positions")?,
+        positions,
         normals: vectors(params.normals, params.normal_stride, "mesh.normals")?,
         uvs: [check_finite::<2, Vec2>(uvs, "mesh.uvs")?, Vec::new()],
         triangles,

@@ -18,6 +18,7 @@ pub use light::{Environment, PunctualLight};
 pub use material::{AlphaMode, Material, TextureRef};
 pub use mesh::Mesh;
 pub use texture::{Texture, Wrap};
+pub use validate::check_place;
 
 /// Everything a host can describe. Indices between the lists are checked by [`Scene::validate`].
 #[derive(Clone, Debug, Default)]

@@ -5,6 +5,25 @@ use crate::error::{Error, Result, check_range};
 use crate::image::Image;
 use glam::{Mat3, Vec3};
 use std::f32::consts::{FRAC_PI_2, PI};
+use std::fmt::Display;
+
+/// Largest coordinate of anything that has a place, in metres: products of two of them, and of what follows from them, stay
+/// within the range of `f32`.
+const MAX_COORDINATE: f32 = 1e15;
+
+fn is_place(point: Vec3) -> bool {
+    // No number is not less, either.
+    point.abs().cmple(Vec3::splat(MAX_COORDINATE)).all()
+}
+
+/// Checks that things may be at a point; `what` is asked only if not.
+pub fn check_place<W: Display>(what: impl FnOnce() -> W, point: Vec3) -> Result<()> {
+    if is_place(point) {
+        return Ok(());
+    }
+    let what = what();
+    Err(Error::argument(format!("{what} is {point}; coordinates must lie in [-{MAX_COORDINATE:e}, {MAX_COORDINATE:e}]")))
+}
 
 /// How far a direction may be from unit length or right angles.
 const DIRECTION_TOLERANCE: f32 = 1e-3;
@@ -75,8 +94,8 @@ impl Scene {
         let bad = |what: &str, i: usize, value: &dyn std::fmt::Display| {
             Err(Error::argument(format!("the {what} of vertex {i} is {value}; it must be finite")))
         };
-        if let Some(i) = mesh.positions.iter().position(|p| !p.is_finite()) {
-            return bad("position", i, &mesh.positions[i]);
+        for (i, &position) in mesh.positions.iter().enumerate() {
+            check_place(|| format!("the position of vertex {i}"), position)?;
         }
         if let Some(i) = mesh.normals.iter().position(|n| !n.is_finite()) {
             return bad("normal", i, &mesh.normals[i]);
@@ -155,21 +174,14 @@ fn check_unit(what: &str, direction: Vec3) -> Result<()> {
     Err(Error::argument(format!("{what} is {direction}; it must be a unit vector")))
 }
 
-fn check_finite(what: &str, position: Vec3) -> Result<()> {
-    if position.is_finite() {
-        return Ok(());
-    }
-    Err(Error::argument(format!("{what} is {position}; it must be finite")))
-}
-
 fn check_light(light: &PunctualLight) -> Result<()> {
     match *light {
         PunctualLight::Point { position, intensity } => {
-            check_finite("position", position)?;
+            check_place(|| "position", position)?;
             check_light_colour("intensity", intensity)
         }
         PunctualLight::Spot { position, direction, intensity, inner_angle, outer_angle } => {
-            check_finite("position", position)?;
+            check_place(|| "position", position)?;
             check_unit("direction", direction)?;
             check_light_colour("intensity", intensity)?;
             check_range("outer_angle", outer_angle, 0.0, FRAC_PI_2)?;
@@ -183,7 +195,7 @@ fn check_light(light: &PunctualLight) -> Result<()> {
 }
 
 fn check_camera(camera: &Camera) -> Result<()> {
-    check_finite("position", camera.position)?;
+    check_place(|| "position", camera.position)?;
     check_unit("forward", camera.forward)?;
     check_unit("up", camera.up)?;
     let cosine = camera.forward.dot(camera.up);
@@ -226,7 +238,8 @@ mod tests {
         assert_eq!(scene().validate(), Ok(()));
         assert_eq!(Scene::default().validate(), Ok(()));
         type Defect = (&'static str, fn(&mut Scene));
-        let defects: [Defect; 22] = [
+        let defects: [Defect; 23] = [
+            ("vertex 2", |s| s.meshes[0].positions[2].x = -1.1e15),
             ("Desk", |s| s.meshes[0].positions[1].y = f32::NAN),
             ("vertex 1", |s| s.meshes[0].positions[1].y = f32::INFINITY),
             ("Desk", |s| s.meshes[0].triangles[0][2] = 3),

@@ -256,3 +256,36 @@ fn few_triangles_among_broken_ones_are_found_at_every_scale() {
         }
     }
 }
+
+#[test]
+fn rays_of_any_numbers_are_survived() {
+    let extremes = [0.0, -0.0, 1.0, -0.3, 1e-45, -1e-38, 1e-30, 1e-18, 1e15, -1e30, 3.4e38, f32::INFINITY, f32::NAN];
+    let mut accel = build(&room_with_block());
+    let mut rng = Rng::new(6, &[]);
+    for _ in 0..20_000 {
+        let mut number = || extremes[rng.below(extremes.len())];
+        let [origin, direction] = [0; 2].map(|_| Vec3::from([0; 3].map(|_| number())));
+        let ray = Ray { t_max: number(), ..Ray::new(origin, direction) };
+        for wide in [has_wide(), false] {
+            accel.wide_vectors = wide;
+            if let Some(hit) = accel.closest(&ray, |_| true) {
+                assert!(hit.t > 0.0 && hit.t < ray.t_max, "{ray:?}: {hit:?}");
+            }
+            accel.occluded(&ray, |_| true);
+        }
+    }
+}
+
+#[test]
+fn many_small_triangles_in_a_huge_scene_take_no_longer_than_elsewhere() {
+    let mut rng = Rng::new(7, &[]);
+    let place = Vec3::new(1e6, -2e6, 3e6);
+    let mut triangles = vec![[Vec3::ZERO, Vec3::X * 1e15, Vec3::Y * 1e15]];
+    triangles.extend((0..30_000).map(|_| [0; 3].map(|_| place + random_vec(&mut rng))));
+    let start = std::time::Instant::now();
+    let accel = build(&triangles);
+    // In the square of their number: minutes.
+    assert!(start.elapsed().as_secs() < 20, "{:?}", start.elapsed());
+    let ray = Ray::new(place + Vec3::Z * 9.0, Vec3::NEG_Z);
+    assert_eq!(accel.closest(&ray, |_| true), brute_force(&triangles, &ray));
+}

@@ -109,6 +109,9 @@ impl Units {
     /// boxes if each is the other's best neighbour, and takes the last of equals: then hardly any two choose each other,
     /// and those that do lie anywhere, which makes trees that are 6 to 20 times slower to traverse. Unequal boxes leave no
     /// ties. The boxes of the finished tree are tight.
+    ///
+    /// Boxes that are one point there, as those of a small thing in a huge scene are, would have none to grow by, and ties
+    /// without end make the builder take time in the square of their number: they grow by 2^-12 of their distance.
     pub fn boxes(&self, triangles: &[[Vec3; 3]]) -> Vec<Aabb> {
         let (low, high) = (self.low.as_dvec3(), self.high.as_dvec3());
         let centre = (low + high) / 2.0;
@@ -120,7 +123,9 @@ impl Units {
                 (low, high) = (low.min(p), high.max(p));
             }
             let amount = (rng::mix(u64::from(unit.first) + 1) >> 40) as f32 / (1 << 24) as f32;
-            let grow = Vec3::splat((high - low).max_element() * amount * 1e-3);
+            let (extent, distance) = ((high - low).max_element(), low.abs().max(high.abs()).max_element());
+            let is_point = extent <= distance * f32::EPSILON;
+            let grow = Vec3::splat(amount * if is_point { distance / 4096.0 } else { extent * 1e-3 });
             Aabb::new((low - grow).into(), (high + grow).into())
         };
         self.list.par_iter().with_min_len(CHUNK).map(unit_box).collect()
