@@ -34,7 +34,6 @@ int main(void) {
     luxfer_image *picture = NULL;
     luxfer_status status;
     double fraction = 0;
-    int32_t finished = 0;
     int frames = 0;
     watch w = {NULL, 0};
     report.struct_size = sizeof report;
@@ -69,8 +68,7 @@ int main(void) {
     check(luxfer_render_start(render, &params, &job), "start");
     /* --8<-- [start:loop] */
     while ((status = luxfer_job_wait(job, 16, NULL, NULL)) == LUXFER_NOT_READY) {
-        check(luxfer_job_poll(job, &fraction, &finished), "poll");
-        if (finished) break; /* A job may have ended with LUXFER_NOT_READY itself. */
+        check(luxfer_job_poll(job, &fraction, NULL), "poll");
         /* Any thread may cancel; the work ends within about 100 ms, and releasing the job would do the same. */
         if (++frames == 20) check(luxfer_job_cancel(job), "cancel");
     }

@@ -129,7 +129,9 @@ const char *luxfer_status_name(luxfer_status status);
  * change it take turns. Only the release of the last reference must not overlap any other use.
  *
  * The library has no global state, prints nothing, reads no environment variables, never ends the process and installs
- * no handlers. With equal inputs, parameters and seeds results are equal to the bit, whatever the number of threads.
+ * no handlers. With equal inputs, parameters and seeds results are equal to the bit, whatever the number of threads and
+ * whatever floating-point mode (rounding, flush to zero) the host is in: calls work in the standard mode, so do callbacks
+ * they make, and hand the host's back.
  * ==================================================================================================================== */
 
 /** A context: threads, memory budget and error messages. See luxfer_context_create. */
@@ -341,7 +343,7 @@ typedef int32_t (*luxfer_progress_fn)(void *user, double fraction);
  * may be NULL; user is handed to it. Any thread, several at once.
  *
  * Returns LUXFER_OK if the job has succeeded, else why it has not, with its message: LUXFER_CANCELLED after a cancel
- * request that came in time, LUXFER_NOT_READY if it still runs (it goes on running).
+ * request that came in time, LUXFER_NOT_READY only if it still runs (it goes on running).
  */
 luxfer_status luxfer_job_wait(luxfer_job *job,
                               int32_t timeout_ms,
@@ -451,9 +453,9 @@ luxfer_status luxfer_scene_load_memory(luxfer_context *context,
                                        luxfer_scene **scene);
 
 /**
- * Saves a scene as a GLB file with all of its textures inside; path is UTF-8. An existing file is replaced only by a
- * complete one. Any thread.
- * LUXFER_IO if the file cannot be written.
+ * Saves a scene as a GLB file with all of its textures inside; path is UTF-8 and ends in .glb. An existing file is
+ * replaced only by a complete one. Any thread.
+ * LUXFER_INVALID_ARGUMENT for another ending; LUXFER_IO if the file cannot be written.
  */
 luxfer_status luxfer_scene_export(luxfer_scene *scene,
                                   const char *path);
@@ -509,7 +511,7 @@ luxfer_status luxfer_scene_find_surface(luxfer_scene *scene,
                                         luxfer_surface *found);
 
 /**
- * Lays an emissive texture (linear, 3 channels) over the bounding rectangle of the surface that luxfer_scene_find_surface
+ * Lays an emissive texture (linear, 1 or 3 channels) over the bounding rectangle of the surface that luxfer_scene_find_surface
  * finds by name. The surface becomes a mesh of its own, *mesh, with a copy of its material, *material, that emits
  * texture * (red, green, blue) in cd/m², each finite and >= 0. mesh and material may be NULL. Any thread.
  * As luxfer_scene_find_surface; LUXFER_OUT_OF_MEMORY beyond the memory budget.
@@ -710,7 +712,7 @@ typedef struct luxfer_mesh_params {
     const char *name;
     /** Number of vertices in [3, 2^32 - 1]; to be set. */
     size_t vertex_count;
-    /** Three floats for each vertex, in metres, finite; to be set. */
+    /** Three floats for each vertex, in metres, in [-1e15, 1e15]; to be set. */
     const void *positions;
     /** Bytes from a position to the next; at least 12, or 0, the default: packed. */
     size_t position_stride;
@@ -736,9 +738,9 @@ typedef struct luxfer_camera_params {
     uint32_t struct_size;
     /** Full vertical angle of view in radians, in [0.001, 3.1]; default 1. */
     float fov_y;
-    /** Where it stands, in metres; default (0, 0, 0). */
+    /** Where it stands, in metres, in [-1e15, 1e15]; default (0, 0, 0). */
     float position[3];
-    /** What it looks at, another point; default (0, 0, -1). */
+    /** What it looks at, another point, in [-1e15, 1e15]; default (0, 0, -1). */
     float target[3];
     /** Direction that is up in the image, not along the view; default (0, 1, 0). */
     float up[3];
@@ -807,7 +809,7 @@ typedef struct luxfer_light_params {
     uint32_t struct_size;
     /** LUXFER_LIGHT_ value; default LUXFER_LIGHT_POINT. */
     luxfer_light_kind kind;
-    /** Where a point or a spot stands, in metres; default (0, 0, 0). */
+    /** Where a point or a spot stands, in metres, in [-1e15, 1e15]; default (0, 0, 0). */
     float position[3];
     /** Where a spot or a directional light shines; any length but 0; default (0, -1, 0). */
     float direction[3];
@@ -1100,8 +1102,8 @@ typedef struct luxfer_rectify_params {
     /** LUXFER_METRIC_ value; default LUXFER_METRIC_SEGMENT. */
     luxfer_metric metric;
     /**
-     * Half-width in radians of the band around the gradient's direction that votes for a line, in (0, pi/2]; default 2.5
-     * degrees.
+     * Half-width in radians of the band around the gradient's direction that votes for a line, in [1e-4, pi/2]; default
+     * 0.0436, which is 2.5 degrees.
      */
     double hough_band;
     /** Focal length in pixels, > 0, or 0, the default: unknown. */
@@ -2403,8 +2405,10 @@ luxfer_status luxfer_transfer_use_mask(luxfer_transfer *transfer,
 /**
  * Starts a job that runs the stages first to last, LUXFER_STAGE_ values, both included; those before must have results.
  * params may be NULL for the defaults. The caller releases *job. Any thread.
- * LUXFER_INVALID_OPERATION if a job runs already. The job may end as the jobs of its stages may, the message naming the
- * stage, or with LUXFER_NOT_READY if an input or an earlier result is missing; the results of the stages before stay.
+ * LUXFER_INVALID_OPERATION if a job runs already, or an input or the result of an earlier stage is missing;
+ * LUXFER_INVALID_ARGUMENT for a setting of one of the stages that is out of range. The job may end as the jobs of its
+ * stages may, the message naming the stage, and ends at once if the scene has no such surface; the results of the stages
+ * before stay.
  */
 luxfer_status luxfer_transfer_start(luxfer_transfer *transfer,
                                     luxfer_stage first,
@@ -2455,7 +2459,9 @@ typedef struct luxfer_transfer_report {
     double emission_error;
     /** Widest relative half-width of the solution's 95 % intervals. */
     double relight_error;
-    /** Mean relative standard error of the picture. */
+    /**
+     * As the error of luxfer_render_report: root mean square of the picture's standard errors, relative to its mean.
+     */
     double render_error;
     /** Size of a texel of the emission in metres. */
     double texel_size;
@@ -2520,6 +2526,11 @@ typedef struct luxfer_fixture {
 /** Variance of the rendering; 3 channels. */
 #define LUXFER_TRANSFER_RENDER_VARIANCE 10
 
+/**
+ * The picture with its noise filtered out, if the settings of the stage RENDER have a preview; see LUXFER_RENDER_PREVIEW.
+ */
+#define LUXFER_TRANSFER_RENDER_PREVIEW 11
+
 /** With the emission at the photo's own strength, before it is solved for. */
 #define LUXFER_SCENE_UNSOLVED 0
 
@@ -2531,7 +2542,7 @@ typedef struct luxfer_fixture {
 
 /**
  * Gets an image; which is a LUXFER_TRANSFER_ value. The caller releases *image. Any thread.
- * LUXFER_NOT_READY before the stage that makes it has ended.
+ * LUXFER_NOT_READY before the stage that makes it has ended; LUXFER_NOT_FOUND for a preview that was not asked for.
  */
 luxfer_status luxfer_transfer_get_image(luxfer_transfer *transfer,
                                         luxfer_transfer_image which,

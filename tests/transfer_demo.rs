@@ -119,13 +119,23 @@ fn what_is_missing_is_named_and_a_cancelled_run_keeps_what_it_has() {
     let pool = Pool::new(0).unwrap();
     let monitor = Monitor::default();
     let empty = pool.run(|| Transfer::default().run(Stage::View, Stage::Render, monitor.job(), |_| {})).unwrap_err();
-    assert_eq!((empty.kind, empty.message.contains("set the photo")), (ErrorKind::NotReady, true), "{empty}");
+    assert_eq!((empty.kind, empty.message.contains("set the photo")), (ErrorKind::InvalidOperation, true), "{empty}");
 
     let (mut transfer, _) = prepared(&pool, 16, 3);
     let late = pool.run(|| transfer.run(Stage::Emission, Stage::Render, monitor.job(), |_| {})).unwrap_err();
-    assert_eq!((late.kind, late.message.contains("run stage Lights")), (ErrorKind::NotReady, true), "{late}");
+    assert_eq!((late.kind, late.message.contains("run stage Lights")), (ErrorKind::InvalidOperation, true), "{late}");
     let backwards = pool.run(|| transfer.run(Stage::Render, Stage::View, monitor.job(), |_| {})).unwrap_err();
     assert_eq!(backwards.kind, ErrorKind::InvalidArgument);
+    // Settings of the last stage, and the name of the surface, are looked at before anything is done.
+    let mut wrong = transfer.clone();
+    wrong.params.render.width = 0;
+    let early = pool.run(|| wrong.run(Stage::View, Stage::Render, monitor.job(), |_| {})).unwrap_err();
+    assert!(early.message.contains("stage Render") && early.message.contains("width is 0"), "{early}");
+    let mut nowhere = transfer.clone();
+    nowhere.input.surface = "Sky".into();
+    let early = pool.run(|| nowhere.run(Stage::View, Stage::Render, monitor.job(), |_| {})).unwrap_err();
+    assert_eq!(early.kind, ErrorKind::NotFound);
+    assert!(nowhere.results.view.is_none());
 
     // Cancel when the lights have been found; then go on from there.
     let cancelling = Monitor::default();

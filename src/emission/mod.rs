@@ -119,7 +119,8 @@ pub struct Emission {
 }
 
 impl Params {
-    fn check(&self) -> Result<()> {
+    /// Checks that every setting is in its range.
+    pub fn check(&self) -> Result<()> {
         check_range("emission.width", self.width, 1, 65_536)?;
         check_range("emission.height", self.height, 1, 65_536)?;
         check_range("emission.scale", self.scale, 1e-3, 1e3)?;

@@ -92,6 +92,16 @@ impl Default for Params {
     }
 }
 
+impl Params {
+    /// Checks that every setting is in its range.
+    pub fn check(&self) -> Result<()> {
+        check_range("near", self.near, 1e-3, 1e3)?;
+        check_range("far", self.far, self.near * 1.001, self.near * 1e6)?;
+        check_range("normal_radius", self.normal_radius, 0, 64)?;
+        Ok(())
+    }
+}
+
 /// Where the depth came from, best first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DepthSource {
@@ -118,9 +128,7 @@ pub struct Features {
 
 /// Computes the features of a photo. Fails where a depth map has no positive finite value at all.
 pub fn run(input: &Input, params: &Params, job: Job) -> Result<Features> {
-    check_range("near", params.near, 1e-3, 1e3)?;
-    check_range("far", params.far, params.near * 1.001, params.near * 1e6)?;
-    check_range("normal_radius", params.normal_radius, 0, 64)?;
+    params.check()?;
     let (width, height) = (input.photo.width, input.photo.height);
     let perspective = input.room.map(|r| r.perspective);
     let frustum = match perspective {

@@ -106,7 +106,7 @@ impl Drop for Job {
 /// may be NULL; user is handed to it. Any thread, several at once.
 ///
 /// Returns LUXFER_OK if the job has succeeded, else why it has not, with its message: LUXFER_CANCELLED after a cancel
-/// request that came in time, LUXFER_NOT_READY if it still runs (it goes on running).
+/// request that came in time, LUXFER_NOT_READY only if it still runs (it goes on running).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_job_wait(
     job: *mut luxfer_job,

@@ -75,8 +75,8 @@ pub struct luxfer_rectify_params {
     pub search: luxfer_search,
     /// LUXFER_METRIC_ value; default LUXFER_METRIC_SEGMENT.
     pub metric: luxfer_metric,
-    /// Half-width in radians of the band around the gradient's direction that votes for a line, in (0, pi/2]; default 2.5
-    /// degrees.
+    /// Half-width in radians of the band around the gradient's direction that votes for a line, in [1e-4, pi/2]; default
+    /// 0.0436, which is 2.5 degrees.
     pub hough_band: f64,
     /// Focal length in pixels, > 0, or 0, the default: unknown.
     pub focal: f64,

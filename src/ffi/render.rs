@@ -255,6 +255,15 @@ pub unsafe extern "C" fn luxfer_render_start(
     })
 }
 
+/// Where the preview of a rendering is, if one was asked for.
+pub(super) fn preview(film: &Film) -> Result<fn(&Film) -> &Image> {
+    if film.preview.is_none() {
+        let message = "the rendering has no preview: start it with luxfer_render_params.preview above 0";
+        return Err(Error::new(ErrorKind::NotFound, message));
+    }
+    Ok(|film| film.preview.as_ref().map_or(&film.beauty, |preview| &preview.image))
+}
+
 /// Gets an image of the rendering, as far as it is; which is a LUXFER_RENDER_ value. The caller releases *image. Any
 /// thread.
 /// LUXFER_NOT_READY before the first pass of a job; LUXFER_NOT_FOUND for a preview that was not asked for.
@@ -270,15 +279,7 @@ pub unsafe extern "C" fn luxfer_render_get_image(
             LUXFER_RENDER_BEAUTY => |f| &f.beauty,
             LUXFER_RENDER_VARIANCE => |f| &f.variance,
             LUXFER_RENDER_PATHS => |f| &f.paths,
-            LUXFER_RENDER_PREVIEW => {
-                if stage.output()?.preview.is_none() {
-                    return Err(Error::new(
-                        ErrorKind::NotFound,
-                        "the rendering has no preview: start it with luxfer_render_params.preview above 0",
-                    ));
-                }
-                |f| f.preview.as_ref().map_or(&f.beauty, |p| &p.image)
-            }
+            LUXFER_RENDER_PREVIEW => preview(&*stage.output()?)?,
             LUXFER_RENDER_INTERVAL => {
                 let (context, film) = (stage.context(), stage.output()?);
                 let (width, height) = (film.beauty.width, film.beauty.height);

@@ -236,13 +236,16 @@ pub unsafe extern "C" fn luxfer_scene_load_memory(
     })
 }
 
-/// Saves a scene as a GLB file with all of its textures inside; path is UTF-8. An existing file is replaced only by a
-/// complete one. Any thread.
-/// LUXFER_IO if the file cannot be written.
+/// Saves a scene as a GLB file with all of its textures inside; path is UTF-8 and ends in .glb. An existing file is
+/// replaced only by a complete one. Any thread.
+/// LUXFER_INVALID_ARGUMENT for another ending; LUXFER_IO if the file cannot be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_export(scene: *mut luxfer_scene, path: *const c_char) -> luxfer_status {
     enter(scene, |object| {
         let path = Path::new(text(path, "path")?);
+        if !path.extension().is_some_and(|e| e.eq_ignore_ascii_case("glb")) {
+            return Err(Error::argument(format!("path is {}; it must end in .glb", path.display())));
+        }
         io::write_file(path, &gltf::export(&object.snapshot())?)
     })
 }
@@ -390,7 +393,7 @@ pub unsafe extern "C" fn luxfer_scene_find_surface(
     })
 }
 
-/// Lays an emissive texture (linear, 3 channels) over the bounding rectangle of the surface that luxfer_scene_find_surface
+/// Lays an emissive texture (linear, 1 or 3 channels) over the bounding rectangle of the surface that luxfer_scene_find_surface
 /// finds by name. The surface becomes a mesh of its own, *mesh, with a copy of its material, *material, that emits
 /// texture * (red, green, blue) in cd/m², each finite and >= 0. mesh and material may be NULL. Any thread.
 /// As luxfer_scene_find_surface; LUXFER_OUT_OF_MEMORY beyond the memory budget.

@@ -113,7 +113,7 @@ impl<I, O> Drop for Claim<I, O> {
 
 /// An input that a job cannot do without.
 pub(super) fn need<'a, T>(input: &'a Option<T>, setter: &str) -> Result<&'a T> {
-    input.as_ref().ok_or_else(|| {
-        Error::new(ErrorKind::InvalidOperation, format!("an input is missing: call {setter} before the start"))
-    })
+    input
+        .as_ref()
+        .ok_or_else(|| Error::new(ErrorKind::InvalidOperation, format!("an input is missing: call {setter} first")))
 }

@@ -457,8 +457,10 @@ fn use_segmentation(
 
 /// Starts a job that runs the stages first to last, LUXFER_STAGE_ values, both included; those before must have results.
 /// params may be NULL for the defaults. The caller releases *job. Any thread.
-/// LUXFER_INVALID_OPERATION if a job runs already. The job may end as the jobs of its stages may, the message naming the
-/// stage, or with LUXFER_NOT_READY if an input or an earlier result is missing; the results of the stages before stay.
+/// LUXFER_INVALID_OPERATION if a job runs already, or an input or the result of an earlier stage is missing;
+/// LUXFER_INVALID_ARGUMENT for a setting of one of the stages that is out of range. The job may end as the jobs of its
+/// stages may, the message naming the stage, and ends at once if the scene has no such surface; the results of the stages
+/// before stay.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_start(
     transfer: *mut luxfer_transfer,
@@ -470,9 +472,10 @@ pub unsafe extern "C" fn luxfer_transfer_start(
     enter(transfer, |stage| {
         let (first, last) = (stage_of("first", first)?, stage_of("last", last)?);
         let params = params::read(params)?.params()?;
-        stage.start(job, move |inputs, stage, job| {
-            let results = stage.output().map(|results| (*results).clone()).unwrap_or_default();
-            let mut transfer = Transfer { input: inputs.input()?, params, results };
+        let results = stage.output().map(|results| (*results).clone()).unwrap_or_default();
+        let mut transfer = Transfer { input: stage.inputs().input()?, params, results };
+        transfer.check(first, last)?;
+        stage.start(job, move |_, stage, job| {
             transfer.run(first, last, job, |results| stage.publish(results.clone()))?;
             Ok(transfer.results)
         })

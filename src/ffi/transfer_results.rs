@@ -9,6 +9,7 @@ use super::params::{Report, Versioned};
 use super::pointer::{Out, text};
 use super::rectify::luxfer_rectify_report;
 use super::relight::luxfer_relight_report;
+use super::render::preview;
 use super::scene::{SceneObject, luxfer_scene, missing};
 use super::status::luxfer_status;
 use super::transfer::luxfer_transfer;
@@ -43,6 +44,8 @@ pub const LUXFER_TRANSFER_EMISSION_MASK: luxfer_transfer_image = 8;
 pub const LUXFER_TRANSFER_RENDER: luxfer_transfer_image = 9;
 /// Variance of the rendering; 3 channels.
 pub const LUXFER_TRANSFER_RENDER_VARIANCE: luxfer_transfer_image = 10;
+/// The picture with its noise filtered out, if the settings of the stage RENDER have a preview; see LUXFER_RENDER_PREVIEW.
+pub const LUXFER_TRANSFER_RENDER_PREVIEW: luxfer_transfer_image = 11;
 
 /// A scene of the transfer: a LUXFER_SCENE_ value.
 pub type luxfer_transfer_scene = i32;
@@ -78,7 +81,7 @@ pub struct luxfer_transfer_report {
     pub emission_error: f64,
     /// Widest relative half-width of the solution's 95 % intervals.
     pub relight_error: f64,
-    /// Mean relative standard error of the picture.
+    /// As the error of luxfer_render_report: root mean square of the picture's standard errors, relative to its mean.
     pub render_error: f64,
     /// Size of a texel of the emission in metres.
     pub texel_size: f64,
@@ -194,7 +197,7 @@ fn made<'a, T>(result: &'a Option<Arc<T>>, stage: &str) -> Result<&'a Arc<T>> {
 }
 
 /// Gets an image; which is a LUXFER_TRANSFER_ value. The caller releases *image. Any thread.
-/// LUXFER_NOT_READY before the stage that makes it has ended.
+/// LUXFER_NOT_READY before the stage that makes it has ended; LUXFER_NOT_FOUND for a preview that was not asked for.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_get_image(
     transfer: *mut luxfer_transfer,
@@ -219,6 +222,10 @@ pub unsafe extern "C" fn luxfer_transfer_get_image(
             LUXFER_TRANSFER_EMISSION => Pixels::part(context, made(&r.emission, "EMISSION")?.clone(), |e| &e.texture),
             LUXFER_TRANSFER_EMISSION_MASK => Pixels::part(context, made(&r.emission, "EMISSION")?.clone(), |e| &e.mask),
             LUXFER_TRANSFER_RENDER => Pixels::part(context, made(&r.film, "RENDER")?.clone(), |f| &f.beauty),
+            LUXFER_TRANSFER_RENDER_PREVIEW => {
+                let film = made(&r.film, "RENDER")?;
+                Pixels::part(context, film.clone(), preview(film)?)
+            }
             LUXFER_TRANSFER_RENDER_VARIANCE => Pixels::part(context, made(&r.film, "RENDER")?.clone(), |f| &f.variance),
             _ => return Err(Error::argument(format!("which is {which}; it must be a LUXFER_TRANSFER_ value"))),
         };

@@ -117,7 +117,8 @@ impl Params {
         }
     }
 
-    fn check(&self) -> Result<()> {
+    /// Checks that every setting is in its range.
+    pub fn check(&self) -> Result<()> {
         check_range("hough_band", self.hough_band, 1e-4, std::f64::consts::FRAC_PI_2)?;
         if let Some(focal) = self.focal {
             check_range("focal", focal, 1e-3, 1e9)?;
@@ -225,6 +226,15 @@ pub struct UnwarpParams {
 impl Default for UnwarpParams {
     fn default() -> Self {
         Self { axes: None, max_side: 2048, max_magnification: 16.0 }
+    }
+}
+
+impl UnwarpParams {
+    /// Checks that every setting is in its range.
+    pub fn check(&self) -> Result<()> {
+        check_range("max_side", self.max_side, 16, 16_384)?;
+        check_range("max_magnification", self.max_magnification, f64::MIN_POSITIVE, 1e6)?;
+        Ok(())
     }
 }
 

@@ -4,7 +4,7 @@
 use super::camera::{USUAL_SPREAD, focal_from_points};
 use super::plane::{Plane, choose, marked_pixels};
 use super::{UnwarpParams, Unwarped, View, quad, resample};
-use crate::error::{Result, check_range};
+use crate::error::Result;
 use crate::geometry::{FocalSource, Homography};
 use crate::image::Image;
 use crate::job::Job;
@@ -12,8 +12,7 @@ use glam::{DMat3, DQuat, DVec2, DVec3};
 
 pub fn unwarp(photo: &Image, view: &View, mask: &Image, params: &UnwarpParams, job: Job) -> Result<Unwarped> {
     photo.check_same_size("photo", mask, "mask")?;
-    check_range("max_side", params.max_side, 16, 16_384)?;
-    check_range("max_magnification", params.max_magnification, f64::MIN_POSITIVE, 1e6)?;
+    params.check()?;
     let pixels = marked_pixels(mask)?;
     let plane = choose(view, mask, &pixels, params.axes)?;
     job.check()?;

@@ -71,6 +71,15 @@ impl Default for Params {
     }
 }
 
+impl Params {
+    /// Checks that every setting is in its range.
+    pub fn check(&self) -> Result<()> {
+        check_range("paths", self.paths, 1024, 1 << 30)?;
+        check_range("target_error", self.target_error, 0.0, 1.0)?;
+        Ok(())
+    }
+}
+
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solution {
     /// What to multiply the emission with, per channel, ≥ 0.
@@ -98,8 +107,7 @@ impl Solution {
 
 /// Solves for the scale of the emission. [`crate::error::ErrorKind::Unreachable`] where no channel can be solved.
 pub fn run(input: &Input, params: &Params, job: Job) -> Result<Solution> {
-    check_range("paths", params.paths, 1024, 1 << 30)?;
-    check_range("target_error", params.target_error, 0.0, 1.0)?;
+    params.check()?;
     for channel in input.target.to_array() {
         check_range("target", channel, 0.0, f32::MAX)?;
     }

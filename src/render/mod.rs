@@ -136,6 +136,20 @@ impl Default for Params {
     }
 }
 
+impl Params {
+    /// Checks that every setting is in its range.
+    pub fn check(&self) -> Result<()> {
+        check_range("width", self.width, 1, MAX_SIDE)?;
+        check_range("height", self.height, 1, MAX_SIDE)?;
+        check_range("samples", self.samples, 1, 1 << 20)?;
+        check_range("target_error", self.target_error, 0.0, f32::MAX)?;
+        check_range("pixel_error", self.pixel_error, 0.0, f32::MAX)?;
+        check_range("bounce_error", self.bounce_error, 0.0, 1.0f32.next_down())?;
+        check_range("preview", self.preview, 0.0, 10.0)?;
+        Ok(())
+    }
+}
+
 /// What has been rendered so far; a render that is cancelled or out of time leaves it usable.
 #[derive(Clone, Debug)]
 pub struct Film {
@@ -167,7 +181,8 @@ pub struct Film {
 /// # Errors
 /// Parameters out of range, a camera that cannot see, no memory; cancelled, when the film last published stays good.
 pub fn run(world: &World, camera: &Camera, params: &Params, job: Job, publish: &mut dyn FnMut(&Film)) -> Result<Film> {
-    check(camera, params)?;
+    params.check()?;
+    check_camera(camera)?;
     // The images are made also after a cancel.
     let always = Monitor::default();
     let mut clock = Clock::start(params.time_budget_ms);
@@ -202,14 +217,7 @@ pub fn run(world: &World, camera: &Camera, params: &Params, job: Job, publish: &
     Ok(film)
 }
 
-fn check(camera: &Camera, params: &Params) -> Result<()> {
-    check_range("width", params.width, 1, MAX_SIDE)?;
-    check_range("height", params.height, 1, MAX_SIDE)?;
-    check_range("samples", params.samples, 1, 1 << 20)?;
-    check_range("target_error", params.target_error, 0.0, f32::MAX)?;
-    check_range("pixel_error", params.pixel_error, 0.0, f32::MAX)?;
-    check_range("bounce_error", params.bounce_error, 0.0, 1.0f32.next_down())?;
-    check_range("preview", params.preview, 0.0, 10.0)?;
+fn check_camera(camera: &Camera) -> Result<()> {
     let vectors = [camera.position, camera.forward, camera.up];
     let sees = camera.forward.cross(camera.up).length_squared() > 0.0;
     if vectors.iter().any(|v| !v.is_finite()) || !sees || !(camera.fov_y > 0.0 && camera.fov_y < std::f32::consts::PI) {

@@ -22,7 +22,9 @@ pub fn check_place<W: Display>(what: impl FnOnce() -> W, point: Vec3) -> Result<
         return Ok(());
     }
     let what = what();
-    Err(Error::argument(format!("{what} is {point}; coordinates must lie in [-{MAX_COORDINATE:e}, {MAX_COORDINATE:e}]")))
+    Err(Error::argument(format!(
+        "{what} is {point}; coordinates must lie in [-{MAX_COORDINATE:e}, {MAX_COORDINATE:e}]"
+    )))
 }
 
 /// How far a direction may be from unit length or right angles.

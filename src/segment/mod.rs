@@ -63,6 +63,13 @@ impl Default for Params {
 }
 
 impl Params {
+    /// Checks that every setting is in its range.
+    pub fn check(&self) -> Result<()> {
+        check_range("samples_per_class", self.samples_per_class, 1, 1_000_000)?;
+        check_range("ridge", self.ridge, 1e-9, 1e3)?;
+        Ok(())
+    }
+
     /// For the second phase: colour only.
     pub fn for_lights() -> Self {
         Self { channels: 0b111, ..Self::default() }
@@ -126,8 +133,7 @@ impl Segmentation {
 /// Segments an image by examples. Fails where either class has no pixel in the image.
 pub fn run(input: &Input, params: &Params, job: Job) -> Result<Segmentation> {
     let features = input.features;
-    check_range("samples_per_class", params.samples_per_class, 1, 1_000_000)?;
-    check_range("ridge", params.ridge, 1e-9, 1e3)?;
+    params.check()?;
     check_range("the number of feature channels", features.channels, 1, 16)?;
     let channels: Vec<usize> = (0..features.channels).filter(|c| params.channels >> c & 1 == 1).collect();
     if channels.is_empty() {

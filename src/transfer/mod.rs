@@ -5,6 +5,7 @@
 //! replaced by the caller's own, and the run taken up again from any stage: a better depth map, a hand-drawn mask or
 //! known vanishing points stand in for a stage's result.
 
+mod check;
 mod colour;
 mod placement;
 mod schedule;
@@ -17,7 +18,7 @@ pub use schedule::Fixture;
 pub use schedule_file::{to_csv, to_json};
 
 use crate::emission::{self, Emission};
-use crate::error::{Error, ErrorKind, Result, check_range};
+use crate::error::Result;
 use crate::features::{self, DepthKind, Features};
 use crate::image::Image;
 use crate::job::Job;
@@ -169,12 +170,8 @@ impl Transfer {
     /// `publish` is called with the results whenever a stage ends, and while the picture is being rendered: after a
     /// cancel or an error they hold all that was finished.
     pub fn run(&mut self, from: Stage, to: Stage, job: Job, mut publish: impl FnMut(&Results)) -> Result<()> {
-        if from > to {
-            return Err(Error::argument(format!("the run is from stage {from:?} to {to:?}; it must go forwards")));
-        }
-        check_range("plane_distance", self.params.plane_distance, 0.01, 1e4)?;
-        check_range("max_texels", self.params.max_texels, 1, 16_384)?;
-        check_range("white_luminance", self.params.white_luminance, 1e-6, 1e9)?;
+        self.check(from, to)?;
+        self.check_surface(from, to)?;
 
         let (first, last) = (from as usize, to as usize);
         let total: f64 = WEIGHTS[first..=last].iter().sum();
@@ -207,9 +204,4 @@ impl Transfer {
         }
         .map_err(|e| e.within(format_args!("stage {stage:?}")))
     }
-}
-
-/// What an earlier stage or the caller should have provided.
-fn need<'a, T>(value: &'a Option<T>, what: &str) -> Result<&'a T> {
-    value.as_ref().ok_or_else(|| Error::new(ErrorKind::NotReady, format!("{what} first")))
 }

@@ -1,6 +1,7 @@
 //! The luminaire schedule: every lamp of the solved texture as a fixture in the room.
 
-use super::{LitScene, Results, Transfer, need};
+use super::check::need;
+use super::{LitScene, Results, Transfer};
 use crate::emission::Emission;
 use crate::error::Result;
 use crate::image::colour::luminance;

@@ -1,6 +1,7 @@
 //! Each stage of the transfer: gathers its input from the results before it, runs it, keeps its result.
 
-use super::{LitScene, Results, Transfer, colour, need, placement, viewpoint};
+use super::check::need;
+use super::{LitScene, Results, Transfer, colour, placement, viewpoint};
 use crate::emission::Emission;
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::pyramid;

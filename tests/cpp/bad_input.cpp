@@ -111,7 +111,7 @@ void strokes_and_surfaces() {
     luxfer_transfer *transfer = nullptr;
     luxfer_scene *room = nullptr;
     CHECK_OK(luxfer_transfer_create(context, &transfer));
-    CHECK_STATUS(run(transfer, LUXFER_STAGE_VIEW, LUXFER_STAGE_VIEW), LUXFER_NOT_READY);
+    CHECK_STATUS(run(transfer, LUXFER_STAGE_VIEW, LUXFER_STAGE_VIEW), LUXFER_INVALID_OPERATION);
     CHECK(says({"photo"}));
 
     // No lines to be found.
@@ -144,7 +144,7 @@ void strokes_and_surfaces() {
     CHECK_STATUS(luxfer_scene_find_surface(room, "Ceilling", &surface), LUXFER_NOT_FOUND);
     CHECK(says({"Ceilling", "Ceiling"}));
     CHECK_OK(luxfer_transfer_set_scene(transfer, room, "Ceiling"));
-    CHECK_STATUS(run(transfer, LUXFER_STAGE_RELIGHT, LUXFER_STAGE_RENDER), LUXFER_NOT_READY);
+    CHECK_STATUS(run(transfer, LUXFER_STAGE_RELIGHT, LUXFER_STAGE_RENDER), LUXFER_INVALID_OPERATION);
     CHECK(says({"Relight", "first"}));
     luxfer_image *early = nullptr;
     CHECK_STATUS(luxfer_transfer_get_image(transfer, LUXFER_TRANSFER_RENDER, &early), LUXFER_NOT_READY);

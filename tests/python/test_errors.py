@@ -47,7 +47,7 @@ class Errors(Case):
             (errors.NotFound, LookupError, "Ceiling", lambda: scene.find_surface("Cieling")),
             (errors.NotReady, errors.Error, "", lambda: luxfer.Render(context(), scene).image()),
             (errors.Degenerate, errors.Error, "", lambda: luxfer.Segment(context(), np.zeros((9, 9, 3))).run()),
-            (errors.NotReady, errors.Error, "", lambda: luxfer.Transfer(context(), np.zeros((9, 9, 3))).run("unwarp")),
+            (errors.InvalidOperation, RuntimeError, "stage View", lambda: luxfer.Transfer(context(), np.zeros((9, 9, 3))).run("unwarp")),
         )
         for kind, base, message, call in cases:
             with self.subTest(kind.__name__):

@@ -276,15 +276,9 @@ public:
     Result<bool> wait_for(std::chrono::milliseconds time, const Progress &progress = {}) const {
         constexpr std::int64_t longest = std::numeric_limits<std::int32_t>::max();
         const auto limit = std::int32_t(std::min(std::max<std::int64_t>(time.count(), 0), longest));
-        luxfer_status status = wait_c(get(), limit, progress);
-        if (status == LUXFER_NOT_READY) {
-            // It still runs, or has ended with that very status.
-            std::int32_t finished = 0;
-            status = luxfer_job_poll(get(), nullptr, &finished);
-            if (status == LUXFER_OK && !finished)
-                return false;
-            status = luxfer_job_wait(get(), 0, nullptr, nullptr);
-        }
+        const luxfer_status status = wait_c(get(), limit, progress);
+        if (status == LUXFER_NOT_READY)
+            return false;
         return detail::finish(context().get(), status, true);
     }
 

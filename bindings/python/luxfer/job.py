@@ -49,12 +49,12 @@ class Job(Handle, Generic[T]):
         """Waits until the job has ended; other Python threads run meanwhile. `timeout` in seconds: NotReady, and the job goes
         on. An exception while waiting, be it from progress or Ctrl-C, cancels the job, waits for it to end, and goes on."""
         end = None if timeout is None else time.monotonic() + timeout
-        finished, told = False, -1.0
+        told = -1.0
         try:
             while True:
                 left = SLICE_MS if end is None else max(0, min(SLICE_MS, round(1000 * (end - time.monotonic()))))
                 status = library.luxfer_job_wait(self.handle, left, NO_PROGRESS, None)
-                if status != Status.NOT_READY or finished:  # a job may also end so, if an input is missing
+                if status != Status.NOT_READY:
                     break
                 fraction, finished = self.poll()
                 if finished:

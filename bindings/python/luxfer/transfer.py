@@ -132,7 +132,7 @@ class Transfer(StageBase):
 
     def image(self, which: TransferImage | str = TransferImage.RENDER) -> Image:
         """ "features", "plane-mask", "plane-confidence", "lights-mask", "lights-confidence", "unwarped", "unwarped-valid",
-        "emission", "emission-mask", "render" or "render-variance"."""
+        "emission", "emission-mask", "render", "render-variance" or "render-preview"."""
         return self._get_image("get_image", _params.member(TransferImage, which))
 
     def scene(self, which: TransferScene | str = TransferScene.LIT) -> Scene:

@@ -336,6 +336,9 @@ class TransferImage(IntEnum):
     """The scene in its new light, linear RGB in cd/m²; while it is being rendered, as far as it is."""
     RENDER_VARIANCE = 10
     """Variance of the rendering; 3 channels."""
+    RENDER_PREVIEW = 11
+    """The picture with its noise filtered out, if the settings of the stage RENDER have a preview; see
+    RenderImage.PREVIEW."""
 
 
 class TransferScene(IntEnum):
@@ -687,7 +690,7 @@ class MeshParams(TypedDict, total=False):
     vertex_count: int
     """Number of vertices in [3, 2^32 - 1]; to be set."""
     positions: int
-    """Three floats for each vertex, in metres, finite; to be set."""
+    """Three floats for each vertex, in metres, in [-1e15, 1e15]; to be set."""
     position_stride: int
     """Bytes from a position to the next; at least 12, or 0, the default: packed."""
     normals: int
@@ -713,9 +716,9 @@ class CameraParams(TypedDict, total=False):
     fov_y: float
     """Full vertical angle of view in radians, in [0.001, 3.1]; default 1."""
     position: Sequence[float]
-    """Where it stands, in metres; default (0, 0, 0)."""
+    """Where it stands, in metres, in [-1e15, 1e15]; default (0, 0, 0)."""
     target: Sequence[float]
-    """What it looks at, another point; default (0, 0, -1)."""
+    """What it looks at, another point, in [-1e15, 1e15]; default (0, 0, -1)."""
     up: Sequence[float]
     """Direction that is up in the image, not along the view; default (0, 1, 0)."""
 
@@ -726,7 +729,7 @@ class LightParams(TypedDict, total=False):
     kind: LightKind | str | int
     """LightKind; default LightKind.POINT."""
     position: Sequence[float]
-    """Where a point or a spot stands, in metres; default (0, 0, 0)."""
+    """Where a point or a spot stands, in metres, in [-1e15, 1e15]; default (0, 0, 0)."""
     direction: Sequence[float]
     """Where a spot or a directional light shines; any length but 0; default (0, -1, 0)."""
     intensity: Sequence[float]
@@ -815,8 +818,8 @@ class RectifyParams(TypedDict, total=False):
     metric: Metric | str | int
     """Metric; default Metric.SEGMENT."""
     hough_band: float
-    """Half-width in radians of the band around the gradient's direction that votes for a line, in (0, pi/2];
-    default 2.5 degrees."""
+    """Half-width in radians of the band around the gradient's direction that votes for a line, in [1e-4, pi/2];
+    default 0.0436, which is 2.5 degrees."""
     focal: float
     """Focal length in pixels, > 0, or 0, the default: unknown."""
     principal: Sequence[float]
@@ -1148,7 +1151,7 @@ class TransferReport:
     relight_error: float
     """Widest relative half-width of the solution's 95 % intervals."""
     render_error: float
-    """Mean relative standard error of the picture."""
+    """As the error of RenderReport: root mean square of the picture's standard errors, relative to its mean."""
     texel_size: float
     """Size of a texel of the emission in metres."""
     target: tuple[float, float, float]

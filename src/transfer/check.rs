@@ -1,0 +1,113 @@
+//! What a run needs, checked before it begins: settings of its stages, its inputs, and the results it goes on from.
+
+use super::{Params, Stage, Transfer};
+use crate::error::{Error, ErrorKind, Result, check_range};
+use crate::scene::surface;
+
+impl Transfer {
+    /// Checks a run of the stages `from..=to`; takes no time worth speaking of.
+    ///
+    /// # Errors
+    /// `InvalidArgument` for settings out of range, `InvalidOperation` for what is missing.
+    pub fn check(&self, from: Stage, to: Stage) -> Result<()> {
+        if from > to {
+            return Err(Error::argument(format!("the run is from stage {from:?} to {to:?}; it must go forwards")));
+        }
+        let run = super::STAGES.into_iter().filter(|stage| (from..=to).contains(stage));
+        let mut made = super::STAGES.map(|stage| self.has_made(stage));
+        for stage in run {
+            let within = |e: Error| e.within(format_args!("stage {stage:?}"));
+            self.params.check(stage).map_err(within)?;
+            self.check_inputs(stage).map_err(within)?;
+            if let Some(before) = self.stages_before(stage).iter().find(|before| !made[**before as usize]) {
+                return Err(within(missing(&format!("run stage {before:?}"))));
+            }
+            made[stage as usize] = true;
+        }
+        Ok(())
+    }
+
+    /// Checks that the scene has the surface, where the run is to light it.
+    pub(super) fn check_surface(&self, from: Stage, to: Stage) -> Result<()> {
+        match &self.input.scene {
+            Some(scene) if (from..=to).contains(&Stage::Emission) => {
+                surface::find(scene, &self.input.surface).map(drop)
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn has_made(&self, stage: Stage) -> bool {
+        let results = &self.results;
+        match stage {
+            Stage::View => results.view.is_some(),
+            Stage::Features => results.features.is_some(),
+            Stage::Plane => results.plane.is_some(),
+            Stage::Lights => results.lights.is_some(),
+            Stage::Unwarp => results.unwarped.is_some(),
+            Stage::Emission => results.unsolved.is_some(),
+            Stage::Relight => results.lit.is_some(),
+            Stage::Render => results.film.is_some(),
+        }
+    }
+
+    fn check_inputs(&self, stage: Stage) -> Result<()> {
+        let own_texture = self.input.texture.is_some();
+        let reads_photo = !matches!(stage, Stage::Plane | Stage::Lights | Stage::Render);
+        if reads_photo && !(stage == Stage::Emission && own_texture) && self.input.photo.is_none() {
+            return Err(missing("set the photo"));
+        }
+        if stage == Stage::Emission && self.input.scene.is_none() {
+            return Err(missing("set the scene"));
+        }
+        Ok(())
+    }
+
+    /// The stages whose results one goes on from. Features do without a view.
+    fn stages_before(&self, stage: Stage) -> &'static [Stage] {
+        match stage {
+            Stage::View | Stage::Features => &[],
+            Stage::Plane => &[Stage::Features],
+            Stage::Lights => &[Stage::Features, Stage::Plane],
+            Stage::Unwarp => &[Stage::View, Stage::Plane],
+            Stage::Emission if self.input.texture.is_some() => &[],
+            Stage::Emission => &[Stage::Lights, Stage::Unwarp],
+            Stage::Relight => &[Stage::Plane, Stage::Lights, Stage::Emission],
+            Stage::Render => &[Stage::Relight],
+        }
+    }
+}
+
+impl Params {
+    /// Checks the settings of one stage.
+    fn check(&self, stage: Stage) -> Result<()> {
+        match stage {
+            Stage::View => self.rectify.check(),
+            Stage::Features => self.features.check(),
+            Stage::Plane => self.plane.check(),
+            Stage::Lights => self.lights.check(),
+            Stage::Unwarp => self.unwarp.check(),
+            Stage::Emission => {
+                check_range("plane_distance", self.plane_distance, 0.01, 1e4)?;
+                check_range("max_texels", self.max_texels, 1, 16_384)?;
+                check_range("white_luminance", self.white_luminance, 1e-6, 1e9)?;
+                self.emission.check()
+            }
+            Stage::Relight => {
+                check_range("white_luminance", self.white_luminance, 1e-6, 1e9)?;
+                self.relight.check()
+            }
+            Stage::Render => self.render.check(),
+        }
+    }
+}
+
+/// What an earlier stage or the caller should have provided.
+pub(super) fn missing(what: &str) -> Error {
+    Error::new(ErrorKind::InvalidOperation, format!("{what} first"))
+}
+
+/// The same, of a result that is to be used.
+pub(super) fn need<'a, T>(value: &'a Option<T>, what: &str) -> Result<&'a T> {
+    value.as_ref().ok_or_else(|| missing(what))
+}
