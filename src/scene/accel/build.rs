@@ -1,6 +1,7 @@
 //! From triangles to the finished structure.
 
-use super::collapse::{self, Source};
+use super::collapse;
+use super::costs::Source;
 use super::lines::Lines;
 use super::node::Child;
 use super::{Accel, SHORT_STACK, pages, units};
@@ -16,9 +17,11 @@ use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 /// and the sort keys (32 each); two nodes per leaf (64) with their parents and marks (10).
 const BUILDER_BYTES: usize = 256;
 
-/// Nodes that a round of reinsertion tries to move, within limits of 5 and 10 % of all: more make a better tree, but take
-/// their time.
-const REINSERTED: f32 = 4000.0;
+/// Nodes that the first round of reinsertion tries to move, within limits of 8 and 20 % of all: more make a better
+/// tree, but take their time.
+const REINSERTED: f32 = 13_000.0;
+/// Rounds of reinsertion, as shares of the first; the largest nodes are tried in every one. More of them gain nothing.
+const ROUNDS: [f32; 3] = [1.0, 0.33, 0.1];
 
 pub(super) fn build(triangles: &[[Vec3; 3]], job: Job) -> Result<Accel> {
     if triangles.len() >= 1 << 31 {
@@ -43,7 +46,7 @@ pub(super) fn build(triangles: &[[Vec3; 3]], job: Job) -> Result<Accel> {
     job.report(0.1);
     // The builder's own allocations end the process where they fail.
     pages::expect_room(units.list.len().saturating_mul(BUILDER_BYTES))?;
-    let tree = binary_tree(&units.boxes(triangles), job.part(0.1, 0.8))?;
+    let tree = binary_tree(&units.boxes(triangles)?, job.part(0.1, 0.8))?;
     collapse::run(&Source { triangles, units: &units.list, tree: &tree }, &mut accel, job)?;
     job.report(1.0);
     Ok(accel)
@@ -62,13 +65,14 @@ fn has_wide_vectors() -> bool {
 }
 
 fn binary_tree(boxes: &[Aabb], job: Job) -> Result<Bvh2> {
+    // With these indices a leaf of the tree tells its unit itself.
     let indices = (0..boxes.len() as u32).collect();
     let mut tree =
         PlocBuilder::with_capacity(boxes.len()).build(PlocSearchDistance::Low, boxes, indices, SortPrecision::U64, 0);
     job.check()?;
     job.report(0.7);
-    let share = (REINSERTED / boxes.len() as f32).clamp(0.05, 0.1);
-    ReinsertionOptimizer::default().run(&mut tree, share, None);
+    let share = (REINSERTED / boxes.len() as f32).clamp(0.08, 0.2);
+    ReinsertionOptimizer::default().run(&mut tree, share, Some(ROUNDS.to_vec()));
     job.check()?;
     job.report(1.0);
     Ok(tree)

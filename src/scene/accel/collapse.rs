@@ -1,53 +1,43 @@
 //! From a binary tree to nodes of eight children, by the cost rays are expected to meet (Ylitie, Karras and Laine 2017,
 //! section 3.1).
 //!
-//! A ray that meets the box of a parent meets the box of a child in proportion to their surface areas. For each binary
-//! subtree the least expected cost is found of turning it into one to seven wide subtrees, from those of its two halves;
-//! then the choices are followed from the root down.
+//! For each binary subtree the least expected cost is found of turning it into one to seven wide subtrees; then the choices
+//! are followed from the root down.
 //!
 //! The tree is cut into parts near its root, which are done in parallel. Where it is cut depends on the tree alone.
 
+use super::costs::{Binary, Branch, Content, Scale, Source, distribute};
 use super::lines::Lines;
 use super::node::{Child, Node};
 use super::packet::{Packet, WIDTH};
-use super::units::Unit;
 use super::{Accel, pages};
 use crate::error::{Error, ErrorKind, Result};
 use crate::job::Job;
-use glam::Vec3;
-use obvhs::bvh2::Bvh2;
 use rayon::prelude::*;
 use std::collections::{BinaryHeap, HashMap};
 
-/// Expected cost of testing a packet of triangles, in units of that of testing a node.
-const PACKET_COST: f32 = 1.0;
-/// Parts a large tree is cut into.
+/// Parts a large tree is cut into; smaller ones have parts of so many leaves, or are not worth cutting.
 const PARTS: usize = 256;
-/// Leaves of a tree that is not worth cutting.
-const SMALL: usize = 4096;
-
-pub(super) struct Source<'a> {
-    pub triangles: &'a [[Vec3; 3]],
-    pub units: &'a [Unit],
-    pub tree: &'a Bvh2,
-}
+const PART_LEAVES: usize = 128;
+const FEW_PARTS: usize = 8;
 
 /// Builds the nodes and packets of `accel`.
 pub(super) fn run(source: &Source, accel: &mut Accel, job: Job) -> Result<()> {
     let scale = Scale::of(accel.low, accel.high);
     // Costs: of the parts in parallel, then of what lies above them.
     let cut = source.cut();
-    let part = |&root: &u32| job.check().map(|()| Binary::new(source, root, &HashMap::new(), &[], scale));
+    let part = |&root: &u32| job.check().and_then(|()| Binary::new(source, root, &HashMap::new(), &[], scale));
     let mut binaries: Vec<Binary> = cut.par_iter().map(part).collect::<Result<_>>()?;
     let places: HashMap<u32, u32> = cut.iter().enumerate().map(|(i, &node)| (node, i as u32)).collect();
-    binaries.push(Binary::new(source, 0, &places, &binaries, scale));
+    binaries.push(Binary::new(source, 0, &places, &binaries, scale)?);
     // Choices: those above the parts first; they leave subtrees of parts, which are done in parallel.
     let choice = Choice { source, binaries: &binaries };
-    let mut top = choice.widen((cut.len(), 0), true);
+    let mut top = choice.widen((cut.len(), 0), true)?;
     let tasks = std::mem::take(&mut top.left);
-    let below = |task: &Left| job.check().map(|()| choice.widen(task.at, false));
+    let below = |task: &Left| job.check().and_then(|()| choice.widen(task.at, false));
     let mut done: Vec<Wide> = tasks.par_iter().map(below).collect::<Result<_>>()?;
     drop(binaries);
+
     // Find where each comes to lie, the top first, and tell it.
     let mut len = top.lines.len();
     let mut bases = Vec::with_capacity(tasks.len());
@@ -73,14 +63,16 @@ pub(super) fn run(source: &Source, accel: &mut Accel, job: Job) -> Result<()> {
 impl Source<'_> {
     /// Roots of the parts: the tree is opened where its boxes are largest. Empty for a small tree.
     fn cut(&self) -> Vec<u32> {
-        if self.units.len() < SMALL {
+        let parts = (self.units.len() / PART_LEAVES).min(PARTS);
+        if parts < FEW_PARTS {
             return Vec::new();
         }
         let nodes = &self.tree.nodes;
-        let entry = |index: u32| (ordered(nodes[index as usize].aabb().half_area()), index);
+        // Areas are not negative: their bits sort as they do.
+        let entry = |index: u32| (nodes[index as usize].aabb().half_area().to_bits(), index);
         let mut open = BinaryHeap::from([entry(0)]);
         let mut leaves = Vec::new();
-        while open.len() + leaves.len() < PARTS
+        while open.len() + leaves.len() < parts
             && let Some((_, index)) = open.pop()
         {
             let node = &nodes[index as usize];
@@ -93,124 +85,6 @@ impl Source<'_> {
         leaves.extend(open.into_iter().map(|(_, index)| index));
         leaves.sort_unstable();
         leaves
-    }
-}
-
-/// Areas are not negative: their bits sort as they do.
-fn ordered(area: f32) -> u32 {
-    area.to_bits()
-}
-
-/// Areas in units of the whole scene's, computed so that no size overflows.
-#[derive(Clone, Copy)]
-struct Scale(f64);
-
-impl Scale {
-    fn of(low: Vec3, high: Vec3) -> Self {
-        Self(1.0 / half_area(low, high).max(f64::MIN_POSITIVE))
-    }
-
-    fn area(self, low: Vec3, high: Vec3) -> f32 {
-        (half_area(low, high) * self.0) as f32
-    }
-}
-
-fn half_area(low: Vec3, high: Vec3) -> f64 {
-    let d = high.as_dvec3() - low.as_dvec3();
-    d.x * d.y + d.y * d.z + d.z * d.x
-}
-
-#[derive(Clone, Copy)]
-enum Content {
-    /// Index of the right half; the left one comes right after its parent.
-    Halves(u32),
-    Unit(Unit),
-    /// The root of another part.
-    Part(u32),
-}
-
-#[derive(Clone, Copy)]
-struct Branch {
-    low: Vec3,
-    high: Vec3,
-    content: Content,
-    /// Triangles below.
-    count: u32,
-    /// `cost[i]`: the least expected cost as at most `i + 1` wide subtrees.
-    cost: [f32; 7],
-}
-
-/// A part of the binary tree, parents before children, with its costs.
-struct Binary {
-    branches: Vec<Branch>,
-    scale: Scale,
-}
-
-impl Binary {
-    fn new(source: &Source, root: u32, cut: &HashMap<u32, u32>, parts: &[Binary], scale: Scale) -> Self {
-        let mut this = Self { branches: Vec::new(), scale };
-        let mut open = vec![(root, None)];
-        while let Some((index, parent)) = open.pop() {
-            let at = this.branches.len();
-            if let Some(parent) = parent {
-                this.branches[parent as usize].content = Content::Halves(at as u32);
-            }
-            let node = &source.tree.nodes[index as usize];
-            let mut branch = Branch {
-                low: Vec3::INFINITY,
-                high: Vec3::NEG_INFINITY,
-                content: Content::Halves(0),
-                count: 0,
-                cost: [0.0; 7],
-            };
-            if let Some(&part) = cut.get(&index) {
-                branch = Branch { content: Content::Part(part), ..parts[part as usize].branches[0] };
-            } else if node.is_leaf() {
-                let unit = source.units[source.tree.primitive_indices[node.first_index as usize] as usize];
-                for corner in unit.ids().flat_map(|id| source.triangles[id as usize]) {
-                    branch.low = branch.low.min(corner);
-                    branch.high = branch.high.max(corner);
-                }
-                branch.content = Content::Unit(unit);
-                branch.count = unit.ids().count() as u32;
-                branch.cost = [scale.area(branch.low, branch.high) * PACKET_COST; 7];
-            } else {
-                // The left half follows next; the right one is told where its parent is.
-                open.push((node.first_index + 1, Some(at as u32)));
-                open.push((node.first_index, None));
-            }
-            this.branches.push(branch);
-        }
-        for at in (0..this.branches.len()).rev() {
-            if let Content::Halves(right) = this.branches[at].content {
-                this.weigh(at, right as usize);
-            }
-        }
-        this
-    }
-
-    /// Costs of a branch from those of its halves.
-    fn weigh(&mut self, at: usize, right: usize) {
-        let (l, r) = (&self.branches[at + 1], &self.branches[right]);
-        let (low, high, count) = (l.low.min(r.low), l.high.max(r.high), l.count + r.count);
-        let area = self.scale.area(low, high);
-        let mut cost = [0.0; 7];
-        cost[0] = area + distribute(&l.cost, &r.cost, 8).0;
-        if count <= WIDTH as u32 {
-            cost[0] = cost[0].min(area * PACKET_COST);
-        }
-        for roots in 2..8 {
-            cost[roots - 1] = cost[roots - 2].min(distribute(&l.cost, &r.cost, roots).0);
-        }
-        let branch = &mut self.branches[at];
-        (branch.low, branch.high, branch.count, branch.cost) = (low, high, count, cost);
-    }
-
-    /// Whether a branch, as one wide subtree, is best a packet.
-    fn is_packet(&self, at: usize) -> bool {
-        let branch = &self.branches[at];
-        let as_packet = || self.scale.area(branch.low, branch.high) * PACKET_COST;
-        branch.count <= WIDTH as u32 && (matches!(branch.content, Content::Unit(_)) || branch.cost[0] >= as_packet())
     }
 }
 
@@ -259,16 +133,16 @@ impl Choice<'_> {
     }
 
     /// The wide subtree of a place; within other parts than its own, children are left to be done if `leave`.
-    fn widen(&self, root: Place, leave: bool) -> Wide {
+    fn widen(&self, root: Place, leave: bool) -> Result<Wide> {
         let mut wide = Wide::default();
         if self.is_packet(root) {
-            wide.root = Child::of_packet(wide.lines.push(self.packet(root)));
-            return wide;
+            wide.root = Child::of_packet(wide.lines.push(&self.packet(&self.triangles(root)))?);
+            return Ok(wide);
         }
         // Nodes to be made: the place, whose child it is, and the entries that wait when it is visited.
         let mut open = vec![(root, None, 0)];
         while let Some((place, parent, waiting)) = open.pop() {
-            let node = wide.lines.push(Node::empty());
+            let node = wide.lines.push(&Node::empty())?;
             wide.nodes.push(node);
             match parent {
                 Some((parent, lane)) => wide.lines.get_mut::<Node>(parent).children[lane] = Child::of_node(node).bits(),
@@ -276,15 +150,19 @@ impl Choice<'_> {
             }
             let mut members = [root; 8];
             let len = self.members(place, &mut members);
-            members[..len].sort_by(|&a, &b| self.promise(a).total_cmp(&self.promise(b)));
+            let mut ranked = members.map(|at| (0.0, at));
+            ranked[..len].iter_mut().for_each(|(promise, at)| *promise = self.promise(*at));
+            ranked[..len].sort_by(|a, b| a.0.total_cmp(&b.0));
+            // All triangles are known, and memory is asked for them, before the first is needed.
+            let packets = ranked.map(|(_, at)| self.is_packet(at).then(|| self.triangles(at)));
             wide.stack_need = wide.stack_need.max(waiting + len);
             let waiting = waiting + len - 1;
-            for (lane, &at) in members[..len].iter().enumerate() {
+            for (lane, &(_, at)) in ranked[..len].iter().enumerate() {
                 let mut child = Child::EMPTY;
                 if leave && at.0 != root.0 {
                     wide.left.push(Left { at, node, lane, waiting });
-                } else if self.is_packet(at) {
-                    child = Child::of_packet(wide.lines.push(self.packet(at)));
+                } else if let Some(ids) = &packets[lane] {
+                    child = Child::of_packet(wide.lines.push(&self.packet(ids))?);
                 } else {
                     open.push((at, Some((node, lane)), waiting));
                 }
@@ -292,15 +170,17 @@ impl Choice<'_> {
                 wide.lines.get_mut::<Node>(node).set(lane, branch.low, branch.high, child);
             }
         }
-        wide
+        Ok(wide)
     }
 
-    /// What a search for any hit may expect of a child, which visits the last lane first: large boxes are met more often,
-    /// and a packet ends the search where a node only goes on with it.
+    /// What a search for any hit may expect of a child, which visits the last lane first: the chance of a hit, over the cost
+    /// of looking for it. A line that meets the box of `n` triangles meets `surface / area` of them on average; those may lie
+    /// one behind the other, so that the chance of any is less.
     fn promise(&self, place: Place) -> f32 {
         let branch = self.branch(place);
         let area = self.binaries[place.0].scale.area(branch.low, branch.high);
-        if self.is_packet(place) { 2.0 * area } else { area }
+        let chance = branch.surface / (branch.surface + area);
+        chance * area / branch.cost[0]
     }
 
     fn is_packet(&self, (binary, at): Place) -> bool {
@@ -322,8 +202,8 @@ impl Choice<'_> {
                 roots -= 1;
             }
             match branch.content {
-                Content::Halves(right) if roots > 1 => {
-                    let (l, r) = ((binary, at + 1), (binary, right as usize));
+                Content::Halves(first) if roots > 1 => {
+                    let (l, r) = ((binary, first as usize), (binary, first as usize + 1));
                     let (_, left) = distribute(&self.branch(l).cost, &self.branch(r).cost, roots);
                     open[waiting] = (r, roots - left);
                     open[waiting + 1] = (l, left);
@@ -346,8 +226,8 @@ impl Choice<'_> {
         len
     }
 
-    /// The triangles of a branch, which may reach into another part.
-    fn packet(&self, at: Place) -> Packet {
+    /// The triangles of a branch, which may reach into another part. Memory is asked for them.
+    fn triangles(&self, at: Place) -> ([u32; WIDTH], usize) {
         let mut ids = [0; WIDTH];
         let mut len = 0;
         let mut open = [at; WIDTH];
@@ -356,9 +236,9 @@ impl Choice<'_> {
             waiting -= 1;
             let (binary, at) = open[waiting];
             match self.branch((binary, at)).content {
-                Content::Halves(right) => {
-                    open[waiting] = (binary, right as usize);
-                    open[waiting + 1] = (binary, at + 1);
+                Content::Halves(first) => {
+                    open[waiting] = (binary, first as usize + 1);
+                    open[waiting + 1] = (binary, first as usize);
                     waiting += 2;
                 }
                 Content::Part(part) => {
@@ -366,25 +246,18 @@ impl Choice<'_> {
                     waiting += 1;
                 }
                 Content::Unit(unit) => {
-                    for id in unit.ids() {
+                    for id in self.source.units[unit as usize].ids() {
+                        pages::prefetch(&raw const self.source.triangles[id as usize], 1);
                         ids[len] = id;
                         len += 1;
                     }
                 }
             }
         }
+        (ids, len)
+    }
+
+    fn packet(&self, &(ids, len): &([u32; WIDTH], usize)) -> Packet {
         Packet::new(self.source.triangles, &ids[..len])
     }
-}
-
-/// The least cost of two halves as `roots` wide subtrees together, and how many of them the left half becomes.
-fn distribute(left: &[f32; 7], right: &[f32; 7], roots: usize) -> (f32, usize) {
-    let mut best = (left[0] + right[(roots - 2).min(6)], 1);
-    for k in 2..roots {
-        let cost = left[k - 1] + right[roots - k - 1];
-        if cost < best.0 {
-            best = (cost, k);
-        }
-    }
-    best
 }

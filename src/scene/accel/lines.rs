@@ -5,6 +5,8 @@
 
 use super::node::Node;
 use super::packet::Packet;
+use super::pages;
+use crate::error::Result;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(64))]
@@ -49,11 +51,12 @@ impl Lines {
     }
 
     /// Appends a node or a packet; gives its line.
-    pub fn push<T: Plain>(&mut self, item: T) -> usize {
+    pub fn push<T: Plain>(&mut self, item: &T) -> Result<usize> {
         let line = self.list.len();
-        self.list.resize(line + lines_of::<T>(), Line([0; 16]));
-        *self.get_mut(line) = item;
-        line
+        pages::make_room(&mut self.list, lines_of::<T>())?;
+        // SAFETY: `T` is plain, and as large and aligned as these.
+        self.list.extend_from_slice(unsafe { std::slice::from_raw_parts((&raw const *item).cast(), lines_of::<T>()) });
+        Ok(line)
     }
 
     pub fn get_mut<T: Plain>(&mut self, line: usize) -> &mut T {
@@ -74,14 +77,7 @@ impl Lines {
     /// Asks memory for what starts at a line: a node, or all of a packet but the indices, which only hits need.
     #[inline(always)]
     pub fn prefetch(&self, line: usize) {
-        #[cfg(target_arch = "x86_64")]
-        for next in 0..4 {
-            use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
-            // SAFETY: a hint; it reads nothing, whatever the address.
-            unsafe { _mm_prefetch::<_MM_HINT_T0>(self.at(line).wrapping_add(next).cast()) };
-        }
-        #[cfg(not(target_arch = "x86_64"))]
-        let _ = line;
+        pages::prefetch(self.at(line), 4);
     }
 
     #[inline(always)]

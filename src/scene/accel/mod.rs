@@ -12,6 +12,7 @@
 mod aligned;
 mod build;
 mod collapse;
+mod costs;
 mod lanes;
 mod lines;
 mod node;

@@ -1,6 +1,6 @@
-//! Memory for the finished structure.
+//! Memory: lists that may be too large for it, and what makes it fast.
 //!
-//! Rays touch it all over the place, and where it is many times larger than what the processor's page tables reach,
+//! Rays touch the finished structure all over the place, and where it is many times larger than what the processor's page tables reach,
 //! looking up pages costs as much as reading them. On Linux it is therefore put on huge pages, which the system grants
 //! to those who ask.
 
@@ -32,16 +32,42 @@ pub(super) fn expect_room(bytes: usize) -> Result<()> {
     reserve::<u8>(bytes).map(|room| drop(black_box(room)))
 }
 
-fn reserve<T>(len: usize) -> Result<Vec<T>> {
+/// Asks memory for a number of cache lines from an item on, which will be needed soon.
+#[inline(always)]
+pub(super) fn prefetch<T>(first: *const T, lines: usize) {
+    #[cfg(target_arch = "x86_64")]
+    for line in 0..lines {
+        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+        // SAFETY: a hint; it reads nothing, whatever the address.
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(first.cast::<i8>().wrapping_add(64 * line)) };
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = (first, lines);
+}
+
+/// Makes room for a number of items more, or gives an error; lists grow by doubling.
+#[inline]
+pub(super) fn make_room<T>(list: &mut Vec<T>, more: usize) -> Result<()> {
+    if list.capacity() - list.len() >= more {
+        return Ok(());
+    }
+    list.try_reserve(more).map_err(|_| no_room::<T>(list.len() + more))
+}
+
+/// An empty list with room for `len` items, or an error.
+pub(super) fn reserve<T>(len: usize) -> Result<Vec<T>> {
     let mut list = Vec::new();
-    list.try_reserve_exact(len).map_err(|_| {
-        let mib = (len as f64) * size_of::<T>() as f64 / (1 << 20) as f64;
-        Error::new(ErrorKind::OutOfMemory, format!("could not allocate {mib:.1} MiB"))
-    })?;
+    list.try_reserve_exact(len).map_err(|_| no_room::<T>(len))?;
     Ok(list)
 }
 
-/// An empty list with room for `len` items.
+#[cold]
+fn no_room<T>(len: usize) -> Error {
+    let mib = (len as f64) * size_of::<T>() as f64 / (1 << 20) as f64;
+    Error::new(ErrorKind::OutOfMemory, format!("could not allocate {mib:.1} MiB"))
+}
+
+/// The same on huge pages.
 fn room<T>(len: usize) -> Result<Vec<T>> {
     let list = reserve::<T>(len)?;
     #[cfg(target_os = "linux")]

@@ -3,7 +3,7 @@
 //! Meshes list the two halves of a square one after the other. They lie in almost the same box, so no ray is saved by
 //! telling them apart; as one leaf they halve the work of the builder.
 
-use super::Job;
+use super::{Job, pages};
 use crate::error::Result;
 use crate::rng;
 use glam::{DVec3, Vec3};
@@ -43,11 +43,11 @@ pub(super) fn gather(triangles: &[[Vec3; 3]], job: Job) -> Result<Units> {
         .enumerate()
         .map(|(i, chunk)| {
             job.check()?;
-            Ok(gather_chunk(chunk, (i * CHUNK) as u32))
+            gather_chunk(chunk, (i * CHUNK) as u32)
         })
         .collect::<Result<_>>()?;
     let mut all = Units { list: Vec::new(), low: Vec3::INFINITY, high: Vec3::NEG_INFINITY, dropped: 0 };
-    all.list.reserve_exact(chunks.iter().map(|chunk| chunk.list.len()).sum());
+    all.list = pages::reserve(chunks.iter().map(|chunk| chunk.list.len()).sum())?;
     for chunk in chunks {
         all.list.extend(chunk.list);
         all.low = all.low.min(chunk.low);
@@ -57,9 +57,9 @@ pub(super) fn gather(triangles: &[[Vec3; 3]], job: Job) -> Result<Units> {
     Ok(all)
 }
 
-fn gather_chunk(triangles: &[[Vec3; 3]], first: u32) -> Units {
+fn gather_chunk(triangles: &[[Vec3; 3]], first: u32) -> Result<Units> {
     let mut units =
-        Units { list: Vec::with_capacity(CHUNK), low: Vec3::INFINITY, high: Vec3::NEG_INFINITY, dropped: 0 };
+        Units { list: pages::reserve(triangles.len())?, low: Vec3::INFINITY, high: Vec3::NEG_INFINITY, dropped: 0 };
     // The triangle before, its box and that box's area, if it is still alone.
     let mut alone: Option<(Vec3, Vec3, f32)> = None;
     for (i, corners) in triangles.iter().enumerate() {
@@ -84,7 +84,7 @@ fn gather_chunk(triangles: &[[Vec3; 3]], first: u32) -> Units {
             alone = Some((low, high, area));
         }
     }
-    units
+    Ok(units)
 }
 
 fn has_area(corners: &[Vec3; 3]) -> bool {
@@ -112,7 +112,7 @@ impl Units {
     ///
     /// Boxes that are one point there, as those of a small thing in a huge scene are, would have none to grow by, and ties
     /// without end make the builder take time in the square of their number: they grow by 2^-12 of their distance.
-    pub fn boxes(&self, triangles: &[[Vec3; 3]]) -> Vec<Aabb> {
+    pub fn boxes(&self, triangles: &[[Vec3; 3]]) -> Result<Vec<Aabb>> {
         let (low, high) = (self.low.as_dvec3(), self.high.as_dvec3());
         let centre = (low + high) / 2.0;
         let scale = DVec3::splat(1.0 / (high - low).max_element().max(f64::MIN_POSITIVE));
@@ -128,6 +128,8 @@ impl Units {
             let grow = Vec3::splat(amount * if is_point { distance / 4096.0 } else { extent * 1e-3 });
             Aabb::new((low - grow).into(), (high + grow).into())
         };
-        self.list.par_iter().with_min_len(CHUNK).map(unit_box).collect()
+        let mut boxes = pages::reserve(self.list.len())?;
+        self.list.par_iter().with_min_len(CHUNK / 4).map(unit_box).collect_into_vec(&mut boxes);
+        Ok(boxes)
     }
 }
