@@ -15,7 +15,7 @@ use crate::image::{Image, colour, try_vec};
 use crate::job::Job;
 use crate::scene::Camera;
 use glam::{DVec3, Vec3};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Longest name of a layer, and the most layers.
 const LONGEST_NAME: usize = 64;
@@ -103,10 +103,11 @@ impl<'a> Layers<'a> {
         Ok(Some(Self { world, outputs, eye, forward, table, width, tiles }))
     }
 
-    pub fn recorder<'b>(&'b self, world: &'b World) -> Recorder<'b> {
+    /// Begins with the paths of a tile.
+    pub fn recorder(&self, tile: usize) -> Recorder<'_> {
         Recorder {
-            world,
             layers: self,
+            kept: self.tiles[tile].lock().unwrap_or_else(PoisonError::into_inner),
             beauty: Vec3::ZERO,
             trail: Trail::new(&self.table),
             sums: vec![DVec3::ZERO; self.table.lists().len()],
@@ -114,55 +115,21 @@ impl<'a> Layers<'a> {
         }
     }
 
-    /// Adds what a recorder has gathered to a pixel's sums, and leaves it empty.
-    pub fn keep(&self, recorder: &mut Recorder, tile: usize, pixel: usize) {
-        let mut tile = self.tiles[tile].lock().unwrap_or_else(PoisonError::into_inner);
-        let (colours, surfaces) =
-            tile[pixel * self.width..][..self.width].split_at_mut(3 * self.outputs.expressions.len());
-        // What a list of expressions shares is added to each of them.
-        let lists = self.table.lists().iter().zip(&mut recorder.sums);
-        for (list, sum) in lists.filter(|(_, sum)| **sum != DVec3::ZERO) {
-            for &expression in list {
-                let kept = &mut colours[3 * usize::from(expression)..][..3];
-                kept.iter_mut().zip(sum.as_vec3().to_array()).for_each(|(k, s)| *k += s);
-            }
-            *sum = DVec3::ZERO;
-        }
-        if let Some((hits, mut rest)) = surfaces.split_first_mut() {
-            *hits += recorder.surfaces.hits as f32;
-            for aov in &self.outputs.aovs {
-                let kept;
-                (kept, rest) = rest.split_at_mut(aov.kept());
-                recorder.surfaces.keep(*aov, kept);
-            }
-            recorder.surfaces = Surfaces::default();
-        }
-    }
-
-    /// The images so far. `place` tells the tile of a pixel, its place there, and its samples.
-    pub fn images(
-        &self,
-        beauty: &Image,
-        place: impl Fn(usize, usize) -> (usize, usize, f64) + Sync,
-        job: Job,
-    ) -> Result<Vec<Layer>> {
+    /// The images so far; `places` has for each pixel its tile, its number there, and its samples.
+    pub fn images(&self, beauty: &Image, places: &[(u32, u32, u32)], job: Job) -> Result<Vec<Layer>> {
         let guards: Vec<_> = self.tiles.iter().map(|t| t.lock().unwrap_or_else(PoisonError::into_inner)).collect();
         let tiles: Vec<&[f32]> = guards.iter().map(|guard| guard.as_slice()).collect();
-        let make = |channels: usize, value: &(dyn Fn(&[f32], f64, [usize; 2], &mut [f32]) + Sync)| {
-            let mut image = Image::new(beauty.width, beauty.height, channels)?;
-            exec::for_rows(&mut image.data, beauty.width * channels, job, |y, row| {
-                for (x, out) in row.chunks_exact_mut(channels).enumerate() {
-                    let (tile, pixel, samples) = place(x, y);
-                    value(&tiles[tile][pixel * self.width..][..self.width], samples.max(1.0), [x, y], out);
-                }
-            })?;
-            Ok::<_, Error>(image)
-        };
+        let sums =
+            |&(tile, pixel, _): &(u32, u32, u32)| &tiles[tile as usize][pixel as usize * self.width..][..self.width];
+        let row = |y: usize| places[y * beauty.width..][..beauty.width].iter();
         let mut layers = Vec::new();
         for (number, (name, expression)) in self.outputs.expressions.iter().enumerate() {
-            let image = make(3, &|sums, samples, _, out| {
-                let sum = &sums[3 * number..][..3];
-                out.iter_mut().zip(sum).for_each(|(o, s)| *o = (f64::from(*s) / samples) as f32);
+            let mut image = Image::new(beauty.width, beauty.height, 3)?;
+            exec::for_rows(&mut image.data, beauty.width * 3, job, |y, out| {
+                for (out, place) in out.chunks_exact_mut(3).zip(row(y)) {
+                    let sum = Vec3::from_slice(&sums(place)[3 * number..][..3]);
+                    (sum / place.2.max(1) as f32).write_to_slice(out);
+                }
             })?;
             let expression = Some(expression.text().to_string());
             layers.push(Layer { name: name.clone(), channels: &["R", "G", "B"], expression, image });
@@ -171,11 +138,18 @@ impl<'a> Layers<'a> {
         let hits = 3 * self.outputs.expressions.len();
         let mut first = hits + 1;
         for &aov in &self.outputs.aovs {
-            let image = make(aov.channels().len(), &|sums, samples, [x, y], out| match aov {
-                Aov::Luminance => out[0] = colour::luminance(beauty.rgb(x, y)),
-                _ => {
-                    aov.value(&sums[first..][..aov.kept()], f64::from(sums[hits]), samples, out);
-                    if aov == Aov::Position && sums[hits] > 0.0 {
+            let channels = aov.channels().len();
+            let mut image = Image::new(beauty.width, beauty.height, channels)?;
+            exec::for_rows(&mut image.data, beauty.width * channels, job, |y, out| {
+                for (x, (out, place)) in out.chunks_exact_mut(channels).zip(row(y)).enumerate() {
+                    if aov == Aov::Luminance {
+                        out[0] = colour::luminance(beauty.rgb(x, y));
+                        continue;
+                    }
+                    let sums = sums(place);
+                    let (samples, met) = (f64::from(place.2.max(1)), f64::from(sums[hits]));
+                    aov.value(&sums[first..][..aov.kept()], met, samples, out);
+                    if aov == Aov::Position && met > 0.0 {
                         self.world.in_scene(Vec3::from_slice(out)).write_to_slice(out);
                     }
                 }
@@ -187,14 +161,15 @@ impl<'a> Layers<'a> {
     }
 }
 
-/// Follows the paths of a pixel.
+/// Follows the paths of a tile, pixel by pixel.
 pub struct Recorder<'a> {
-    world: &'a World,
     layers: &'a Layers<'a>,
+    /// Sums of all passes.
+    kept: MutexGuard<'a, Vec<f32>>,
     /// Sum of the contributions of one path, as the main image has it.
     beauty: Vec3,
     trail: Trail<'a>,
-    /// Sums over the paths, for each list of expressions that accept the same.
+    /// Sums over the paths of a pixel, for each list of expressions that accept the same.
     sums: Vec<DVec3>,
     surfaces: Surfaces,
 }
@@ -211,27 +186,55 @@ impl Recorder<'_> {
     #[inline]
     pub fn finish(&mut self) -> Vec3 {
         if self.beauty.is_finite() {
-            self.trail.brought().iter().for_each(|&(list, light)| self.sums[usize::from(list)] += light.as_dvec3());
+            self.trail.finish().iter().for_each(|&(list, light)| self.sums[usize::from(list)] += light.as_dvec3());
         }
         self.beauty
+    }
+
+    /// Adds what has been gathered to the sums kept of a pixel.
+    pub fn keep(&mut self, pixel: usize) {
+        let Self { layers, kept, sums, .. } = self;
+        let (colours, surfaces) =
+            kept[pixel * layers.width..][..layers.width].split_at_mut(3 * layers.outputs.expressions.len());
+        let (colours, _) = colours.as_chunks_mut::<3>();
+        // What a list of expressions shares is added to each of them.
+        let lists = layers.table.lists().iter().zip(sums);
+        for (list, sum) in lists.filter(|(_, sum)| **sum != DVec3::ZERO) {
+            let light = sum.as_vec3();
+            for &expression in list {
+                let kept = &mut colours[usize::from(expression)];
+                *kept = (Vec3::from(*kept) + light).into();
+            }
+            *sum = DVec3::ZERO;
+        }
+        if let Some((hits, mut rest)) = surfaces.split_first_mut() {
+            *hits += self.surfaces.hits as f32;
+            for aov in &layers.outputs.aovs {
+                let kept;
+                (kept, rest) = rest.split_at_mut(aov.kept());
+                self.surfaces.keep(*aov, kept);
+            }
+            self.surfaces = Surfaces::default();
+        }
     }
 }
 
 impl Observer for Recorder<'_> {
-    #[inline]
+    #[inline(always)]
     fn add(&mut self, source: LightSource, importance: Vec3, emission: Vec3, found: Found) {
         let contribution = importance * emission;
         self.beauty += contribution;
-        self.trail.add(self.world, contribution, source, found);
+        self.trail.add(self.layers.world, contribution, source, found);
     }
 
     #[inline]
-    fn meet(&mut self, seen: Seen) {
+    fn meet(&mut self, seen: impl FnOnce() -> Seen) {
         if self.layers.outputs.aovs.is_empty() {
             return;
         }
+        let seen = seen();
         let depth = (seen.position - self.layers.eye).dot(self.layers.forward);
-        self.surfaces.meet(self.world, &seen, depth);
+        self.surfaces.meet(self.layers.world, &seen, depth);
     }
 
     #[inline]

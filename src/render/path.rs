@@ -33,7 +33,7 @@ pub trait Observer {
     fn add(&mut self, source: LightSource, importance: Vec3, emission: Vec3, found: Found);
 
     /// The first surface a path from the eye meets.
-    fn meet(&mut self, _seen: Seen) {}
+    fn meet(&mut self, _seen: impl FnOnce() -> Seen) {}
 
     /// The path goes on from a vertex of a mesh.
     fn scatter(&mut self, _mesh: u32, _kind: Kind, _lobes: Lobes) {}
@@ -152,8 +152,7 @@ fn walk<O: Observer>(world: &World, mut leg: Leg, length: Length, sampler: &mut 
         }
         let bsdf = vertex.bsdf(world, -leg.ray.direction);
         if bounce == 0 && leg.from == NONE {
-            // By value: a reference would keep vertex and BSDF of every bounce in memory.
-            observer.meet(Seen {
+            observer.meet(|| Seen {
                 mesh: vertex.mesh,
                 position: vertex.position,
                 normal: bsdf.normal(),

@@ -72,7 +72,7 @@ impl<'a> Canvas<'a> {
             if pass.passes_over(grid.corner(tile)) {
                 return;
             }
-            let mut recorder = layers.map(|l| l.recorder(world));
+            let mut recorder = layers.map(|l| l.recorder(tile));
             let surroundings = level.map(|level| Surroundings::of(pixels, level));
             for (i, pixel) in pixels.iter_mut().enumerate() {
                 let Some((x, y)) = grid.place(tile, i) else { continue };
@@ -88,8 +88,8 @@ impl<'a> Canvas<'a> {
                         let seed = rng::mix(seed ^ u64::from(replication));
                         paths(world, eye, [x, y], length, (seed, indices), recorder.as_mut(), discarded)
                     });
-                    if let (Some(layers), Some(recorder)) = (layers, &mut recorder) {
-                        layers.keep(recorder, tile, i);
+                    if let Some(recorder) = &mut recorder {
+                        recorder.keep(i);
                     }
                 }
             }
@@ -125,6 +125,19 @@ impl<'a> Canvas<'a> {
         (x, y)
     }
 
+    /// For each pixel of the image the tile of the one it shows, its number there, and its paths.
+    fn places(&self, job: Job) -> Result<Vec<(u32, u32, u32)>> {
+        let mut places = try_vec(self.grid.width * self.grid.height, (0, 0, 0))?;
+        exec::for_rows(&mut places, self.grid.width, job, |y, row| {
+            for (x, place) in row.iter_mut().enumerate() {
+                let (x, y) = self.nearest(x, y);
+                let (tile, i) = self.grid.locate(x, y);
+                *place = (tile as u32, i as u32, self.pixel(x, y).count());
+            }
+        })?;
+        Ok(places)
+    }
+
     /// An image made pixel by pixel.
     fn image(&self, channels: usize, job: Job, value: impl Fn(usize, usize, &mut [f32]) + Sync) -> Result<Image> {
         let mut image = Image::new(self.grid.width, self.grid.height, channels)?;
@@ -145,12 +158,7 @@ impl<'a> Canvas<'a> {
             self.pixel(x, y).mean().as_vec3().write_to_slice(out);
         })?;
         let paths = self.image(1, job, |x, y, out| out[0] = self.pixel(x, y).count() as f32)?;
-        let place = |x: usize, y: usize| {
-            let (x, y) = self.nearest(x, y);
-            let (tile, i) = self.grid.locate(x, y);
-            (tile, i, f64::from(self.pixel(x, y).count()))
-        };
-        let layers = self.layers.as_ref().map_or(Ok(Vec::new()), |l| l.images(&beauty, place, job))?;
+        let layers = self.layers.as_ref().map_or(Ok(Vec::new()), |l| l.images(&beauty, &self.places(job)?, job))?;
         let total = self.total(job)?;
         Ok(Film {
             beauty,

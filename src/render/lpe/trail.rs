@@ -16,7 +16,11 @@ use glam::Vec3;
 
 pub struct Trail<'a> {
     table: &'a Table,
+    /// The state of a path that has not split.
+    state: u16,
+    /// The parts of one that has.
     parts: Vec<(u16, Vec3)>,
+    split: bool,
     /// Whether no scattering changes any of the parts.
     settled: bool,
     /// The parts before a step, and those at a light.
@@ -26,21 +30,27 @@ pub struct Trail<'a> {
     panes: Vec<Pane>,
     /// What the path has brought so far, and the list of the expressions that it is for.
     brought: Vec<(u16, Vec3)>,
+    /// What it has brought since it settled, by lights of this number: its parts share in it alike, in the end.
+    rest: Vec3,
+    rest_light: usize,
 }
 
 impl<'a> Trail<'a> {
     pub fn new(table: &'a Table) -> Self {
         let [parts, before, ends, brought] = [const { Vec::new() }; 4];
-        Self { table, parts, settled: true, before, ends, panes: Vec::new(), brought }
+        let (state, settled) = (table.start(), table.is_settled(table.start()));
+        let (panes, rest, rest_light) = (Vec::new(), Vec3::ZERO, 0);
+        Self { table, state, parts, split: false, settled, before, ends, panes, brought, rest, rest_light }
     }
 
     /// A new path leaves the camera.
     #[inline]
     pub fn start(&mut self) {
         self.brought.clear();
-        self.parts.clear();
-        add(&mut self.parts, self.table.start(), Vec3::ONE);
-        self.settled = self.table.is_settled(self.table.start());
+        self.rest = Vec3::ZERO;
+        self.state = self.table.start();
+        self.split = false;
+        self.settled = self.table.is_settled(self.state);
     }
 
     /// A place for the panes between a vertex and a light, if they matter.
@@ -49,67 +59,134 @@ impl<'a> Trail<'a> {
         if self.settled { None } else { Some(&mut self.panes) }
     }
 
-    #[inline]
+    #[inline(always)]
     pub fn scatter(&mut self, mesh: u32, kind: Kind, lobes: Lobes) {
-        if !self.settled {
-            self.step(mesh, kind, lobes);
+        if self.settled {
+            return;
         }
-    }
-
-    #[inline]
-    fn step(&mut self, mesh: u32, kind: Kind, lobes: Lobes) {
-        let Self { table, parts, before, .. } = self;
         let scatter = match kind {
             Kind::Spread(_) => only_layer(lobes),
             Kind::Mirrored => Some(Scatter::Mirror),
             Kind::Through => Some(Scatter::Pane),
         };
-        // One part that goes one way is the common case.
-        if let (Some(scatter), [(state, _)]) = (scatter, parts.as_mut_slice()) {
-            *state = table.next(*state, table.event(mesh, scatter));
-            self.settled = table.is_settled(*state);
-            if *state == DEAD {
-                parts.clear();
-            }
-            return;
-        }
-        std::mem::swap(parts, before);
         match scatter {
-            Some(scatter) => all_go(table, mesh, scatter, before, parts),
-            None => spread(table, mesh, lobes, before, parts),
+            Some(scatter) if !self.split => {
+                self.state = self.table.next(self.state, self.table.event(mesh, scatter));
+                self.settled = self.table.is_settled(self.state);
+            }
+            _ => self.step(mesh, scatter, lobes),
         }
-        self.settled = self.parts.iter().all(|&(state, _)| self.table.is_settled(state));
+    }
+
+    /// A step of a path that has split or may do so now.
+    #[inline(never)]
+    fn step(&mut self, mesh: u32, scatter: Option<Scatter>, lobes: Lobes) {
+        let Self { table, parts, before, .. } = self;
+        if !self.split {
+            let [one, other] = layers(table, self.state, mesh);
+            if one == other {
+                self.state = one;
+                self.settled = table.is_settled(one);
+                return;
+            }
+            self.split = true;
+            let diffuse = share_of(lobes.diffuse, lobes.sum());
+            parts.clear();
+            parts.extend([(one, diffuse), (other, Vec3::ONE - diffuse)].into_iter().filter(|part| part.0 != DEAD));
+        } else {
+            std::mem::swap(parts, before);
+            match scatter {
+                Some(scatter) => all_go(table, mesh, scatter, before, parts),
+                None => spread(table, mesh, lobes, before, parts),
+            }
+        }
+        self.settled = parts.iter().all(|&(state, _)| table.is_settled(state));
     }
 
     /// The path, or a connection of it, has come to a light, and brings a contribution: each part of it is for the
     /// expressions of a list.
-    #[inline]
+    #[inline(always)]
     pub fn add(&mut self, world: &World, contribution: Vec3, source: LightSource, found: Found) {
-        let Self { table, parts, settled, before, ends, panes, brought } = self;
-        let light = table.light(source);
-        let mut bring = |state: u16, share: Vec3| match table.accepting(state, light) {
-            0 => {}
-            list => match brought.last_mut() {
-                Some(last) if last.0 == list => last.1 += share * contribution,
-                _ => brought.push((list, share * contribution)),
+        let light = self.table.light(source);
+        if self.settled {
+            if light != self.rest_light {
+                self.share_rest();
+                self.rest_light = light;
+            }
+            self.rest += contribution;
+            return;
+        }
+        match found {
+            Found::Met if !self.split => self.bring(self.state, light, contribution),
+            Found::Chosen { mesh, lobes } => match only_layer(lobes) {
+                Some(scatter) if !self.split && self.panes.is_empty() => {
+                    self.bring(self.table.next(self.state, self.table.event(mesh, scatter)), light, contribution);
+                }
+                _ => self.connect(world, contribution, light, mesh, lobes),
             },
-        };
-        let Found::Chosen { mesh, lobes } = found else {
-            return parts.iter().for_each(|&(state, share)| bring(state, share));
-        };
-        if *settled {
-            return parts.iter().for_each(|&(state, share)| bring(state, share));
+            Found::Met => self.share(light, contribution),
         }
-        if let (Some(scatter), [(state, share)], true) = (only_layer(lobes), parts.as_slice(), panes.is_empty()) {
-            return bring(table.next(*state, table.event(mesh, scatter)), *share);
-        }
-        connect(table, world, mesh, lobes, parts, panes, ends, before);
-        ends.iter().for_each(|&(state, share)| bring(state, share));
     }
 
-    /// What the path has brought, and for which list of expressions.
+    /// A connection in several parts.
+    #[inline(never)]
+    fn connect(&mut self, world: &World, contribution: Vec3, light: usize, mesh: u32, lobes: Lobes) {
+        let whole = [(self.state, Vec3::ONE)];
+        let (mut parts, mut ends) = (std::mem::take(&mut self.parts), std::mem::take(&mut self.ends));
+        let from = if self.split { &parts[..] } else { &whole };
+        if self.panes.is_empty() {
+            let diffuse = share_of(lobes.diffuse, lobes.sum());
+            for &(state, share) in from {
+                let [one, other] = layers(self.table, state, mesh);
+                let all = share * contribution;
+                let first = if one == other { all } else { diffuse * all };
+                self.bring(one, light, first);
+                if one != other {
+                    self.bring(other, light, all - first);
+                }
+            }
+        } else {
+            connect(self.table, world, mesh, lobes, from, &mut self.panes, &mut ends, &mut self.before);
+            ends.iter().for_each(|&(state, share)| self.bring(state, light, share * contribution));
+        }
+        std::mem::swap(&mut self.parts, &mut parts);
+        self.ends = ends;
+    }
+
+    /// A contribution of which each part has its share.
+    #[inline(never)]
+    fn share(&mut self, light: usize, contribution: Vec3) {
+        if !self.split {
+            return self.bring(self.state, light, contribution);
+        }
+        for i in 0..self.parts.len() {
+            let (state, share) = self.parts[i];
+            self.bring(state, light, share * contribution);
+        }
+    }
+
     #[inline]
-    pub fn brought(&self) -> &[(u16, Vec3)] {
+    fn bring(&mut self, state: u16, light: usize, contribution: Vec3) {
+        match self.table.accepting(state, light) {
+            0 => {}
+            list => match self.brought.last_mut() {
+                Some(last) if last.0 == list => last.1 += contribution,
+                _ => self.brought.push((list, contribution)),
+            },
+        }
+    }
+
+    fn share_rest(&mut self) {
+        let rest = std::mem::replace(&mut self.rest, Vec3::ZERO);
+        if rest != Vec3::ZERO {
+            self.share(self.rest_light, rest);
+        }
+    }
+
+    /// Ends the path: what it has brought, and for which list of expressions.
+    #[inline]
+    pub fn finish(&mut self) -> &[(u16, Vec3)] {
+        self.share_rest();
         &self.brought
     }
 }
@@ -153,6 +230,12 @@ fn only_layer(lobes: Lobes) -> Option<Scatter> {
     }
 }
 
+/// The states after the diffuse and after the glossy layer of a mesh.
+#[inline]
+fn layers(table: &Table, state: u16, mesh: u32) -> [u16; 2] {
+    [Scatter::Diffuse, Scatter::Glossy].map(|scatter| table.next(state, table.event(mesh, scatter)))
+}
+
 /// All parts go on by one event.
 fn all_go(table: &Table, mesh: u32, scatter: Scatter, from: &[(u16, Vec3)], to: &mut Vec<(u16, Vec3)>) {
     let event = table.event(mesh, scatter);
@@ -167,11 +250,10 @@ fn spread(table: &Table, mesh: u32, lobes: Lobes, from: &[(u16, Vec3)], to: &mut
     if let Some(scatter) = only_layer(lobes) {
         return all_go(table, mesh, scatter, from, to);
     }
-    let events = [Scatter::Diffuse, Scatter::Glossy].map(|scatter| table.event(mesh, scatter));
     let diffuse = share_of(lobes.diffuse, lobes.sum());
     to.clear();
     for &(state, share) in from {
-        let [one, other] = events.map(|event| table.next(state, event));
+        let [one, other] = layers(table, state, mesh);
         go_two_ways(to, one, other, share, diffuse);
     }
 }
