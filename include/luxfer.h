@@ -1760,8 +1760,8 @@ typedef struct luxfer_render_report {
     /** Paths that were left out because their radiance was no finite number. */
     uint64_t discarded;
     /**
-     * How far the filter of the preview has moved the image beyond what noise explains: root mean square over squares of
-     * 8 x 8 pixels, relative to the image's mean. 0 without a preview.
+     * How far the mean of such previews is from the truth: root mean square over squares of 8 x 8 pixels, relative to the
+     * image's mean, estimated. 0 without a preview.
      */
     double preview_bias;
 } luxfer_render_report;

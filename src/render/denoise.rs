@@ -7,15 +7,18 @@
 //! variance of the mixture is carried along from level to level. As the variance goes to 0 the image comes out as it is.
 //!
 //! The filter is biased: what its features do not show, such as the soft edge of a shadow, it blurs by about an error's
-//! height. [`Output::bias`] measures that; final images are rendered without it. Not modelled: motion, reflections (they
-//! are smoothed like light on the mirror), textures seen in mirrors.
+//! height. [`Output::bias`] measures that; final images are rendered without it. To know it, two halves of the paths are
+//! filtered on their own (as Rousselle et al. 2012, "Adaptive rendering with non-local means filtering", do for another
+//! end), and the preview is the mean of both. How far each has been moved is its bias and some noise, and the noise of one
+//! half knows nothing of the other's: the mean product of the two is the square of the bias, whatever the weights heed.
+//!
+//! Not modelled: motion, reflections (they are smoothed like light on the mirror), textures seen in mirrors.
 
 use super::film::pooled;
 use crate::error::{Error, Result, check_range};
 use crate::exec;
 use crate::image::{Image, colour, try_vec};
 use crate::job::Job;
-use crate::rng;
 use glam::Vec3;
 
 #[derive(Clone, Debug, PartialEq)]
@@ -32,9 +35,9 @@ impl Default for Params {
 
 /// Images of the same size.
 pub struct Input<'a> {
-    /// Linear RGB, finite.
-    pub beauty: &'a Image,
-    /// Variance of the beauty per channel, at least 0; infinite where unknown.
+    /// Two independent estimates of the image, of as many paths each; linear RGB, finite.
+    pub halves: [&'a Image; 2],
+    /// Variance of their mean per channel, at least 0; infinite where unknown.
     pub variance: &'a Image,
     /// Colour of the surface seen, RGB; black where nothing is.
     pub albedo: &'a Image,
@@ -47,9 +50,8 @@ pub struct Input<'a> {
 #[derive(Clone, Debug)]
 pub struct Output {
     pub image: Image,
-    /// How far the filter has moved the image beyond what noise explains: root mean square over squares of 8 × 8 pixels,
-    /// relative to the mean of the image. Blur finer than a square does not show in it, and little that is far below what
-    /// noise is left in a square.
+    /// How far the mean of such previews is from the truth: root mean square over squares of 8 × 8 pixels, relative to the
+    /// mean of the image. An estimate whose square is unbiased; blur finer than a square does not show in it.
     pub bias: f64,
 }
 
@@ -57,6 +59,8 @@ pub struct Output {
 const STEPS: [usize; 6] = [1, 2, 4, 8, 16, 32];
 /// Weights of the neighbours at one step along an axis, relative to the pixel itself.
 const TAP: f32 = 0.5;
+/// Variance of a half over that of the mean of both.
+const HALF: f32 = 2.0;
 /// Squared difference in luminance, over the sum of both variances, that lowers a weight by e; at strength 1.
 const RANGE: f32 = 12.0;
 /// Squared sine of the angle between neighbours and the plane through the pixel that does the same.
@@ -70,9 +74,8 @@ const LEAST_ALBEDO: f32 = 0.02;
 /// Side of the squares in which the bias is measured.
 const SQUARE: usize = 8;
 
-/// Planes of a row of the light being filtered: red, green, blue, variance of the luminance, and a probe: noise of that
-/// variance that is filtered by the same weights.
-const LIGHT: usize = 5;
+/// Planes of a row of the light being filtered: red, green, blue, variance of the luminance.
+const LIGHT: usize = 4;
 /// Planes of a row of features: albedo, normal, position.
 const GUIDE: usize = 9;
 
@@ -83,43 +86,45 @@ const GUIDE: usize = 9;
 /// cancelled.
 pub fn run(input: &Input, params: &Params, job: Job) -> Result<Output> {
     check(input, params)?;
-    let (width, height) = (input.beauty.width, input.beauty.height);
     let guide = guides(input, job.part(0.0, 0.05))?;
-    let mut light = light(input, job.part(0.05, 0.15))?;
-    let mut noise = try_vec(width * height, 0.0f32)?;
-    exec::for_rows(&mut noise, width, job.part(0.15, 0.16), |y, row| {
-        row.copy_from_slice(&light[(y * LIGHT + 4) * width..][..width]);
+    let variance = pooled(input.variance, job.part(0.05, 0.1))?;
+    let one = filtered(input.halves[0], &variance, &guide, params.strength, job.part(0.1, 0.5))?;
+    let other = filtered(input.halves[1], &variance, &guide, params.strength, job.part(0.5, 0.9))?;
+    let bias = bias(input.halves, [&one, &other], job.part(0.9, 0.95))?;
+    let mut image = one;
+    exec::for_rows(&mut image.data, 3 * other.width, job.part(0.95, 1.0), |y, row| {
+        row.iter_mut().zip(&other.data[3 * other.width * y..]).for_each(|(a, b)| *a = 0.5 * *a + 0.5 * b);
     })?;
-    if params.strength > 0.0 {
+    Ok(Output { image, bias })
+}
+
+/// A half, smoothed.
+fn filtered(half: &Image, variance: &Image, guide: &[f32], strength: f32, job: Job) -> Result<Image> {
+    let (width, height) = (half.width, half.height);
+    let mut light = light(half, variance, guide, job.part(0.0, 0.1))?;
+    if strength > 0.0 {
         let mut next = try_vec(light.len(), 0.0f32)?;
         for (level, &step) in STEPS.iter().enumerate() {
-            let part = job.part(0.16 + 0.118 * level as f64, 0.16 + 0.118 * (level + 1) as f64);
-            let level = Level { light: &light, guide: &guide, width, height, step, range: RANGE * params.strength };
+            let part = job.part(0.1 + 0.14 * level as f64, 0.1 + 0.14 * (level + 1) as f64);
+            let level = Level { light: &light, guide, width, height, step, range: RANGE * strength };
             exec::for_rows(&mut next, LIGHT * width, part, |y, row| level.row(y, row))?;
             std::mem::swap(&mut light, &mut next);
         }
     }
     // Put the albedo back.
     let mut image = Image::new(width, height, 3)?;
-    exec::for_rows(&mut image.data, 3 * width, job.part(0.87, 0.95), |y, row| {
+    exec::for_rows(&mut image.data, 3 * width, job.part(0.94, 1.0), |y, row| {
         let (light, guide) = (&light[y * LIGHT * width..], &guide[y * GUIDE * width..]);
         for (x, out) in row.chunks_exact_mut(3).enumerate() {
             (0..3).for_each(|c| out[c] = light[c * width + x] * guide[c * width + x].max(LEAST_ALBEDO));
         }
     })?;
-    let probe = |x: usize, y: usize| {
-        let albedo = colour::luminance(Vec3::from_array(std::array::from_fn(|c| {
-            guide[(y * GUIDE + c) * width + x].max(LEAST_ALBEDO)
-        })));
-        [light[(y * LIGHT + 4) * width + x], noise[y * width + x]].map(|v| v * albedo)
-    };
-    let bias = bias(input, &image, probe, job.part(0.95, 1.0))?;
-    Ok(Output { image, bias })
+    Ok(image)
 }
 
 /// Features plane by plane within each row.
 fn guides(input: &Input, job: Job) -> Result<Vec<f32>> {
-    let (width, height) = (input.beauty.width, input.beauty.height);
+    let Image { width, height, .. } = *input.albedo;
     let mut out = try_vec(GUIDE * width * height, 0.0f32)?;
     exec::for_rows(&mut out, GUIDE * width, job, |y, row| {
         for (first, image) in [(0, input.albedo), (3, input.normal), (6, input.position)] {
@@ -133,30 +138,23 @@ fn guides(input: &Input, job: Job) -> Result<Vec<f32>> {
     Ok(out)
 }
 
-/// The beauty without albedo, and the variance of its luminance.
-fn light(input: &Input, job: Job) -> Result<Vec<f32>> {
-    let (width, height) = (input.beauty.width, input.beauty.height);
-    let variance = pooled(input.variance, job)?;
+/// The light of a half without albedo, and the variance of its luminance.
+fn light(half: &Image, variance: &Image, guide: &[f32], job: Job) -> Result<Vec<f32>> {
+    let Image { width, height, .. } = *half;
     let mut out = try_vec(LIGHT * width * height, 0.0f32)?;
     exec::for_rows(&mut out, LIGHT * width, job, |y, row| {
         for x in 0..width {
-            let albedo = Vec3::from_slice(input.albedo.pixel(x, y));
-            let albedo = if albedo.is_finite() { albedo.max(Vec3::splat(LEAST_ALBEDO)) } else { Vec3::ONE };
-            let colour = input.beauty.rgb(x, y) / albedo;
+            let albedo: Vec3 = [0, 1, 2].map(|c| guide[(y * GUIDE + c) * width + x].max(LEAST_ALBEDO)).into();
+            let colour = half.rgb(x, y) / albedo;
             // The channels of a path rise and fall together, so their errors add up.
             let error = variance.rgb(x, y).map(f32::sqrt) / albedo;
             let luminance = colour::luminance(colour);
             let error = if error.is_finite() { colour::luminance(error) } else { luminance };
-            let values = [colour.x, colour.y, colour.z, error * error, error * sign(x, y)];
+            let values = [colour.x, colour.y, colour.z, HALF * error * error];
             values.into_iter().enumerate().for_each(|(c, v)| row[c * width + x] = v);
         }
     })?;
     Ok(out)
-}
-
-/// 1 or -1 at random for each pixel.
-fn sign(x: usize, y: usize) -> f32 {
-    if rng::hash(0x7072_6f62, &[x as u64, y as u64]) & 1 == 0 { 1.0 } else { -1.0 }
 }
 
 /// One level of the filter.
@@ -201,13 +199,12 @@ impl Level<'_> {
             let (red, rest) = out.split_at_mut(width);
             let (green, rest) = rest.split_at_mut(width);
             let (blue, rest) = rest.split_at_mut(width);
-            let (variance, probe) = rest.split_at_mut(width);
-            let sums = [red, green, blue, variance, probe].map(|plane| &mut plane[from..to]);
+            let sums = [red, green, blue, rest].map(|plane| &mut plane[from..to]);
             self.mix(tap, here, that, guide_here, guide_that, sums, &mut weights[from..to]);
         }
         for (x, weight) in weights.iter().enumerate() {
             let scale = 1.0 / weight;
-            [0, 1, 2, 4].into_iter().for_each(|p| out[p * width + x] *= scale);
+            (0..3).for_each(|p| out[p * width + x] *= scale);
             out[3 * width + x] *= scale * scale;
         }
     }
@@ -226,11 +223,11 @@ impl Level<'_> {
     ) {
         let n = weights.len();
         // Slices of one length: no bounds to check in the loop.
-        let [h0, h1, h2, h3, _] = here.map(|s| &s[..n]);
-        let [t0, t1, t2, t3, t4] = that.map(|s| &s[..n]);
+        let [h0, h1, h2, h3] = here.map(|s| &s[..n]);
+        let [t0, t1, t2, t3] = that.map(|s| &s[..n]);
         let a = guide_here.map(|s| &s[..n]);
         let b = guide_that.map(|s| &s[..n]);
-        let [s0, s1, s2, s3, s4] = sums.map(|s| &mut s[..n]);
+        let [s0, s1, s2, s3] = sums.map(|s| &mut s[..n]);
         let square = |v: f32| v * v;
         for i in 0..n {
             let (lh, lt) = (luminance(h0[i], h1[i], h2[i]), luminance(t0[i], t1[i], t2[i]));
@@ -249,7 +246,6 @@ impl Level<'_> {
             s1[i] += w * t1[i];
             s2[i] += w * t2[i];
             s3[i] += w * w * t3[i];
-            s4[i] += w * t4[i];
             weights[i] += w;
         }
     }
@@ -264,26 +260,24 @@ fn luminance(r: f32, g: f32, b: f32) -> f32 {
     0.2126 * r + 0.7152 * g + 0.0722 * b
 }
 
-/// What the filter has moved the means of squares of pixels by, less what noise explains: that much it has moved the probe,
-/// which is noise alone. (How much of the noise of a square leaves it depends on the weights; a probe of random signs
-/// measures it without bias, as that of Hutchinson 1990 does a trace.)
-fn bias(input: &Input, image: &Image, probe: impl Fn(usize, usize) -> [f32; 2] + Sync, job: Job) -> Result<f64> {
-    let (width, height) = (image.width, image.height);
+/// The bias that the means of squares of pixels share: the root of the mean product of what the halves were moved by.
+fn bias(before: [&Image; 2], after: [&Image; 2], job: Job) -> Result<f64> {
+    let Image { width, height, .. } = *before[0];
     let across = width.div_ceil(SQUARE);
     let squares = exec::map(across * height.div_ceil(SQUARE), job, |square| {
         let (left, top) = (square % across * SQUARE, square / across * SQUARE);
-        let (mut moved, mut probed, mut light, mut count) = (0.0, 0.0, 0.0, 0.0);
+        let (mut moved, mut light, mut count) = ([0.0; 2], 0.0, 0.0);
         for y in top..(top + SQUARE).min(height) {
             for x in left..(left + SQUARE).min(width) {
-                let before = colour::luminance(input.beauty.rgb(x, y));
-                moved += f64::from(colour::luminance(image.rgb(x, y)) - before);
-                let [filtered, noise] = probe(x, y);
-                probed += f64::from(filtered - noise);
-                light += f64::from(before);
+                for half in 0..2 {
+                    let [before, after] = [before, after].map(|i| f64::from(colour::luminance(i[half].rgb(x, y))));
+                    moved[half] += after - before;
+                    light += before / 2.0;
+                }
                 count += 1.0;
             }
         }
-        ((moved * moved - probed * probed) / count, light, count)
+        (moved[0] * moved[1] / count, light, count)
     })?;
     let (squared, light, count) = squares.iter().fold((0.0, 0.0, 0.0), |a, s| (a.0 + s.0, a.1 + s.1, a.2 + s.2));
     Ok(if light > 0.0 { f64::max(squared / count, 0.0).sqrt() * count / light } else { 0.0 })
@@ -291,20 +285,20 @@ fn bias(input: &Input, image: &Image, probe: impl Fn(usize, usize) -> [f32; 2] +
 
 fn check(input: &Input, params: &Params) -> Result<()> {
     check_range("strength", params.strength, 0.0, 10.0)?;
-    let Input { beauty, variance, albedo, normal, position } = *input;
-    for (image, name) in [(variance, "variance"), (albedo, "albedo"), (normal, "normal"), (position, "position")] {
-        beauty.check_same_size("beauty", image, name)?;
-    }
-    for (image, name) in
-        [(beauty, "beauty"), (variance, "variance"), (albedo, "albedo"), (normal, "normal"), (position, "position")]
-    {
+    let Input { halves: [one, other], variance, albedo, normal, position } = *input;
+    let images = [("first half", one), ("second half", other)];
+    let others = [("variance", variance), ("albedo", albedo), ("normal", normal), ("position", position)];
+    for (name, image) in images.into_iter().chain(others) {
+        one.check_same_size("first half", image, name)?;
         if image.channels < 3 {
             return Err(Error::argument(format!("{name} has {} channels; it must have 3", image.channels)));
         }
     }
-    let bad = beauty.count_non_finite();
-    if bad > 0 {
-        return Err(Error::argument(format!("{bad} samples of the beauty are NaN or infinite; replace them")));
+    for (name, image) in images {
+        let bad = image.count_non_finite();
+        if bad > 0 {
+            return Err(Error::argument(format!("{bad} samples of the {name} are NaN or infinite; replace them")));
+        }
     }
     if let Some(v) = variance.data.iter().find(|v| !(**v >= 0.0)) {
         return Err(Error::argument(format!("a variance is {v}; it must be at least 0")));

@@ -192,7 +192,7 @@ pub fn run(world: &World, camera: &Camera, params: &Params, job: Job, publish: &
     let mut show = |canvas: &Canvas, clock: &mut Clock| {
         clock.show(|| {
             let mut film = canvas.film(always.job())?;
-            preview::finish(&mut film, params, always.job())?;
+            preview::finish(&mut film, canvas, params, always.job())?;
             publish(&film);
             Ok(film)
         })

@@ -1,6 +1,7 @@
 //! Previews of a render under way: `denoise` on its own outputs, which nobody has to ask for.
 
 use super::denoise::{self, Input};
+use super::film::Canvas;
 use super::{Aov, Film, Params};
 use crate::error::{Error, ErrorKind, Result};
 use crate::job::Job;
@@ -19,7 +20,7 @@ pub fn guided(params: &Params) -> Params {
 }
 
 /// Adds the preview to a film made with [`guided`] parameters, and leaves the outputs that were asked for.
-pub fn finish(film: &mut Film, params: &Params, job: Job) -> Result<()> {
+pub fn finish(film: &mut Film, canvas: &Canvas, params: &Params, job: Job) -> Result<()> {
     if params.preview > 0.0 {
         let guide = |aov: Aov| {
             let layer = film.layers.iter().find(|l| l.expression.is_none() && l.name == aov.name());
@@ -27,8 +28,9 @@ pub fn finish(film: &mut Film, params: &Params, job: Job) -> Result<()> {
                 .map(|l| &l.image)
                 .ok_or_else(|| Error::new(ErrorKind::Internal, format!("the render has no layer {}", aov.name())))
         };
+        let [one, other] = canvas.halves(job)?;
         let input = Input {
-            beauty: &film.beauty,
+            halves: [&one, &other],
             variance: &film.variance,
             albedo: guide(Aov::Albedo)?,
             normal: guide(Aov::Normal)?,

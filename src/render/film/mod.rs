@@ -151,6 +151,17 @@ impl<'a> Canvas<'a> {
         self.image(3, job, |x, y, out| self.pixel(x, y).variance().as_vec3().write_to_slice(out))
     }
 
+    /// Images of two halves of the paths each; of a pixel of a single path both are the same.
+    pub fn halves(&self, job: Job) -> Result<[Image; 2]> {
+        let half = |which: usize| {
+            self.image(3, job, |x, y, out| {
+                let (x, y) = self.nearest(x, y);
+                self.pixel(x, y).halves()[which].as_vec3().write_to_slice(out);
+            })
+        };
+        Ok([half(0)?, half(1)?])
+    }
+
     /// The image of all paths so far.
     pub fn film(&self, job: Job) -> Result<Film> {
         let beauty = self.image(3, job, |x, y, out| {

@@ -45,6 +45,17 @@ impl Pixel {
         self.sums.iter().map(|s| s.as_dvec3()).sum::<DVec3>() / f64::from(self.count.max(1))
     }
 
+    /// Means of every other replication and of those between: independent of each other where there are two paths.
+    pub fn halves(&self) -> [DVec3; 2] {
+        [0, 1].map(|first| {
+            let of = || (0..REPLICATIONS).zip(&self.sums).filter(|(replication, _)| replication % 2 == first);
+            match of().map(|(replication, _)| share(self.count, replication)).sum() {
+                0 => self.mean(),
+                paths => of().map(|(_, s)| s.as_dvec3()).sum::<DVec3>() / f64::from(paths),
+            }
+        })
+    }
+
     /// Unbiased estimate of the variance of the mean; infinite below two paths, which have no scatter.
     pub fn variance(&self) -> DVec3 {
         if self.count < 2 {
@@ -80,6 +91,7 @@ mod tests {
                 DVec3::splat(indices.len() as f64)
             });
             assert_eq!((pixel.count(), pixel.mean()), (count, DVec3::ONE));
+            assert_eq!(pixel.halves(), [DVec3::ONE; 2]);
         }
         seen.sort_unstable();
         assert!(seen.iter().copied().eq(0..64));
