@@ -38,6 +38,8 @@ pub const LUXFER_REACH_MET: luxfer_reach = 0;
 pub const LUXFER_REACH_TOO_BRIGHT: luxfer_reach = 1;
 /// No light of this channel reaches the target: the emission keeps the mean scale of the other channels.
 pub const LUXFER_REACH_DARK: luxfer_reach = 2;
+/// All lamps at their largest power do not suffice, or one goal asks for what another forbids.
+pub const LUXFER_REACH_TOO_DIM: luxfer_reach = 3;
 
 /// Settings of a relighting. Fill them with luxfer_relight_params_init.
 #[repr(C)]
@@ -138,6 +140,15 @@ unsafe impl Versioned for luxfer_relight_report {
     }
 }
 
+pub(super) fn reach_value(reach: Reach) -> luxfer_reach {
+    match reach {
+        Reach::Met => LUXFER_REACH_MET,
+        Reach::TooBright => LUXFER_REACH_TOO_BRIGHT,
+        Reach::Dark => LUXFER_REACH_DARK,
+        Reach::TooDim => LUXFER_REACH_TOO_DIM,
+    }
+}
+
 impl luxfer_relight_report {
     pub(super) fn new(solution: &Solution) -> Self {
         Self {
@@ -146,11 +157,7 @@ impl luxfer_relight_report {
             half_width: solution.half_width.to_array(),
             response: solution.response.to_array(),
             background: solution.background.to_array(),
-            reach: solution.reach.map(|reach| match reach {
-                Reach::Met => LUXFER_REACH_MET,
-                Reach::TooBright => LUXFER_REACH_TOO_BRIGHT,
-                Reach::Dark => LUXFER_REACH_DARK,
-            }),
+            reach: solution.reach.map(reach_value),
             error: solution.error(),
             ..Self::defaults()
         }

@@ -5,11 +5,29 @@
 //! sends back under the emission as it stands, and the light `b` of everything else, are measured once; the answer is
 //! `(target - b) / r`. The measurement is Monte Carlo, so the answer carries a confidence interval.
 //!
+//! The same paths tell more when their light is sorted by where it came from (`bins`). By lamp, they give the response of
+//! several targets to each of thousands of lamps ([`lamp_responses`]), and a small convex problem gives the powers of
+//! groups of lamps within bounds ([`solve_groups`]). By cell of a surface, they give its [`Importance`]: what any texture
+//! laid there would mean to the target, for one dot product.
+//!
 //! Not modelled here: the photo's camera response beyond sRGB, and fluorescence (a channel never feeds another).
 
+mod bins;
+mod bounded;
+mod estimate;
+mod groups;
+mod importance;
+mod lamps;
+mod responses;
 mod solve;
 mod target;
 mod transport;
+
+pub use estimate::BATCHES;
+pub use groups::{Colour, GroupParams, GroupSolution, Outcome, solve_groups};
+pub use importance::{Importance, MapParams};
+pub use lamps::Lamps;
+pub use responses::{Estimate, Goal, Responses, lamp_responses};
 
 #[cfg(test)]
 mod tests;
@@ -17,7 +35,9 @@ mod tests;
 use crate::error::{Result, check_range};
 use crate::job::Job;
 use crate::render::World;
+use bins::{Bins, Division};
 use glam::{DVec3, Vec3};
+use transport::Batches;
 
 /// What should match the photo.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,9 +55,22 @@ pub enum Reach {
     Met,
     /// Other lights alone exceed the target: the emission is off in this channel.
     TooBright,
+    /// All lamps at their upper bounds do not suffice, or one target asks for what another forbids.
+    TooDim,
     /// No light of this channel finds its way to the target, so nothing can be said about it: the emission keeps the
     /// mean scale of the channels that could be solved.
     Dark,
+}
+
+/// What is to have the light that is asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Place<'a> {
+    /// A surface: (mesh, triangle) of each of its triangles, their winding facing the side to match. Lamps in it are left
+    /// out.
+    Surface(&'a [(usize, usize)]),
+    /// A calculation grid: the parallelogram of a corner and two edges, as seen from the side of `normal`. Its light is
+    /// that of a white surface there, illuminance / π.
+    Grid { origin: Vec3, across: Vec3, down: Vec3, normal: Vec3 },
 }
 
 #[derive(Clone, Copy)]
@@ -91,6 +124,9 @@ pub struct Solution {
     pub response: DVec3,
     /// Mean radiance of the target under all other light, in cd/m².
     pub background: DVec3,
+    /// How far the colour of the target may be off: 95 % of errors are below this CIEDE2000 difference, seen at the
+    /// exposure that shows the target as a middle grey.
+    pub delta_e: f64,
     /// Paths traced.
     pub paths: u32,
 }
@@ -111,18 +147,38 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Solution> {
     for channel in input.target.to_array() {
         check_range("target", channel, 0.0, f32::MAX)?;
     }
-    let points = target::Sampler::new(input.world.scene(), input.target_triangles, params.quantity)?;
+    let scene = input.world.scene();
+    let points = target::Sampler::new(scene, Place::Surface(input.target_triangles), params.quantity)?;
+    let bins = Bins::new(input.world, input.emitter, Division::Whole);
+    let mut batches = Batches::new(input.world, &points, bins, params.seed)?;
     let clock = std::time::Instant::now();
-    let mut batches = transport::Batches::new(input.world, &points, input.emitter, params.seed);
+    let mut growth = f64::INFINITY;
     loop {
-        batches.trace_round(params.paths, job)?;
-        let solution = solve::run(&batches, input.target.as_dvec3());
-        let precise =
-            solution.as_ref().is_ok_and(|s| params.target_error > 0.0 && s.error() <= f64::from(params.target_error));
+        batches.trace_round(growth, params.paths, job)?;
+        let solution = solve::run(&whole(&batches), input.target.as_dvec3());
+        let wanted = f64::from(params.target_error);
+        let error = solution.as_ref().map_or(f64::INFINITY, Solution::error);
         let late = params.time_budget_ms > 0 && clock.elapsed().as_millis() >= u128::from(params.time_budget_ms);
-        if precise || late || batches.paths() >= params.paths {
+        if wanted > 0.0 && error <= wanted || late || batches.paths() >= params.paths {
             job.report(1.0);
             return solution;
         }
+        growth = time_left(params, clock).min(transport::forecast(error, wanted));
     }
+}
+
+/// The response of the target to all of the emission.
+fn whole(batches: &Batches) -> solve::Measured {
+    let means = batches.means();
+    solve::Measured {
+        response: means.iter().map(|m| m.bins[0]).collect(),
+        background: means.iter().map(|m| m.others).collect(),
+        paths: batches.paths(),
+    }
+}
+
+/// How many times the paths there are there is time for.
+fn time_left(params: &Params, clock: std::time::Instant) -> f64 {
+    let spent = clock.elapsed().as_secs_f64().max(1e-6);
+    if params.time_budget_ms > 0 { f64::from(params.time_budget_ms) / 1e3 / spent } else { f64::INFINITY }
 }

@@ -1,12 +1,18 @@
-//! The solution and its interval, from the means of independent batches.
+//! The closed form and its interval, from the means of independent batches.
 
-use super::transport::{BATCHES, Batches};
+use super::estimate::{BATCHES, STUDENT_T, mean, pseudo_values, standard_error, without};
 use super::{Reach, Solution};
 use crate::error::{Error, ErrorKind, Result};
+use crate::image::colour;
 use glam::DVec3;
 
-/// 97.5 % quantile of Student's t with `BATCHES - 1` = 31 degrees of freedom.
-const STUDENT_T: f64 = 2.039_513;
+/// What the batches measured: the target's mean radiance under the emission, and under all other light.
+pub(super) struct Measured {
+    pub response: Vec<DVec3>,
+    pub background: Vec<DVec3>,
+    /// Paths behind it.
+    pub paths: u32,
+}
 
 /// One channel: what each batch measured.
 struct Channel {
@@ -18,13 +24,14 @@ struct Answer {
     scale: f64,
     half_width: f64,
     reach: Reach,
+    /// What each batch alone would say, less the answer.
+    deviations: [f64; BATCHES],
 }
 
-pub(super) fn run(batches: &Batches, target: DVec3) -> Result<Solution> {
-    let means = batches.means();
+pub(super) fn run(measured: &Measured, target: DVec3) -> Result<Solution> {
     let channels: [Channel; 3] = std::array::from_fn(|c| Channel {
-        response: means.map(|(emitter, _)| emitter[c]),
-        background: means.map(|(_, others)| others[c]),
+        response: std::array::from_fn(|b| measured.response[b][c]),
+        background: std::array::from_fn(|b| measured.background[b][c]),
     });
     let answers: [Answer; 3] = std::array::from_fn(|c| channels[c].solve(target[c]));
     let reach = answers.each_ref().map(|a| a.reach);
@@ -35,48 +42,55 @@ pub(super) fn run(batches: &Batches, target: DVec3) -> Result<Solution> {
     let met: Vec<f64> = answers.iter().filter(|a| a.reach == Reach::Met).map(|a| a.scale).collect();
     let neutral = met.iter().sum::<f64>() / met.len() as f64;
     let scale = answers.each_ref().map(|a| if a.reach == Reach::Dark { neutral } else { a.scale });
+    let response = DVec3::from(channels.each_ref().map(|c| mean(&c.response)));
     Ok(Solution {
         scale: DVec3::from(scale),
-        half_width: DVec3::from(answers.map(|a| a.half_width)),
+        half_width: DVec3::from(answers.each_ref().map(|a| a.half_width)),
         reach,
-        response: DVec3::from(channels.each_ref().map(|c| mean(&c.response))),
+        response,
         background: DVec3::from(channels.each_ref().map(|c| mean(&c.background))),
-        paths: batches.paths(),
+        delta_e: colour_interval(&answers, response, target),
+        paths: measured.paths,
     })
 }
 
 impl Channel {
-    /// `(target - background) / response` and its interval by the jackknife over batches, which also takes away the
-    /// ratio's bias of order 1/n (Efron 1982, §2).
+    /// `(target - background) / response` and its interval by the jackknife.
     fn solve(&self, target: f64) -> Answer {
-        let n = BATCHES as f64;
         let (response, background) = (mean(&self.response), mean(&self.background));
         let noise = standard_error(&self.response);
         if response.is_nan() || response <= 3.0 * noise {
-            return Answer { scale: 0.0, half_width: 0.0, reach: Reach::Dark };
+            return Answer { scale: 0.0, half_width: 0.0, reach: Reach::Dark, deviations: [0.0; BATCHES] };
         }
-        let whole = (target - background) / response;
-        let without: [f64; BATCHES] = std::array::from_fn(|b| {
-            let rest = |mean: f64, part: f64| (n * mean - part) / (n - 1.0);
-            (target - rest(background, self.background[b])) / rest(response, self.response[b])
+        let rest: [f64; BATCHES] = std::array::from_fn(|b| {
+            (target - without(background, self.background[b])) / without(response, self.response[b])
         });
-        let scale = n * whole - (n - 1.0) * mean(&without);
-        let half_width = STUDENT_T * (n - 1.0) * standard_error(&without);
+        let alone = pseudo_values((target - background) / response, &rest);
+        let scale = mean(&alone);
+        let half_width = STUDENT_T * standard_error(&alone);
+        let deviations = alone.map(|a| a - scale);
         if scale < 0.0 {
-            return Answer { scale: 0.0, half_width, reach: Reach::TooBright };
+            return Answer { scale: 0.0, half_width, reach: Reach::TooBright, deviations: [0.0; BATCHES] };
         }
-        Answer { scale, half_width, reach: Reach::Met }
+        Answer { scale, half_width, reach: Reach::Met, deviations }
     }
 }
 
-fn mean(values: &[f64; BATCHES]) -> f64 {
-    values.iter().sum::<f64>() / BATCHES as f64
-}
-
-fn standard_error(values: &[f64; BATCHES]) -> f64 {
-    let centre = mean(values);
-    let n = BATCHES as f64;
-    (values.iter().map(|v| (v - centre) * (v - centre)).sum::<f64>() / (n - 1.0) / n).sqrt()
+/// How far the target's colour may be off: Student's quantile of the root mean square difference that deviations as large
+/// as the standard error make, channels together as they came. That bounds 95 % of errors, whichever way they lie.
+fn colour_interval(answers: &[Answer; 3], response: DVec3, target: DVec3) -> f64 {
+    // As it is seen at the exposure that shows the target as a middle grey.
+    let luminance = f64::from(colour::luminance(target.as_vec3()));
+    if !(luminance > 0.0) {
+        return 0.0;
+    }
+    let seen = |light: DVec3| colour::linear_to_lab((light * (0.18 / luminance)).as_vec3());
+    let reference = seen(target);
+    let squares = (0..BATCHES).map(|b| {
+        let deviation = DVec3::from(std::array::from_fn(|c| answers[c].deviations[b])) / (BATCHES as f64 - 1.0).sqrt();
+        colour::delta_e_2000(reference, seen(target + deviation * response)).powi(2)
+    });
+    STUDENT_T * (squares.sum::<f64>() / BATCHES as f64).sqrt()
 }
 
 fn explain(reach: &[Reach; 3]) -> String {

@@ -1,8 +1,8 @@
-//! Points of the target surface, uniform by area, with what each sends back of the light it gathers.
+//! Points of the target, uniform by area, with what each sends back of the light it gathers.
 
-use super::Quantity;
+use super::{Place, Quantity};
 use crate::error::{Error, Result};
-use crate::render::SurfacePoint;
+use crate::render::{self, PathSink, SurfacePoint, World};
 use crate::scene::{Material, Mesh, Scene};
 use glam::{Vec2, Vec3};
 use std::f32::consts::FRAC_1_PI;
@@ -10,7 +10,12 @@ use std::f32::consts::FRAC_1_PI;
 /// The generalised golden ratio of two dimensions, 1/g and 1/g² (Roberts 2018): a sequence that fills the square evenly.
 const KRONECKER: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_3];
 
-pub(super) struct Sampler<'a> {
+pub(super) enum Sampler<'a> {
+    Surface(Surface<'a>),
+    Grid { origin: Vec3, across: Vec3, down: Vec3, normal: Vec3 },
+}
+
+pub(super) struct Surface<'a> {
     scene: &'a Scene,
     triangles: &'a [(usize, usize)],
     /// Running sums of the triangles' areas.
@@ -20,12 +25,60 @@ pub(super) struct Sampler<'a> {
 
 /// A point and the factor from its irradiance to what is matched.
 pub(super) struct Target {
-    pub point: SurfacePoint,
+    at: At,
     pub factor: Vec3,
 }
 
+enum At {
+    Surface(SurfacePoint),
+    Air { position: Vec3, normal: Vec3 },
+}
+
+impl Target {
+    /// Adds one sample of the irradiance here to a sink.
+    pub fn gather<S: PathSink>(&self, world: &World, seed: u64, sample: u32, sink: &mut S) {
+        match &self.at {
+            At::Surface(point) => render::irradiance(world, point, seed, sample, sink),
+            At::Air { position, normal } => {
+                render::irradiance_in_air(world, *position, *normal, seed, sample, sink);
+            }
+        }
+    }
+}
+
 impl<'a> Sampler<'a> {
-    pub fn new(scene: &'a Scene, triangles: &'a [(usize, usize)], quantity: Quantity) -> Result<Self> {
+    /// `scene` tells what the target reflects, and where lamps in it are to be left out.
+    pub fn new(scene: &'a Scene, place: Place<'a>, quantity: Quantity) -> Result<Self> {
+        match place {
+            Place::Surface(triangles) => Surface::new(scene, triangles, quantity).map(Self::Surface),
+            Place::Grid { origin, across, down, normal } => {
+                let unit = normal.normalize_or_zero();
+                if !(origin.is_finite() && across.is_finite() && down.is_finite()) || unit == Vec3::ZERO {
+                    return Err(Error::argument(format!(
+                        "the target grid's origin is {origin}, its edges are {across} and {down}, its normal is {normal}; \
+                         all must be finite and the normal not 0"
+                    )));
+                }
+                Ok(Self::Grid { origin, across, down, normal: unit })
+            }
+        }
+    }
+
+    /// Point `index` of the sequence that `shift` sets apart; `None` on a lamp, which the photo's mean leaves out too.
+    pub fn point(&self, index: u32, shift: [f64; 2]) -> Option<Target> {
+        let [u, v] = std::array::from_fn(|i| (shift[i] + f64::from(index) * KRONECKER[i]).fract());
+        match self {
+            Self::Surface(surface) => surface.point(u, v),
+            Self::Grid { origin, across, down, normal } => {
+                let position = *origin + *across * u as f32 + *down * v as f32;
+                Some(Target { at: At::Air { position, normal: *normal }, factor: Vec3::splat(FRAC_1_PI) })
+            }
+        }
+    }
+}
+
+impl<'a> Surface<'a> {
+    fn new(scene: &'a Scene, triangles: &'a [(usize, usize)], quantity: Quantity) -> Result<Self> {
         let mut cumulative = Vec::with_capacity(triangles.len());
         let mut total = 0.0;
         for &(mesh, triangle) in triangles {
@@ -45,10 +98,7 @@ impl<'a> Sampler<'a> {
         Ok(Self { scene, triangles, cumulative, quantity })
     }
 
-    /// Point `index` of the sequence that `shift` sets apart; `None` on a lamp, which the photo's mean leaves out too.
-    pub fn point(&self, index: u32, shift: [f64; 2]) -> Option<Target> {
-        let [u, v] = std::array::from_fn(|i| (shift[i] + f64::from(index) * KRONECKER[i]).fract());
-
+    fn point(&self, u: f64, v: f64) -> Option<Target> {
         // Choose a triangle by area and use the rest of the same number within it.
         let total = self.cumulative[self.cumulative.len() - 1];
         let i = self.cumulative.partition_point(|&sum| sum <= u * total).min(self.triangles.len() - 1);
@@ -68,7 +118,7 @@ impl<'a> Sampler<'a> {
             Quantity::Outgoing => diffuse_albedo(self.scene, mesh, material, triangle, barycentric) * FRAC_1_PI,
             Quantity::Incident => Vec3::splat(FRAC_1_PI),
         };
-        Some(Target { point, factor })
+        Some(Target { at: At::Surface(point), factor })
     }
 }
 

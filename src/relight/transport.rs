@@ -1,64 +1,60 @@
-//! Transport: the target's mean response to the emission and to all other light, in independent batches.
+//! Transport: what paths from the target find, sorted into bins, in independent batches.
 
+use super::bins::{Bins, Sorter};
+use super::estimate::BATCHES;
 use super::target::Sampler;
 use crate::error::Result;
 use crate::exec;
+use crate::image::try_vec;
 use crate::job::Job;
-use crate::render::{self, LightSource, PathSink, World};
+use crate::render::World;
 use crate::rng::{Rng, hash};
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
-/// Batches of the estimate. Their spread gives the interval: with 32, Student's t is within 4 % of the normal quantile.
-pub(super) const BATCHES: usize = 32;
-
-/// Paths of a batch in the first round; every later round doubles what there is.
+/// Paths of a batch in the first round.
 const FIRST_ROUND: u32 = 64;
+/// A later round brings this many times the paths there are, at least and at most.
+const GROWTH: [f64; 2] = [1.25, 4.0];
+/// What is added to a forecast of the paths that a given error takes: an error is itself known to 13 % with 32 batches.
+const MARGIN: f64 = 1.1;
 
-/// Paths of one unit of parallel work, traced between two looks at the cancel request.
+/// Paths traced between two looks at the cancel request.
 const CHUNK: u32 = 256;
 
-/// Sums over the paths of a batch.
-#[derive(Clone, Copy, Default)]
-struct Sums {
-    emitter: DVec3,
+/// What the paths of one batch have found.
+#[derive(Clone)]
+struct Batch {
+    /// Sum over the paths of the light of each bin.
+    bins: Vec<DVec3>,
+    /// Of all other light.
     others: DVec3,
     /// Paths that started beside the lamps.
     count: u32,
 }
 
+/// Means over the paths of a batch.
+pub(super) struct Means {
+    pub bins: Vec<DVec3>,
+    pub others: DVec3,
+}
+
 pub(super) struct Batches<'a> {
     world: &'a World,
     points: &'a Sampler<'a>,
-    /// For each mesh, whether it belongs to the emission that is solved for.
-    of_emitter: Vec<bool>,
+    bins: Bins<'a>,
     seed: u64,
-    sums: [Sums; BATCHES],
+    batches: Vec<Batch>,
     /// Paths traced per batch.
     traced: u32,
 }
 
-/// Sorts the light of one path by where it came from.
-struct Groups<'a> {
-    of_emitter: &'a [bool],
-    emitter: Vec3,
-    others: Vec3,
-}
-
-impl PathSink for Groups<'_> {
-    fn add(&mut self, source: LightSource, importance: Vec3, emission: Vec3) {
-        match source {
-            LightSource::Surface { mesh, .. } if self.of_emitter[mesh as usize] => {
-                self.emitter += importance * emission
-            }
-            _ => self.others += importance * emission,
-        }
-    }
-}
-
 impl<'a> Batches<'a> {
-    pub fn new(world: &'a World, points: &'a Sampler<'a>, emitter: usize, seed: u64) -> Self {
-        let of_emitter = world.scene().meshes.iter().map(|m| m.material == emitter).collect();
-        Self { world, points, of_emitter, seed, sums: [Sums::default(); BATCHES], traced: 0 }
+    pub fn new(world: &'a World, points: &'a Sampler<'a>, bins: Bins<'a>, seed: u64) -> Result<Self> {
+        let mut batches = Vec::with_capacity(BATCHES);
+        for _ in 0..BATCHES {
+            batches.push(Batch { bins: try_vec(bins.count(), DVec3::ZERO)?, others: DVec3::ZERO, count: 0 });
+        }
+        Ok(Self { world, points, bins, seed, batches, traced: 0 })
     }
 
     /// Paths traced so far.
@@ -66,50 +62,58 @@ impl<'a> Batches<'a> {
         self.traced.saturating_mul(BATCHES as u32)
     }
 
-    /// Traces as many paths again as there are, but no more than `limit` in all.
-    pub fn trace_round(&mut self, limit: u32, job: Job) -> Result<()> {
-        let last = (self.traced * 2).max(FIRST_ROUND).min(limit.div_ceil(BATCHES as u32));
-        let (first, per_batch) = (self.traced, last - self.traced);
-        let chunks = per_batch.div_ceil(CHUNK);
-        let share = |paths: u32| f64::from(paths) / f64::from(limit.div_ceil(BATCHES as u32));
-        let part = job.part(share(first), share(last));
-        let sums = exec::map(BATCHES * chunks as usize, part, |unit| {
-            let (batch, chunk) = (unit / chunks as usize, (unit % chunks as usize) as u32);
-            let start = first + chunk * CHUNK;
-            self.trace(batch, start, (start + CHUNK).min(last))
+    /// Traces more paths, but no more than `limit` in all: as many times those there are as `growth` says, which is kept
+    /// within bounds.
+    pub fn trace_round(&mut self, growth: f64, limit: u32, job: Job) -> Result<()> {
+        let most = limit.div_ceil(BATCHES as u32);
+        let wanted = f64::from(self.traced) * growth.clamp(GROWTH[0], GROWTH[1]);
+        let (first, last) = (self.traced, (wanted as u32).max(FIRST_ROUND).min(most));
+        let part = job.part(f64::from(first) / f64::from(most), f64::from(last) / f64::from(most));
+        let (world, points, bins, seed) = (self.world, self.points, &self.bins, self.seed);
+        // A batch is a unit of work: its sums are made in the order of its paths, whatever the number of threads.
+        exec::for_rows(&mut self.batches, 1, part, |index, batch| {
+            batch[0].extend(world, points, bins, hash(seed, &[index as u64]), first..last, job);
         })?;
-        // In order of the units, so that the sums do not depend on the threads.
-        for (unit, sum) in sums.iter().enumerate() {
-            let batch = &mut self.sums[unit / chunks as usize];
-            batch.emitter += sum.emitter;
-            batch.others += sum.others;
-            batch.count += sum.count;
-        }
+        job.check()?;
         self.traced = last;
         Ok(())
     }
 
-    fn trace(&self, batch: usize, from: u32, to: u32) -> Sums {
-        let seed = hash(self.seed, &[batch as u64]);
+    /// Mean per path of what each bin and all other lights bring, of each batch.
+    pub fn means(&self) -> Vec<Means> {
+        let mean = |batch: &Batch| {
+            let n = f64::from(batch.count.max(1));
+            Means { bins: batch.bins.iter().map(|sum| sum / n).collect(), others: batch.others / n }
+        };
+        self.batches.iter().map(mean).collect()
+    }
+}
+
+impl Batch {
+    fn extend(
+        &mut self,
+        world: &World,
+        points: &Sampler,
+        bins: &Bins,
+        seed: u64,
+        paths: std::ops::Range<u32>,
+        job: Job,
+    ) {
         let mut rng = Rng::new(seed, &[]);
         let shift = [rng.next_f64(), rng.next_f64()];
-        let mut sums = Sums::default();
-        for index in from..to {
-            let Some(target) = self.points.point(index, shift) else { continue };
-            let mut groups = Groups { of_emitter: &self.of_emitter, emitter: Vec3::ZERO, others: Vec3::ZERO };
-            render::irradiance(self.world, &target.point, seed, index, &mut groups);
-            sums.emitter += (target.factor * groups.emitter).as_dvec3();
-            sums.others += (target.factor * groups.others).as_dvec3();
-            sums.count += 1;
+        for index in paths {
+            if index % CHUNK == 0 && job.is_cancelled() {
+                return;
+            }
+            let Some(target) = points.point(index, shift) else { continue };
+            let mut sorter = Sorter::new(bins, target.factor, &mut self.bins, &mut self.others);
+            target.gather(world, seed, index, &mut sorter);
+            self.count += 1;
         }
-        sums
     }
+}
 
-    /// Mean response to the emission and to the other lights, of each batch.
-    pub fn means(&self) -> [(DVec3, DVec3); BATCHES] {
-        self.sums.map(|s| {
-            let n = f64::from(s.count.max(1));
-            (s.emitter / n, s.others / n)
-        })
-    }
+/// How many times the paths there are an error takes that is to fall to `wanted`.
+pub(super) fn forecast(error: f64, wanted: f64) -> f64 {
+    if wanted > 0.0 { MARGIN * (error / wanted).powi(2) } else { f64::INFINITY }
 }

@@ -92,6 +92,23 @@ pub fn irradiance<S: PathSink>(world: &World, point: &SurfacePoint, seed: u64, s
     }
 }
 
+/// The same at a point that is on no surface, of the light that arrives on the side of a normal of any length but 0: a
+/// point of a calculation grid.
+pub fn irradiance_in_air<S: PathSink>(
+    world: &World,
+    position: Vec3,
+    normal: Vec3,
+    seed: u64,
+    sample: u32,
+    sink: &mut S,
+) {
+    let normal = normal.normalize_or_zero();
+    if normal != Vec3::ZERO && position.is_finite() {
+        let vertex = Vertex::free(world, position, normal);
+        path::gather(world, &vertex, true, &mut Sampler::new(seed, sample), &mut path::Contributions(sink));
+    }
+}
+
 #[derive(Clone, Debug, PartialEq)]
 pub struct Params {
     /// Size of the image in pixels, each in `[1, 65536]`.

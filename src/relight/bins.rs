@@ -1,0 +1,81 @@
+//! How light is told apart by where it came from: one bin for the emission, for each lamp, or for each cell of its surface.
+
+use super::lamps::Lamps;
+use crate::render::{LightSource, PathSink, World};
+use glam::{DVec3, Vec2, Vec3};
+
+pub(super) struct Bins<'a> {
+    /// For each mesh, whether it belongs to the emission that is solved for.
+    of_emitter: Vec<bool>,
+    division: Division<'a>,
+}
+
+pub(super) enum Division<'a> {
+    /// All of it is one bin.
+    Whole,
+    /// A bin for each lamp; what belongs to none counts as other light.
+    Lamps(&'a Lamps),
+    /// Cells of the square of texture coordinates, which repeats.
+    Cells { width: usize, height: usize },
+}
+
+impl<'a> Bins<'a> {
+    pub fn new(world: &World, emitter: usize, division: Division<'a>) -> Self {
+        Self { of_emitter: world.scene().meshes.iter().map(|m| m.material == emitter).collect(), division }
+    }
+
+    pub fn count(&self) -> usize {
+        match &self.division {
+            Division::Whole => 1,
+            Division::Lamps(lamps) => lamps.count(),
+            Division::Cells { width, height } => width * height,
+        }
+    }
+
+    /// The bin of a light, if it has one.
+    #[inline]
+    fn find(&self, source: LightSource) -> Option<usize> {
+        let LightSource::Surface { mesh, triangle, uv } = source else { return None };
+        if !self.of_emitter[mesh as usize] {
+            return None;
+        }
+        match &self.division {
+            Division::Whole => Some(0),
+            Division::Lamps(lamps) => lamps.find(mesh, triangle, uv),
+            Division::Cells { width, height } => Some(cell(uv, *width, *height)),
+        }
+    }
+}
+
+/// The cell that holds a point of texture coordinates.
+#[inline]
+fn cell(uv: Vec2, width: usize, height: usize) -> usize {
+    let at = |t: f32, n: usize| ((t.rem_euclid(1.0) * n as f32) as usize).min(n - 1);
+    at(uv.y, height) * width + at(uv.x, width)
+}
+
+/// Sorts the light of one path.
+pub(super) struct Sorter<'a> {
+    bins: &'a Bins<'a>,
+    factor: Vec3,
+    sums: &'a mut [DVec3],
+    others: &'a mut DVec3,
+}
+
+impl<'a> Sorter<'a> {
+    /// `factor` leads from the light that arrives to what is matched.
+    pub fn new(bins: &'a Bins<'a>, factor: Vec3, sums: &'a mut [DVec3], others: &'a mut DVec3) -> Self {
+        Self { bins, factor, sums, others }
+    }
+}
+
+impl PathSink for Sorter<'_> {
+    #[inline]
+    fn add(&mut self, source: LightSource, importance: Vec3, emission: Vec3) {
+        let light = (self.factor * importance * emission).as_dvec3();
+        match self.bins.find(source) {
+            Some(bin) => self.sums[bin] += light,
+            None => *self.others += light,
+        }
+    }
+}

@@ -1,0 +1,233 @@
+//! Least squares within bounds, for few equations and any number of unknowns.
+//!
+//! Minimises `½ |A x − b|² + ½ λ |x − p|²` over `0 ≤ x ≤ u`. The pull `λ > 0` towards `p` makes the answer unique, however
+//! many unknowns are alike. Its conditions of optimality say `x = clip(p + Aᵀ z, 0, u)` with `λ z = b − A x`: as many
+//! equations in `z` as there are rows. They are the gradient of a convex function of `z`, piecewise quadratic, that Newton's
+//! method with an exact line search minimises in a few steps. Every step solves for the unknowns that are not at a bound:
+//! the primal-dual active set method (Hintermüller, Ito and Kunisch 2002), on the small side of the problem.
+
+use crate::error::{Error, ErrorKind, Result};
+
+pub(super) struct Problem<'a> {
+    pub rows: usize,
+    /// Row after row.
+    pub matrix: &'a [f64],
+    pub right: &'a [f64],
+    /// `λ`, relative to the mean square of a row, > 0.
+    pub pull: f64,
+    /// `p`, for every unknown.
+    pub preferred: &'a [f64],
+    /// `u`, ≥ 0, may be infinite.
+    pub upper: &'a [f64],
+}
+
+/// Newton steps: each but the last few changes which unknowns are at a bound.
+const STEPS: usize = 200;
+/// Halvings of a line search, down to rounding.
+const HALVINGS: usize = 60;
+/// Residual, relative to the right-hand side, that is rounding only.
+const ROUNDING: f64 = 1e-12;
+/// Residual that counts as settled all the same.
+const FLICKER: f64 = 1e-8;
+
+impl Problem<'_> {
+    /// # Errors
+    /// `Internal` if the method does not end, which it must.
+    pub fn solve(&self) -> Result<Vec<f64>> {
+        let m = self.rows;
+        let squares: f64 = self.matrix.iter().map(|a| a * a).sum();
+        let lambda = self.pull * squares / m as f64;
+        if !(lambda > 0.0 && lambda.is_finite()) {
+            // Nothing responds: what is preferred is all there is to say.
+            return Ok(self.clipped(&vec![0.0; m]));
+        }
+        let size = self.right.iter().map(|b| b.abs()).fold(0.0, f64::max);
+        let scale = size.max(norm(&self.gradient(lambda, &vec![0.0; m])));
+        let mut z = vec![0.0; m];
+        for _ in 0..STEPS {
+            let gradient = self.gradient(lambda, &z);
+            if norm(&gradient) <= ROUNDING * scale {
+                return Ok(self.clipped(&z));
+            }
+            let between = self.between(&z);
+            let step = self.newton_step(lambda, &between, &gradient);
+            let t = self.line_search(lambda, &z, &step);
+            z.iter_mut().zip(&step).for_each(|(z, d)| *z += t * d);
+            // Where no unknown came to a bound or left one, the function is a parabola, and the step ends at its foot.
+            if t == 1.0 && self.between(&z) == between {
+                return Ok(self.clipped(&z));
+            }
+        }
+        // At a bound to rounding an unknown may flicker.
+        if norm(&self.gradient(lambda, &z)) <= FLICKER * scale {
+            return Ok(self.clipped(&z));
+        }
+        Err(Error::new(ErrorKind::Internal, "the powers of the groups did not settle"))
+    }
+
+    /// The unknowns that are not at a bound.
+    fn between(&self, z: &[f64]) -> Vec<usize> {
+        let x = self.free(z);
+        (0..x.len()).filter(|&j| x[j] > 0.0 && x[j] < self.upper[j]).collect()
+    }
+
+    fn row(&self, i: usize) -> &[f64] {
+        let n = self.preferred.len();
+        &self.matrix[i * n..(i + 1) * n]
+    }
+
+    /// `p + Aᵀ z`
+    fn free(&self, z: &[f64]) -> Vec<f64> {
+        let mut x = self.preferred.to_vec();
+        for (i, &z) in z.iter().enumerate().filter(|(_, z)| **z != 0.0) {
+            x.iter_mut().zip(self.row(i)).for_each(|(x, a)| *x += a * z);
+        }
+        x
+    }
+
+    fn clipped(&self, z: &[f64]) -> Vec<f64> {
+        let mut x = self.free(z);
+        x.iter_mut().zip(self.upper).for_each(|(x, u)| *x = x.clamp(0.0, *u));
+        x
+    }
+
+    /// `λ z + A x(z) − b`
+    fn gradient(&self, lambda: f64, z: &[f64]) -> Vec<f64> {
+        let x = self.clipped(z);
+        (0..self.rows).map(|i| lambda * z[i] + dot(self.row(i), &x) - self.right[i]).collect()
+    }
+
+    /// `−(λ I + Σ a aᵀ)⁻¹ g` over the unknowns between their bounds.
+    fn newton_step(&self, lambda: f64, between: &[usize], gradient: &[f64]) -> Vec<f64> {
+        let m = self.rows;
+        let mut hessian = vec![0.0; m * m];
+        for i in 0..m {
+            for k in 0..=i {
+                let (a, b) = (self.row(i), self.row(k));
+                hessian[i * m + k] = between.iter().map(|&j| a[j] * b[j]).sum();
+            }
+            hessian[i * m + i] += lambda;
+        }
+        let mut step: Vec<f64> = gradient.iter().map(|g| -g).collect();
+        solve_cholesky(&mut hessian, &mut step);
+        step
+    }
+
+    /// Where along the step the function is least: the derivative along it grows, piece by piece linearly.
+    fn line_search(&self, lambda: f64, z: &[f64], step: &[f64]) -> f64 {
+        let slope = |t: f64| {
+            let at: Vec<f64> = z.iter().zip(step).map(|(z, d)| z + t * d).collect();
+            dot(&self.gradient(lambda, &at), step)
+        };
+        // Where nothing comes to a bound the whole step is exact: its slope is rounding.
+        let start = slope(0.0).abs();
+        if slope(1.0) <= 1e-9 * start {
+            return 1.0;
+        }
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (low + high);
+            if slope(middle) > 0.0 { high = middle } else { low = middle }
+        }
+        0.5 * (low + high)
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+fn norm(v: &[f64]) -> f64 {
+    dot(v, v).sqrt()
+}
+
+/// Solves a positive definite system given by its lower half, in place.
+fn solve_cholesky(a: &mut [f64], x: &mut [f64]) {
+    let m = x.len();
+    for i in 0..m {
+        for k in 0..=i {
+            let rest = a[i * m + k] - dot(&a[i * m..i * m + k], &a[k * m..k * m + k]);
+            // Rounding may leave nothing of a small pivot.
+            a[i * m + k] = if i == k { rest.max(f64::EPSILON * a[i * m + i]).sqrt() } else { rest / a[k * m + k] };
+        }
+    }
+    for i in 0..m {
+        x[i] = (x[i] - dot(&a[i * m..i * m + i], &x[..i])) / a[i * m + i];
+    }
+    for i in (0..m).rev() {
+        let below: f64 = (i + 1..m).map(|k| a[k * m + i] * x[k]).sum();
+        x[i] = (x[i] - below) / a[i * m + i];
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rng::Rng;
+
+    fn solve(rows: usize, matrix: &[f64], right: &[f64], pull: f64, preferred: &[f64], upper: &[f64]) -> Vec<f64> {
+        Problem { rows, matrix, right, pull, preferred, upper }.solve().unwrap()
+    }
+
+    const FREE: f64 = f64::INFINITY;
+
+    #[test]
+    fn closed_forms() {
+        // One equation, one unknown: a x = b, pulled a little to p.
+        let x = solve(1, &[2.0], &[6.0], 1e-9, &[0.0], &[FREE]);
+        assert!((x[0] - 6.0 * 2.0 / (4.0 + 4e-9)).abs() < 1e-12);
+        // Identical unknowns share alike; the one nearest to what is preferred is chosen among equals.
+        let x = solve(1, &[1.0, 1.0, 1.0], &[6.0], 1e-9, &[0.0, 0.0, 3.0], &[FREE; 3]);
+        assert!((x[0] - 1.0).abs() < 1e-7 && (x[1] - 1.0).abs() < 1e-7 && (x[2] - 4.0).abs() < 1e-7, "{x:?}");
+        // Bounds: the first can give no more than 1, so the second gives the rest.
+        let x = solve(1, &[1.0, 1.0], &[6.0], 1e-9, &[0.0, 0.0], &[1.0, FREE]);
+        assert!(x[0] == 1.0 && (x[1] - 5.0).abs() < 1e-7, "{x:?}");
+        // Negative light would be needed: off.
+        assert_eq!(solve(1, &[1.0], &[-6.0], 1e-9, &[1.0], &[FREE]), [0.0]);
+        // Beyond what all can give: all at their bounds.
+        assert_eq!(solve(1, &[1.0, 2.0], &[100.0], 1e-9, &[1.0, 1.0], &[3.0, 4.0]), [3.0, 4.0]);
+        // Two equations: [[2, 1], [1, 3]] x = [5, 10] has x = [1, 3].
+        let x = solve(2, &[2.0, 1.0, 1.0, 3.0], &[5.0, 10.0], 1e-10, &[0.0, 0.0], &[FREE; 2]);
+        assert!((x[0] - 1.0).abs() < 1e-8 && (x[1] - 3.0).abs() < 1e-8, "{x:?}");
+        // No response at all.
+        assert_eq!(solve(1, &[0.0], &[1.0], 1e-6, &[0.7], &[FREE]), [0.7]);
+    }
+
+    /// The conditions of Karush, Kuhn and Tucker hold at the answer of random problems of all shapes, and of groups that
+    /// differ by twelve orders of magnitude.
+    #[test]
+    fn conditions_of_optimality() {
+        let mut rng = Rng::new(3, &[]);
+        for case in 0..200 {
+            let (m, n) = (1 + rng.below(6), 1 + rng.below(40));
+            let spread = if case % 4 == 0 { 12.0 } else { 0.0 };
+            let size: Vec<f64> = (0..n).map(|_| 10f64.powf(-spread * rng.next_f64())).collect();
+            let matrix: Vec<f64> = (0..m * n).map(|i| rng.next_f64() * size[i % n]).collect();
+            let right: Vec<f64> = (0..m).map(|_| rng.normal() * n as f64).collect();
+            let preferred = vec![1.0; n];
+            let upper: Vec<f64> =
+                (0..n).map(|_| if rng.next_f64() < 0.5 { FREE } else { 3.0 * rng.next_f64() }).collect();
+            let pull = 10f64.powf(-6.0 * rng.next_f64());
+            let x = solve(m, &matrix, &right, pull, &preferred, &upper);
+            let lambda = pull * matrix.iter().map(|a| a * a).sum::<f64>() / m as f64;
+            for j in 0..n {
+                let slope: f64 =
+                    (0..m).map(|i| matrix[i * n + j] * (dot(&matrix[i * n..][..n], &x) - right[i])).sum::<f64>()
+                        + lambda * (x[j] - preferred[j]);
+                // Relative to the terms that cancel.
+                let small = 1e-6 * (lambda + norm(&right));
+                let fits = match x[j] {
+                    v if v == upper[j] => slope <= small,
+                    0.0 => slope >= -small,
+                    _ => slope.abs() <= small,
+                };
+                assert!(
+                    fits && (0.0..=upper[j]).contains(&x[j]),
+                    "case {case}: x {} of {}, slope {slope}",
+                    x[j],
+                    upper[j]
+                );
+            }
+        }
+    }
+}

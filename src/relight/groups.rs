@@ -1,0 +1,262 @@
+//! Powers of groups of lamps, within bounds, that come nearest to several goals.
+//!
+//! Radiance is linear in the powers `x`, so the nearest ones minimise `Σ w² ((b + Σ r x − t) / s)²` over goals and channels,
+//! `s` the brightness of a goal, with a small pull towards equal lamps that settles what the goals leave open ("Painting
+//! with light", Schoeneman et al. 1993, solves the same sum without it). With one group and one goal this is the closed
+//! form of [`super::run`].
+//!
+//! The least squares are between goals, each a mean over many paths: texels, whose noise would make the answer dark, are
+//! never compared one by one.
+
+use super::Reach;
+use super::bounded::Problem;
+use super::estimate::{BATCHES, STUDENT_T, mean, pseudo_values, standard_error};
+use super::responses::{Goal, Responses};
+use crate::error::{Error, ErrorKind, Result, check_range};
+use glam::DVec3;
+
+/// What may change of a group.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Colour {
+    /// Its power alone: all channels are multiplied alike.
+    Kept,
+    /// Each channel for itself.
+    Free,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct GroupParams {
+    pub colour: Colour,
+    /// Largest multiplier of each group, ≥ 0, infinite for none; empty if none has a bound.
+    pub most: Vec<f64>,
+    /// How much missing the goals weighs against lamps that differ, in `[1e-9, 1e3]`: small values meet the goals, large
+    /// ones keep the lamps equal.
+    pub evenness: f64,
+    /// A goal counts as met when it is missed by no more than this share of itself, in `[1e-6, 1]`, or by its noise.
+    pub tolerance: f64,
+}
+
+impl Default for GroupParams {
+    fn default() -> Self {
+        Self { colour: Colour::Kept, most: Vec::new(), evenness: 1e-6, tolerance: 0.01 }
+    }
+}
+
+/// What one goal gets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Outcome {
+    /// Mean radiance, in cd/m² per channel.
+    pub achieved: DVec3,
+    /// Half-widths of 95 % intervals: how far the truth may be from `achieved`, the powers as they are.
+    pub half_width: DVec3,
+    pub reach: [Reach; 3],
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct GroupSolution {
+    /// What to multiply the emission of each group with, ≥ 0.
+    pub scale: Vec<DVec3>,
+    /// Half-widths of the 95 % confidence intervals of `scale`, from the paths; 0 at a bound.
+    pub half_width: Vec<DVec3>,
+    pub outcomes: Vec<Outcome>,
+    /// Why the goals are not all met, if they are not; the powers then are the nearest that the bounds allow.
+    pub unreachable: Option<String>,
+}
+
+/// Solves for the powers of groups of lamps. `responses` are those to the groups ([`Responses::grouped`]), traced for the
+/// same goals; their targets and weights may differ.
+///
+/// # Errors
+/// `Unreachable` if no goal gets light from any group; parameters out of range.
+pub fn solve_groups(responses: &Responses, goals: &[Goal], params: &GroupParams) -> Result<GroupSolution> {
+    check(responses, goals, params)?;
+    let system = System { responses, goals, params };
+    let everything = system.means(None);
+    if everything.rows.iter().flatten().all(|r| *r == DVec3::ZERO) {
+        return Err(Error::new(
+            ErrorKind::Unreachable,
+            "no light of any group finds its way to a goal: they may face away, or everything around may be black; \
+             choose other goals or lamps",
+        ));
+    }
+    let whole = system.solve(&everything)?;
+    let rest = (0..BATCHES).map(|b| system.solve(&system.means(Some(b)))).collect::<Result<Vec<_>>>()?;
+
+    // The jackknife, for every group and channel.
+    let half_width = (0..whole.len())
+        .map(|g| {
+            DVec3::from(std::array::from_fn(|c| {
+                let without: [f64; BATCHES] = std::array::from_fn(|b| rest[b][g][c]);
+                STUDENT_T * standard_error(&pseudo_values(whole[g][c], &without))
+            }))
+        })
+        .collect();
+    let outcomes: Vec<Outcome> = (0..goals.len()).map(|goal| system.outcome(goal, &whole)).collect();
+    let unreachable = system.explain(&outcomes, &whole);
+    Ok(GroupSolution { scale: whole, half_width, outcomes, unreachable })
+}
+
+fn check(responses: &Responses, goals: &[Goal], params: &GroupParams) -> Result<()> {
+    if goals.len() != responses.goals() {
+        return Err(Error::argument(format!(
+            "there are {} goals, but responses of {}",
+            goals.len(),
+            responses.goals()
+        )));
+    }
+    for goal in goals {
+        for channel in goal.target.to_array() {
+            check_range("target", channel, 0.0, f32::MAX)?;
+        }
+        check_range("weight", goal.weight, 0.0, 1e12)?;
+    }
+    check_range("evenness", params.evenness, 1e-9, 1e3)?;
+    check_range("tolerance", params.tolerance, 1e-6, 1.0)?;
+    if !params.most.is_empty() && params.most.len() != responses.lamps() {
+        return Err(Error::argument(format!(
+            "bounds are given for {} of {} groups",
+            params.most.len(),
+            responses.lamps()
+        )));
+    }
+    params.most.iter().try_for_each(|&most| check_range("most", most, 0.0, f64::INFINITY).map(drop))
+}
+
+struct System<'a> {
+    responses: &'a Responses,
+    goals: &'a [Goal<'a>],
+    params: &'a GroupParams,
+}
+
+/// Mean responses of all batches, or of all but one.
+struct Measured {
+    /// For each goal, of each group.
+    rows: Vec<Vec<DVec3>>,
+    background: Vec<DVec3>,
+}
+
+impl System<'_> {
+    fn means(&self, left_out: Option<usize>) -> Measured {
+        let groups = self.responses.lamps();
+        let batches = || (0..BATCHES).filter(|b| Some(*b) != left_out);
+        let n = batches().count() as f64;
+        let rows = (0..self.goals.len())
+            .map(|goal| {
+                let mut sums = vec![DVec3::ZERO; groups];
+                for b in batches() {
+                    sums.iter_mut().zip(self.responses.batch(goal, b)).for_each(|(s, r)| *s += *r);
+                }
+                sums.iter_mut().for_each(|s| *s /= n);
+                sums
+            })
+            .collect();
+        let background = (0..self.goals.len())
+            .map(|goal| batches().map(|b| self.responses.background_of_batch(goal, b)).sum::<DVec3>() / n)
+            .collect();
+        Measured { rows, background }
+    }
+
+    fn solve(&self, measured: &Measured) -> Result<Vec<DVec3>> {
+        let groups = self.responses.lamps();
+        let infinite = vec![f64::INFINITY; groups];
+        let upper = if self.params.most.is_empty() { &infinite } else { &self.params.most };
+        match self.params.colour {
+            Colour::Kept => {
+                let x = self.solve_channels(measured, upper, &[0, 1, 2])?;
+                Ok(x.into_iter().map(DVec3::splat).collect())
+            }
+            Colour::Free => {
+                let [r, g, b] = [0, 1, 2].map(|c| self.solve_channels(measured, upper, &[c]));
+                let (r, g, b) = (r?, g?, b?);
+                Ok((0..groups).map(|i| DVec3::new(r[i], g[i], b[i])).collect())
+            }
+        }
+    }
+
+    /// One problem of all goals in some channels.
+    fn solve_channels(&self, measured: &Measured, upper: &[f64], channels: &[usize]) -> Result<Vec<f64>> {
+        let groups = self.responses.lamps();
+        let (mut matrix, mut right) = (Vec::new(), Vec::new());
+        for ((goal, row), background) in self.goals.iter().zip(&measured.rows).zip(&measured.background) {
+            // A goal of darkness is measured by what all lamps would bring.
+            let bright = f64::from(goal.target.max_element());
+            let size = if bright > 0.0 { bright } else { row.iter().sum::<DVec3>().max_element() };
+            let weight = if size > 0.0 { goal.weight / size } else { 0.0 };
+            for &c in channels {
+                matrix.extend(row.iter().map(|r| r[c] * weight));
+                right.push((f64::from(goal.target[c]) - background[c]) * weight);
+            }
+        }
+        // Equal lamps that come nearest: the least squares of one unknown.
+        let rows = right.len();
+        let together: Vec<f64> = matrix.chunks_exact(groups).map(|row| row.iter().sum()).collect();
+        let square: f64 = together.iter().map(|a| a * a).sum();
+        let along: f64 = together.iter().zip(&right).map(|(a, b)| a * b).sum();
+        let equal = if square > 0.0 { (along / square).max(0.0) } else { 1.0 };
+        let preferred: Vec<f64> = upper.iter().map(|u| equal.min(*u)).collect();
+        Problem { rows, matrix: &matrix, right: &right, pull: self.params.evenness, preferred: &preferred, upper }
+            .solve()
+    }
+
+    fn outcome(&self, goal: usize, scale: &[DVec3]) -> Outcome {
+        let light: Vec<DVec3> = (0..BATCHES)
+            .map(|b| {
+                let lamps = self.responses.batch(goal, b).iter().zip(scale).map(|(r, x)| r * x).sum::<DVec3>();
+                lamps + self.responses.background_of_batch(goal, b)
+            })
+            .collect();
+        let (mut achieved, mut half_width, mut reach) = (DVec3::ZERO, DVec3::ZERO, [Reach::Met; 3]);
+        for c in 0..3 {
+            let batches: [f64; BATCHES] = std::array::from_fn(|b| light[b][c]);
+            achieved[c] = mean(&batches);
+            half_width[c] = STUDENT_T * standard_error(&batches);
+            let target = f64::from(self.goals[goal].target[c]);
+            let miss = achieved[c] - target;
+            let brightest = f64::from(self.goals[goal].target.max_element());
+            let allowed = self.params.tolerance * brightest + half_width[c];
+            let dark = (0..BATCHES).all(|b| self.responses.batch(goal, b).iter().all(|r| r[c] == 0.0));
+            reach[c] = match () {
+                () if miss.abs() <= allowed => Reach::Met,
+                () if miss > 0.0 => Reach::TooBright,
+                () if dark => Reach::Dark,
+                () => Reach::TooDim,
+            };
+        }
+        Outcome { achieved, half_width, reach }
+    }
+
+    /// The reason why goals are missed.
+    fn explain(&self, outcomes: &[Outcome], scale: &[DVec3]) -> Option<String> {
+        let missed: Vec<usize> = (0..outcomes.len())
+            .filter(|&g| self.goals[g].weight > 0.0 && outcomes[g].reach.iter().any(|r| *r != Reach::Met))
+            .collect();
+        let &first = missed.first()?;
+        let outcome = &outcomes[first];
+        let channel = outcome.reach.iter().position(|r| *r != Reach::Met)?;
+        let name = ["red", "green", "blue"][channel];
+        let off = scale.iter().all(|x| x[channel] == 0.0);
+        let full =
+            !self.params.most.is_empty() && scale.iter().zip(&self.params.most).all(|(x, most)| x[channel] >= *most);
+        let why = match outcome.reach[channel] {
+            Reach::Dark => "no light of this channel finds its way there",
+            Reach::TooBright if off => "the other lights alone are brighter: dim or remove them, or raise the target",
+            Reach::TooDim if full => "all groups are at their largest power: allow more, or lower the target",
+            _ => match self.params.colour {
+                Colour::Kept => {
+                    "the goals ask for different things of the same groups, or for a colour that the groups do not have: \
+                     divide them further, free their colours, or weigh the goals"
+                }
+                Colour::Free => {
+                    "the goals ask for different things of the same groups: divide them further, or weigh the goals"
+                }
+            },
+        };
+        Some(format!(
+            "goal {first} asks for {:.4} cd/m² in {name} and gets {:.4}: {why} ({} of {} goals are missed)",
+            self.goals[first].target[channel],
+            outcome.achieved[channel],
+            missed.len(),
+            outcomes.len()
+        ))
+    }
+}

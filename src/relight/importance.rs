@@ -1,0 +1,226 @@
+//! Importance: what a point of the emission's surface means to the target.
+//!
+//! The mean radiance of the target is a linear functional of the emission, `J(e) = ∫ e(x) I(x) dx`. Paths from the target,
+//! in a scene whose surface emits evenly, find the integrals of `I` over the cells of the surface's texture coordinates,
+//! once. Then any texture, however it is scaled, turned and shifted, costs one dot product, without a path.
+//!
+//! Cells limit the band: within one, `I` counts as constant. For matt surroundings it is smooth, and the error falls with
+//! the square of the cell; [`Importance::respond`] says how large it is.
+
+use super::bins::{Bins, Division};
+use super::estimate::BATCHES;
+use super::responses::{Estimate, Goal};
+use super::solve::{self, Measured};
+use super::target::Sampler;
+use super::transport::Batches;
+use super::{Params, Solution, time_left, transport};
+use crate::error::{Error, Result, check_range};
+use crate::exec;
+use crate::image::Image;
+use crate::job::Job;
+use crate::render::World;
+use crate::scene::{Scene, Texture, TextureRef};
+use glam::{DVec3, Mat3, Vec2, Vec3};
+use std::sync::Arc;
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct MapParams {
+    /// Cells along u and v, each in `[1, 1024]`.
+    pub width: usize,
+    pub height: usize,
+    /// When to stop, by the interval of the response to an even emission; `quantity` is not used.
+    pub tracing: Params,
+}
+
+impl Default for MapParams {
+    fn default() -> Self {
+        Self { width: 64, height: 64, tracing: Params::default() }
+    }
+}
+
+/// The map, in independent batches.
+#[derive(Clone, Debug)]
+pub struct Importance {
+    width: usize,
+    height: usize,
+    /// Of each batch the cells row by row: the target's mean radiance where a cell emits 1 cd/m² and nothing else does.
+    batches: Vec<Vec<DVec3>>,
+    /// The target's mean radiance under all other light, of each batch.
+    background: Vec<DVec3>,
+    /// Paths traced.
+    pub paths: u32,
+}
+
+/// What a texture would mean to the target.
+#[derive(Clone, Debug)]
+pub struct Response {
+    /// Mean radiance of the target in cd/m² per channel, where the texture's values are cd/m².
+    pub light: Estimate,
+    /// What cells of twice the side change, a third of which the cells themselves are off where `I` is smooth: noise
+    /// included.
+    pub band_error: DVec3,
+    measured: Vec<DVec3>,
+}
+
+/// Texels looked up along each side of a cell, at most.
+const MOST_LOOK_UPS: usize = 64;
+
+impl Importance {
+    /// Traces the importance of a goal on the surfaces of the emitting material, which need texture coordinates; the
+    /// goal's target and weight are not used. Points of the target that emit in the scene as it is are left out.
+    ///
+    /// # Errors
+    /// Parameters out of range, a material or a target that is not there, surfaces without texture coordinates; cancelled.
+    pub fn trace(scene: &Arc<Scene>, emitter: usize, goal: &Goal, params: &MapParams, job: Job) -> Result<Self> {
+        check_range("width", params.width, 1, 1024)?;
+        check_range("height", params.height, 1, 1024)?;
+        let tracing = &params.tracing;
+        check_range("paths", tracing.paths, 1024, 1 << 30)?;
+        check_range("target_error", tracing.target_error, 0.0, 1.0)?;
+        let even = evenly_lit(scene, emitter, params)?;
+        let world = World::build(Arc::new(even), job.part(0.0, 0.1))?;
+        let points = Sampler::new(scene, goal.place, goal.quantity)?;
+        let bins = Bins::new(&world, emitter, Division::Cells { width: params.width, height: params.height });
+        let mut batches = Batches::new(&world, &points, bins, tracing.seed)?;
+        let clock = std::time::Instant::now();
+        let wanted = f64::from(tracing.target_error);
+        let mut growth = f64::INFINITY;
+        loop {
+            batches.trace_round(growth, tracing.paths, job.part(0.1, 1.0))?;
+            let map = Self::of(&batches, params);
+            let all = Estimate::of(|b| map.batches[b].iter().sum());
+            let relative = all.half_width() / all.mean;
+            let error = (0..3).map(|c| relative[c]).filter(|e| e.is_finite()).fold(0.0, f64::max);
+            let late = tracing.time_budget_ms > 0 && clock.elapsed().as_millis() >= u128::from(tracing.time_budget_ms);
+            if wanted > 0.0 && error <= wanted || late || batches.paths() >= tracing.paths {
+                job.report(1.0);
+                return Ok(map);
+            }
+            growth = time_left(tracing, clock).min(transport::forecast(error, wanted));
+        }
+    }
+
+    fn of(batches: &Batches, params: &MapParams) -> Self {
+        let means = batches.means();
+        Self {
+            width: params.width,
+            height: params.height,
+            background: means.iter().map(|m| m.others).collect(),
+            batches: means.into_iter().map(|m| m.bins).collect(),
+            paths: batches.paths(),
+        }
+    }
+
+    /// The map as an image of `width × height` cells: the target's mean radiance where a cell emits 1 cd/m².
+    pub fn image(&self) -> Result<Image> {
+        let mut image = Image::new(self.width, self.height, 3)?;
+        for (i, pixel) in image.data.chunks_exact_mut(3).enumerate() {
+            let sum: DVec3 = self.batches.iter().map(|b| b[i]).sum();
+            (sum / BATCHES as f64).as_vec3().write_to_slice(pixel);
+        }
+        Ok(image)
+    }
+
+    /// The target's mean radiance under a texture on the surface, in cd/m² as its values are. `placement` leads from the
+    /// surface's texture coordinates to those of the texture (as `KHR_texture_transform` has it), which continues as it
+    /// wraps.
+    ///
+    /// # Errors
+    /// A placement that is not finite; cancelled.
+    pub fn respond(&self, texture: &Texture, placement: &Mat3, job: Job) -> Result<Response> {
+        let emission = self.emission(texture, placement, job)?;
+        let products = |batch: &Vec<DVec3>| batch.iter().zip(&emission).map(|(i, e)| i * e).sum::<DVec3>();
+        let measured: Vec<DVec3> = self.batches.iter().map(products).collect();
+        let light = Estimate::of(|b| measured[b]);
+        Ok(Response { light, band_error: self.coarse(&emission) - light.mean, measured })
+    }
+
+    /// The scale of a texture that meets a target, as [`super::run`] finds it by tracing.
+    ///
+    /// # Errors
+    /// `Unreachable` as there.
+    pub fn solve(&self, response: &Response, target: Vec3) -> Result<Solution> {
+        for channel in target.to_array() {
+            check_range("target", channel, 0.0, f32::MAX)?;
+        }
+        let (response, background) = (response.measured.clone(), self.background.clone());
+        solve::run(&Measured { response, background, paths: self.paths }, target.as_dvec3())
+    }
+
+    /// Mean emission of each cell.
+    fn emission(&self, texture: &Texture, placement: &Mat3, job: Job) -> Result<Vec<DVec3>> {
+        if !placement.is_finite() {
+            return Err(Error::argument(format!("placement is {placement}; it must be finite")));
+        }
+        // As many look-ups as a cell has texels: along its sides and as the placement stretches it.
+        let cell = Vec2::new(1.0 / self.width as f32, 1.0 / self.height as f32);
+        let texels = Vec2::new(texture.image.width as f32, texture.image.height as f32);
+        let along = |side: Vec2| {
+            let length = (placement.transform_vector2(side) * texels).abs().max_element().ceil();
+            (length as usize).clamp(1, MOST_LOOK_UPS)
+        };
+        let (nu, nv) = (along(Vec2::X * cell.x), along(Vec2::Y * cell.y));
+        let rows = exec::map(self.height, job, |y| {
+            let mean = |x: usize| {
+                let mut sum = DVec3::ZERO;
+                for j in 0..nv {
+                    for i in 0..nu {
+                        let within = Vec2::new((i as f32 + 0.5) / nu as f32, (j as f32 + 0.5) / nv as f32);
+                        let uv = (Vec2::new(x as f32, y as f32) + within) * cell;
+                        let value = texture.nearest(placement.transform_point2(uv)).truncate();
+                        sum += value.max(Vec3::ZERO).as_dvec3();
+                    }
+                }
+                sum / (nu * nv) as f64
+            };
+            (0..self.width).map(mean).collect::<Vec<_>>()
+        })?;
+        Ok(rows.into_iter().flatten().collect())
+    }
+
+    /// The response with cells of twice the side.
+    fn coarse(&self, emission: &[DVec3]) -> DVec3 {
+        let mut total = DVec3::ZERO;
+        for y in (0..self.height).step_by(2) {
+            for x in (0..self.width).step_by(2) {
+                let (mut importance, mut mean, mut n) = (DVec3::ZERO, DVec3::ZERO, 0.0);
+                for cy in y..(y + 2).min(self.height) {
+                    for cx in x..(x + 2).min(self.width) {
+                        let i = cy * self.width + cx;
+                        importance += self.batches.iter().map(|b| b[i]).sum::<DVec3>() / BATCHES as f64;
+                        mean += emission[i];
+                        n += 1.0;
+                    }
+                }
+                total += importance * mean / n;
+            }
+        }
+        total
+    }
+}
+
+/// The scene with the emitting surfaces lit evenly, by a white texture of a texel per cell.
+fn evenly_lit(scene: &Arc<Scene>, emitter: usize, params: &MapParams) -> Result<Scene> {
+    if emitter >= scene.materials.len() {
+        return Err(Error::argument(format!(
+            "the emitter is material {emitter}; the scene has {} materials",
+            scene.materials.len()
+        )));
+    }
+    let mut even = (**scene).clone();
+    let white = Image::from_fn(params.width, params.height, |_, _| [1.0])?;
+    even.textures.push(Texture::new("importance", white));
+    let material = &mut even.materials[emitter];
+    let texture = even.textures.len() - 1;
+    let old = material.emission_texture.unwrap_or(TextureRef::new(texture));
+    material.emission = Vec3::ONE;
+    material.emission_texture = Some(TextureRef { texture, ..old });
+    let bare = |m: &&crate::scene::Mesh| m.material == emitter && m.uvs.get(old.uv_set).is_none_or(|u| u.is_empty());
+    if let Some(mesh) = even.meshes.iter().find(bare) {
+        return Err(Error::argument(format!(
+            "mesh {:?} has no texture coordinates, by which a map of its importance could be laid out",
+            mesh.name
+        )));
+    }
+    Ok(even)
+}

@@ -1,0 +1,222 @@
+//! Which lamp a point of the emission belongs to: by the texels of its texture, or by the pieces of its meshes.
+
+use crate::error::{Error, Result};
+use crate::image::{Image, try_vec};
+use crate::scene::Scene;
+use glam::{Vec2, Vec3};
+
+/// Lamps of an emission, counted from 0.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lamps {
+    count: usize,
+    /// One more than the number of the lamp, 0 for none; as `division` says.
+    labels: Vec<u32>,
+    division: Division,
+    /// Centre of each lamp: in texture coordinates, z being 0, or in metres.
+    centres: Vec<Vec3>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Division {
+    /// A label per texel, which repeats as the texture does.
+    Texels { width: usize, height: usize },
+    /// A label per triangle; the first of each mesh.
+    Triangles { first: Vec<usize> },
+}
+
+impl Lamps {
+    /// The lamps that a label image tells apart: each texel holds one more than the number of its lamp, or 0.
+    ///
+    /// # Errors
+    /// `InvalidArgument` if the labels do not fill `width × height`, or there are none.
+    pub fn of_labels(width: usize, height: usize, labels: Vec<u32>) -> Result<Self> {
+        if width == 0 || height == 0 || labels.len() != width * height {
+            return Err(Error::argument(format!(
+                "there are {} labels for a texture of {width} x {height} texels",
+                labels.len()
+            )));
+        }
+        let count = labels.iter().copied().max().unwrap_or(0) as usize;
+        if count > labels.len() {
+            return Err(Error::argument(format!(
+                "the labels go up to {count}, more than there are texels; number the lamps from 1 without gaps"
+            )));
+        }
+        let mut sums = try_vec(count, (Vec2::ZERO, 0.0f32))?;
+        for (i, &label) in labels.iter().enumerate().filter(|(_, l)| **l > 0) {
+            let sum = &mut sums[label as usize - 1];
+            sum.0 += Vec2::new((i % width) as f32 + 0.5, (i / width) as f32 + 0.5);
+            sum.1 += 1.0;
+        }
+        let size = Vec2::new(width as f32, height as f32);
+        let centres = sums.iter().map(|(sum, n)| (*sum / n.max(1.0) / size).extend(0.0)).collect();
+        Self { count, labels, division: Division::Texels { width, height }, centres }.checked()
+    }
+
+    /// Every 8-connected patch of texels that emit is a lamp.
+    pub fn of_texture(texture: &Image) -> Result<Self> {
+        let (width, height) = (texture.width, texture.height);
+        let colours = texture.channels.min(3);
+        let lit = |i: usize| texture.data[i * texture.channels..][..colours].iter().any(|&v| v > 0.0);
+        let mut labels = try_vec(width * height, 0u32)?;
+        let mut open = Vec::new();
+        let mut count = 0;
+        for start in 0..width * height {
+            if labels[start] != 0 || !lit(start) {
+                continue;
+            }
+            // Flood the patch from its first texel.
+            count += 1;
+            labels[start] = count;
+            open.push(start);
+            while let Some(i) = open.pop() {
+                let (x, y) = (i % width, i / width);
+                for ny in y.saturating_sub(1)..=(y + 1).min(height - 1) {
+                    for nx in x.saturating_sub(1)..=(x + 1).min(width - 1) {
+                        let next = ny * width + nx;
+                        if labels[next] == 0 && lit(next) {
+                            labels[next] = count;
+                            open.push(next);
+                        }
+                    }
+                }
+            }
+        }
+        Self::of_labels(width, height, labels)
+    }
+
+    /// Every connected piece of the meshes that have the emitting material is a lamp: triangles that share a vertex.
+    pub fn of_meshes(scene: &Scene, emitter: usize) -> Result<Self> {
+        let triangles = scene.meshes.iter().map(|m| m.triangles.len()).sum();
+        let mut labels = try_vec(triangles, 0u32)?;
+        let (mut first, mut next, mut centres) = (Vec::with_capacity(scene.meshes.len()), 0, Vec::new());
+        for mesh in &scene.meshes {
+            first.push(next);
+            if mesh.material == emitter {
+                let mut pieces = Pieces::new(mesh.positions.len())?;
+                mesh.triangles.iter().for_each(|t| pieces.join(t));
+                // Number the pieces in the order of their first triangle.
+                let mut number = try_vec(mesh.positions.len(), 0u32)?;
+                let from = centres.len();
+                let mut weights = Vec::new();
+                for (i, t) in mesh.triangles.iter().enumerate() {
+                    let root = pieces.root(t[0]) as usize;
+                    if number[root] == 0 {
+                        centres.push(Vec3::ZERO);
+                        weights.push(0.0);
+                        number[root] = centres.len() as u32;
+                    }
+                    labels[next + i] = number[root];
+                    let lamp = number[root] as usize - 1;
+                    let [a, b, c] = mesh.corners(i);
+                    let area = (b - a).cross(c - a).length();
+                    centres[lamp] += (a + b + c) / 3.0 * area;
+                    weights[lamp - from] += area;
+                }
+                centres[from..].iter_mut().zip(&weights).for_each(|(c, w)| *c /= f32::max(*w, f32::MIN_POSITIVE));
+            }
+            next += mesh.triangles.len();
+        }
+        Self { count: centres.len(), labels, division: Division::Triangles { first }, centres }.checked()
+    }
+
+    fn checked(self) -> Result<Self> {
+        if self.count == 0 {
+            return Err(Error::argument("the emission has no lamp: nothing of it emits, or nothing is labelled"));
+        }
+        Ok(self)
+    }
+
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    /// Centre of each lamp: texture coordinates of a lamp of texels, metres of a lamp of triangles.
+    pub fn centres(&self) -> &[Vec3] {
+        &self.centres
+    }
+
+    /// Groups the lamps that lie in a row: whose centres differ by less than `tolerance` along an axis. Returns the group
+    /// of each lamp and the number of groups; groups are numbered along the axis.
+    pub fn rows(&self, axis: usize, tolerance: f32) -> (Vec<u32>, usize) {
+        let mut order: Vec<usize> = (0..self.count).collect();
+        let along = |i: usize| self.centres[i][axis.min(2)];
+        order.sort_by(|&a, &b| along(a).total_cmp(&along(b)).then(a.cmp(&b)));
+        let (mut groups, mut group) = (vec![0; self.count], 0);
+        for pair in order.windows(2) {
+            group += u32::from(along(pair[1]) - along(pair[0]) > tolerance);
+            groups[pair[1]] = group;
+        }
+        (groups, group as usize + 1)
+    }
+
+    #[inline]
+    pub(super) fn find(&self, mesh: u32, triangle: u32, uv: Vec2) -> Option<usize> {
+        let label = match &self.division {
+            Division::Texels { width, height } => {
+                // As the texture itself is looked up (`scene::texture`).
+                let at = |t: f32, n: usize| ((t * n as f32).floor() as i64).rem_euclid(n as i64) as usize;
+                self.labels[at(uv.y, *height) * width + at(uv.x, *width)]
+            }
+            Division::Triangles { first } => self.labels[first[mesh as usize] + triangle as usize],
+        };
+        (label as usize).checked_sub(1)
+    }
+}
+
+/// Which vertices hang together (union-find, Tarjan 1975, with path halving).
+struct Pieces(Vec<u32>);
+
+impl Pieces {
+    fn new(vertices: usize) -> Result<Self> {
+        let mut parents = try_vec(vertices, 0)?;
+        parents.iter_mut().zip(0..).for_each(|(p, i)| *p = i);
+        Ok(Self(parents))
+    }
+
+    fn root(&mut self, mut i: u32) -> u32 {
+        while self.0[i as usize] != i {
+            let up = self.0[self.0[i as usize] as usize];
+            self.0[i as usize] = up;
+            i = up;
+        }
+        i
+    }
+
+    fn join(&mut self, triangle: &[u32; 3]) {
+        let roots = triangle.map(|v| self.root(v));
+        let least = roots.into_iter().min().unwrap_or(0);
+        roots.into_iter().for_each(|r| self.0[r as usize] = least);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Mesh;
+
+    #[test]
+    fn patches_of_texels_and_pieces_of_meshes_are_lamps() {
+        // Two patches, one of them joined by a corner only.
+        let rows = ["#....", ".#..#", "....#"];
+        let image = Image::from_fn(5, 3, |x, y| [f32::from(u8::from(rows[y].as_bytes()[x] == b'#'))]).unwrap();
+        let lamps = Lamps::of_texture(&image).unwrap();
+        assert_eq!(lamps.count(), 2);
+        let at = |x: f32, y: f32| lamps.find(0, 0, Vec2::new(x / 5.0, y / 3.0));
+        assert_eq!([at(0.5, 0.5), at(1.5, 1.5), at(4.5, 2.5), at(2.5, 0.5)], [Some(0), Some(0), Some(1), None]);
+        // The texture repeats.
+        assert_eq!([at(-0.5, 1.5), at(5.5, 0.5)], [Some(1), Some(0)]);
+        assert!((lamps.centres()[1] - Vec3::new(0.9, 2.0 / 3.0, 0.0)).length() < 1e-6);
+        assert!(Lamps::of_texture(&Image::new(3, 3, 3).unwrap()).is_err());
+
+        let strip = |x: f32| [Vec3::X * x, Vec3::X * (x + 1.0), Vec3::new(x, 1.0, 0.0)];
+        let positions: Vec<Vec3> = [0.0, 10.0, 20.0].into_iter().flat_map(strip).collect();
+        // The first and the third triangle share a vertex.
+        let triangles = vec![[0, 1, 2], [3, 4, 5], [6, 7, 0]];
+        let scene = Scene { meshes: vec![Mesh { positions, triangles, ..Mesh::default() }], ..Scene::default() };
+        let lamps = Lamps::of_meshes(&scene, 0).unwrap();
+        assert_eq!([0, 1, 2].map(|t| lamps.find(0, t, Vec2::ZERO)), [Some(0), Some(1), Some(0)]);
+        assert_eq!(lamps.rows(0, 1.0).1, 2);
+        assert!(Lamps::of_meshes(&scene, 1).is_err());
+    }
+}

@@ -1,0 +1,191 @@
+//! The responses of several targets to each of many lamps, from one set of paths per target.
+
+use super::bins::{Bins, Division};
+use super::estimate::{BATCHES, STUDENT_T, mean, standard_error};
+use super::lamps::Lamps;
+use super::target::Sampler;
+use super::transport::{self, Batches};
+use super::{Params, Place, Quantity, time_left};
+use crate::error::{Error, Result, check_range};
+use crate::job::Job;
+use crate::render::World;
+use glam::{DVec3, Vec3};
+
+/// One of several things to be lit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Goal<'a> {
+    pub place: Place<'a>,
+    pub quantity: Quantity,
+    /// Mean radiance it should have in cd/m² per channel, ≥ 0; in incident light illuminance / π.
+    pub target: Vec3,
+    /// What missing it by a share of itself weighs beside other goals, ≥ 0.
+    pub weight: f64,
+}
+
+/// Most goals there may be.
+pub const MAX_GOALS: usize = 64;
+
+/// A mean and how sure it is, per channel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimate {
+    pub mean: DVec3,
+    pub standard_error: DVec3,
+}
+
+impl Estimate {
+    /// Half-width of the 95 % confidence interval.
+    pub fn half_width(&self) -> DVec3 {
+        self.standard_error * STUDENT_T
+    }
+
+    pub(super) fn of(batches: impl Fn(usize) -> DVec3) -> Self {
+        let channel = |c: usize| -> [f64; BATCHES] { std::array::from_fn(|b| batches(b)[c]) };
+        Self {
+            mean: DVec3::from(std::array::from_fn(|c| mean(&channel(c)))),
+            standard_error: DVec3::from(std::array::from_fn(|c| standard_error(&channel(c)))),
+        }
+    }
+}
+
+/// What each lamp, or group of lamps, means to each goal.
+#[derive(Clone, Debug)]
+pub struct Responses {
+    lamps: usize,
+    goals: Vec<PerGoal>,
+    /// Paths traced per goal.
+    pub paths: u32,
+}
+
+#[derive(Clone, Debug)]
+struct PerGoal {
+    /// Mean radiance under each lamp: `lamps` of one batch after those of another.
+    lamps: Vec<DVec3>,
+    background: Vec<DVec3>,
+}
+
+/// Traces the responses of goals to the lamps of an emission at the strength it has. Stops as [`super::run`] does, by the
+/// interval of each goal's response to all lamps together; single lamps are known less well. `params.quantity` is not
+/// used.
+///
+/// # Errors
+/// Parameters out of range, goals that are not there or have no area; cancelled.
+pub fn lamp_responses(
+    world: &World,
+    emitter: usize,
+    lamps: &Lamps,
+    goals: &[Goal],
+    params: &Params,
+    job: Job,
+) -> Result<Responses> {
+    check_range("paths", params.paths, 1024, 1 << 30)?;
+    check_range("target_error", params.target_error, 0.0, 1.0)?;
+    if goals.is_empty() || goals.len() > MAX_GOALS {
+        return Err(Error::argument(format!("there are {} goals; there must be 1 to {MAX_GOALS}", goals.len())));
+    }
+    let scene = world.scene();
+    let samplers: Vec<Sampler> =
+        goals.iter().map(|goal| Sampler::new(scene, goal.place, goal.quantity)).collect::<Result<_>>()?;
+    let mut batches: Vec<Batches> = samplers
+        .iter()
+        .map(|points| Batches::new(world, points, Bins::new(world, emitter, Division::Lamps(lamps)), params.seed))
+        .collect::<Result<_>>()?;
+    let clock = std::time::Instant::now();
+    let mut growth = f64::INFINITY;
+    let wanted = f64::from(params.target_error);
+    loop {
+        let share = 1.0 / batches.len() as f64;
+        let mut error = 0.0f64;
+        for (i, batch) in batches.iter_mut().enumerate() {
+            let part = job.part(share * i as f64, (share * (i + 1) as f64).min(1.0));
+            batch.trace_round(growth, params.paths, part)?;
+            error = error.max(error_of_all(batch));
+        }
+        let paths = batches[0].paths();
+        let late = params.time_budget_ms > 0 && clock.elapsed().as_millis() >= u128::from(params.time_budget_ms);
+        if wanted > 0.0 && error <= wanted || late || paths >= params.paths {
+            job.report(1.0);
+            let goals = batches.iter().map(|b| PerGoal::new(b, lamps.count())).collect();
+            return Ok(Responses { lamps: lamps.count(), goals, paths });
+        }
+        growth = time_left(params, clock).min(transport::forecast(error, wanted));
+    }
+}
+
+/// Relative half-width of the response to all lamps, of the worst channel that has one.
+fn error_of_all(batches: &Batches) -> f64 {
+    let means = batches.means();
+    let sums: Vec<DVec3> = means.iter().map(|m| m.bins.iter().sum()).collect();
+    let all = Estimate::of(|b| sums[b]);
+    let relative = all.half_width() / all.mean;
+    (0..3).map(|c| relative[c]).filter(|e| e.is_finite()).fold(0.0, f64::max)
+}
+
+impl PerGoal {
+    fn new(batches: &Batches, lamps: usize) -> Self {
+        let means = batches.means();
+        let mut all = Vec::with_capacity(lamps * BATCHES);
+        means.iter().for_each(|m| all.extend_from_slice(&m.bins));
+        Self { lamps: all, background: means.iter().map(|m| m.others).collect() }
+    }
+}
+
+impl Responses {
+    /// Number of lamps, or of groups.
+    pub fn lamps(&self) -> usize {
+        self.lamps
+    }
+
+    pub fn goals(&self) -> usize {
+        self.goals.len()
+    }
+
+    /// Mean radiance of a goal under one lamp, in cd/m².
+    pub fn lamp(&self, goal: usize, lamp: usize) -> Estimate {
+        Estimate::of(|batch| self.batch(goal, batch)[lamp])
+    }
+
+    /// Mean radiance of a goal under all lamps.
+    pub fn all(&self, goal: usize) -> Estimate {
+        Estimate::of(|batch| self.batch(goal, batch).iter().sum())
+    }
+
+    /// Mean radiance of a goal under all other light.
+    pub fn background(&self, goal: usize) -> Estimate {
+        Estimate::of(|batch| self.goals[goal].background[batch])
+    }
+
+    /// What one batch says of each lamp.
+    pub(super) fn batch(&self, goal: usize, batch: usize) -> &[DVec3] {
+        &self.goals[goal].lamps[batch * self.lamps..][..self.lamps]
+    }
+
+    pub(super) fn background_of_batch(&self, goal: usize, batch: usize) -> DVec3 {
+        self.goals[goal].background[batch]
+    }
+
+    /// The responses to groups of lamps: `group_of` has the group of each lamp, below `groups`.
+    ///
+    /// # Errors
+    /// `InvalidArgument` if the groups do not fit the lamps.
+    pub fn grouped(&self, group_of: &[u32], groups: usize) -> Result<Self> {
+        if group_of.len() != self.lamps {
+            return Err(Error::argument(format!("groups are given for {} lamps of {}", group_of.len(), self.lamps)));
+        }
+        if groups == 0 || groups > self.lamps {
+            return Err(Error::argument(format!("there are {groups} groups; there must be 1 to {}", self.lamps)));
+        }
+        if let Some(group) = group_of.iter().find(|g| **g as usize >= groups) {
+            return Err(Error::argument(format!("a lamp is in group {group}; there are {groups}")));
+        }
+        let gather = |per: &PerGoal| {
+            let mut sums = vec![DVec3::ZERO; groups * BATCHES];
+            for (batch, lamps) in per.lamps.chunks_exact(self.lamps).enumerate() {
+                for (lamp, light) in lamps.iter().enumerate() {
+                    sums[batch * groups + group_of[lamp] as usize] += *light;
+                }
+            }
+            PerGoal { lamps: sums, background: per.background.clone() }
+        };
+        Ok(Self { lamps: groups, goals: self.goals.iter().map(gather).collect(), paths: self.paths })
+    }
+}

@@ -1,0 +1,128 @@
+//! What the paper saw, and inputs at the edge of what makes sense.
+
+use super::*;
+
+/// "The red curtain and the floor, which has a wooden material, naturally impact the colour of the light": the solved light
+/// is shifted towards blue (§8, Fig. 16).
+#[test]
+fn a_red_curtain_and_a_wooden_floor_make_the_light_bluer() {
+    let solved = |floor: Vec3, curtain: Vec3| {
+        let mut scene = room(Vec3::new(5.0, 2.7, 4.0), Vec3::splat(0.6), Vec3::splat(0.8), Vec3::ONE);
+        for (mesh, colour) in [(0, floor), (2, curtain)] {
+            scene.materials.push(Material { double_sided: false, ..Material::diffuse("paint", colour) });
+            scene.meshes[mesh].material = scene.materials.len() - 1;
+        }
+        // A strip of the ceiling shines and the rest of it is the target, as the photo shows it.
+        let ceiling = scene.meshes[1].clone();
+        scene.meshes[1].material = 0;
+        let strip = Vec3::new(0.5, 0.0, 0.1);
+        let centre = Vec3::new(2.5, 2.69, 2.0);
+        let positions = ceiling.positions.iter().map(|p| {
+            let from = (p - Vec3::new(2.5, 2.7, 2.0)) * strip;
+            centre + from
+        });
+        scene.meshes.push(Mesh { positions: positions.collect(), ..ceiling });
+        let world = World::build(Arc::new(scene), Monitor::default().job()).unwrap();
+        let input = Input { world: &world, emitter: 1, target_triangles: &[(1, 0), (1, 1)], target: Vec3::splat(50.0) };
+        let params = Params { target_error: 0.01, ..Params::default() };
+        Pool::new(2).unwrap().run(|| run(&input, &params, Monitor::default().job()).unwrap())
+    };
+    let grey = solved(Vec3::splat(0.3), Vec3::splat(0.3));
+    let warm = solved(Vec3::new(0.45, 0.28, 0.15), Vec3::new(0.6, 0.05, 0.05));
+    // The same target needs white light in a grey room and bluish light in a warm one, beyond both intervals.
+    let blue = |s: &Solution| (s.scale.z / s.scale.x, (s.half_width.z / s.scale.z).hypot(s.half_width.x / s.scale.x));
+    let ((neutral, e), (shifted, f)) = (blue(&grey), blue(&warm));
+    assert!((neutral - 1.0).abs() < 1.5 * e, "{grey:?}");
+    assert!(shifted > 1.2 * (1.0 + e + f), "{warm:?}");
+}
+
+/// Matching the ceiling and matching all that is seen give different light (the paper's Table 1): the ceiling has its
+/// light from the floor, which is wooden, the grey walls have it from the lamp.
+#[test]
+fn ceiling_and_overall_targets_differ() {
+    let mut scene = room(Vec3::new(5.0, 2.7, 4.0), Vec3::splat(0.5), Vec3::splat(0.8), Vec3::ONE);
+    for (mesh, colour) in [(0, Vec3::new(0.6, 0.35, 0.2)), (1, Vec3::splat(0.8))] {
+        scene.materials.push(Material { double_sided: false, ..Material::diffuse("paint", colour) });
+        scene.meshes[mesh].material = scene.materials.len() - 1;
+    }
+    let lamp = scene.meshes[1].clone();
+    let positions = lamp.positions.iter().map(|p| (*p - Vec3::new(2.5, 2.7, 2.0)) * 0.3 + Vec3::new(2.5, 2.6, 2.0));
+    scene.meshes.push(Mesh { material: 1, positions: positions.collect(), ..lamp });
+    let world = World::build(Arc::new(scene), Monitor::default().job()).unwrap();
+    let solved = |triangles: &[(usize, usize)]| {
+        let input = Input { world: &world, emitter: 1, target_triangles: triangles, target: Vec3::splat(30.0) };
+        Pool::new(2).unwrap().run(|| run(&input, &Params::default(), Monitor::default().job()).unwrap())
+    };
+    let everything: Vec<(usize, usize)> = (0..6).flat_map(|mesh| [(mesh, 0), (mesh, 1)]).collect();
+    let (ceiling, overall) = (solved(&[(1, 0), (1, 1)]), solved(&everything));
+    let blue = |s: &Solution| s.scale.z / s.scale.x;
+    assert!(blue(&ceiling) > 1.1 * blue(&overall), "{ceiling:?} {overall:?}");
+    assert!(ceiling.scale.y > 1.1 * overall.scale.y, "{ceiling:?} {overall:?}");
+}
+
+/// A closed room of albedo 0.99 has long paths: `L = e / (1 - ρ)` on all of it where all of it shines.
+#[test]
+fn a_white_closed_room_and_rooms_of_any_size() {
+    for size in [1e-6, 1.0, 1e6] {
+        let mut scene = room(Vec3::splat(size), Vec3::splat(0.5), Vec3::splat(0.5), Vec3::ONE);
+        scene.meshes.iter_mut().for_each(|m| m.material = 1);
+        let world = World::build(Arc::new(scene), Monitor::default().job()).unwrap();
+        let triangles = [(0, 0), (0, 1)];
+        let goal =
+            Goal { place: Place::Surface(&triangles), quantity: Quantity::Incident, target: Vec3::ONE, weight: 1.0 };
+        let grid = Goal {
+            place: Place::Grid {
+                origin: Vec3::splat(0.2 * size),
+                across: Vec3::X * 0.5 * size,
+                down: Vec3::Z * 0.5 * size,
+                normal: Vec3::Y,
+            },
+            ..goal
+        };
+        let lamps = Lamps::of_meshes(world.scene(), 1).unwrap();
+        let params = Params { paths: 1 << 14, target_error: 0.0, ..Params::default() };
+        let responses = Pool::new(2)
+            .unwrap()
+            .run(|| lamp_responses(&world, 1, &lamps, &[grid], &params, Monitor::default().job()).unwrap());
+        // Every wall sends out e / (1 - ρ) = 2, of which the six lamps are a part each.
+        let all = responses.all(0);
+        assert_eq!(lamps.count(), 6);
+        assert!((all.mean.x - 2.0).abs() < 4.0 * all.standard_error.x + 1e-5, "size {size}: {all:?}");
+        assert!(all.standard_error.x < 0.02);
+    }
+    let scene = room(Vec3::ONE, Vec3::splat(0.99), Vec3::splat(0.99), Vec3::ONE);
+    let params = Params { quantity: Quantity::Incident, paths: 1 << 13, target_error: 0.0, ..Params::default() };
+    let solution = solve(&scene, Vec3::ONE, &params).unwrap();
+    // Flux π e S/6 into 6 walls, each of which takes 1 %: the mean radiance is about 1/6 / 0.01 = 16.7.
+    let mean = solution.response.x;
+    assert!((mean / (1.0 / 0.06) - 1.0).abs() < 0.1, "{mean}");
+}
+
+/// A lamp that the target sees from its edge alone, or not at all, has nothing to say to it.
+#[test]
+fn a_lamp_seen_edge_on_is_dark() {
+    // The ceiling shines; the target is its own plane, and all else is black.
+    let mut scene = room(Vec3::ONE, Vec3::ZERO, Vec3::ZERO, Vec3::ONE);
+    let mut beside = scene.meshes[1].clone();
+    beside.positions.iter_mut().for_each(|p| p.x += 1.0);
+    beside.material = 0;
+    scene.materials[0].base_color = Vec3::ZERO;
+    scene.meshes.push(beside);
+    let world = World::build(Arc::new(scene), Monitor::default().job()).unwrap();
+    let input = Input { world: &world, emitter: 1, target_triangles: &[(6, 0), (6, 1)], target: Vec3::ONE };
+    let params = Params { quantity: Quantity::Incident, paths: 1 << 12, ..Params::default() };
+    let error = Pool::new(1).unwrap().run(|| run(&input, &params, Monitor::default().job())).unwrap_err();
+    assert_eq!(error.kind, ErrorKind::Unreachable);
+    let goal = Goal {
+        place: Place::Surface(input.target_triangles),
+        quantity: Quantity::Incident,
+        target: Vec3::ONE,
+        weight: 1.0,
+    };
+    let lamps = Lamps::of_meshes(world.scene(), 1).unwrap();
+    let responses = Pool::new(1)
+        .unwrap()
+        .run(|| lamp_responses(&world, 1, &lamps, &[goal], &params, Monitor::default().job()).unwrap());
+    let error = solve_groups(&responses, &[goal], &GroupParams::default()).unwrap_err();
+    assert_eq!(error.kind, ErrorKind::Unreachable);
+}

@@ -1,0 +1,195 @@
+//! Per-lamp responses and the powers of groups.
+
+use super::*;
+use crate::image::Image;
+use crate::scene::{Texture, TextureRef};
+
+/// Texels of the ceiling's texture along each side.
+const TEXELS: usize = 16;
+
+/// A grey room whose ceiling has `lamps` texels lit, each a lamp.
+fn lamp_room(lamps: &[[usize; 2]], values: &[f32]) -> (World, Lamps) {
+    let mut image = Image::new(TEXELS, TEXELS, 1).unwrap();
+    for (&[x, y], &value) in lamps.iter().zip(values) {
+        image.pixel_mut(x, y)[0] = value;
+    }
+    let found = Lamps::of_texture(&image).unwrap();
+    let mut scene = room(Vec3::new(4.0, 2.5, 4.0), Vec3::splat(0.5), Vec3::splat(0.7), Vec3::splat(100.0));
+    scene.textures.push(Texture::new("lamps", image));
+    scene.materials[1].emission_texture = Some(TextureRef::new(0));
+    (World::build(Arc::new(scene), Monitor::default().job()).unwrap(), found)
+}
+
+const FLOOR: &[(usize, usize)] = &[(0, 0), (0, 1)];
+
+fn goal(place: Place<'_>, target: Vec3) -> Goal<'_> {
+    Goal { place, quantity: Quantity::Incident, target, weight: 1.0 }
+}
+
+/// A horizontal square of side 1 m below the ceiling's point (x, z).
+fn desk(x: f32, z: f32) -> Place<'static> {
+    let origin = Vec3::new(x - 0.5, 0.8, z - 0.5);
+    Place::Grid { origin, across: Vec3::X, down: Vec3::Z, normal: Vec3::Y }
+}
+
+fn respond(world: &World, lamps: &Lamps, goals: &[Goal]) -> Responses {
+    let params = Params { paths: 1 << 15, target_error: 0.0, ..Params::default() };
+    let monitor = Monitor::default();
+    Pool::new(2).unwrap().run(|| lamp_responses(world, 1, lamps, goals, &params, monitor.job()).unwrap())
+}
+
+#[test]
+fn lamps_sum_to_the_whole_and_mirrored_lamps_respond_alike() {
+    let (world, lamps) = lamp_room(&[[3, 3], [12, 3], [3, 12], [12, 12]], &[1.0; 4]);
+    let responses = respond(&world, &lamps, &[goal(Place::Surface(FLOOR), Vec3::ONE)]);
+    let params = Params { paths: 1 << 15, target_error: 0.0, quantity: Quantity::Incident, ..Params::default() };
+    let input = Input { world: &world, emitter: 1, target_triangles: FLOOR, target: Vec3::ONE };
+    let whole = Pool::new(2).unwrap().run(|| run(&input, &params, Monitor::default().job()).unwrap());
+    // The same paths, sorted otherwise.
+    let all = responses.all(0).mean;
+    assert!((all - whole.response).abs().max_element() < 1e-9 * all.x, "{all} {}", whole.response);
+    for lamp in 1..4 {
+        let (a, b) = (responses.lamp(0, 0), responses.lamp(0, lamp));
+        let sigma = a.standard_error.x.hypot(b.standard_error.x);
+        assert!((a.mean.x - b.mean.x).abs() < 4.5 * sigma, "lamp {lamp}: {a:?} {b:?}");
+        assert!(a.standard_error.x / a.mean.x < 0.02);
+    }
+    // Rows of the texture.
+    let (rows, count) = lamps.rows(1, 0.1);
+    assert_eq!((rows.as_slice(), count), (&[0, 0, 1, 1][..], 2));
+    let rows = responses.grouped(&rows, count).unwrap();
+    let (top, bottom) = (rows.lamp(0, 0).mean.x, rows.lamp(0, 1).mean.x);
+    assert!((top + bottom - all.x).abs() < 1e-9 * all.x);
+    assert!(responses.grouped(&[0, 0, 0], 1).is_err() && responses.grouped(&[0, 0, 0, 7], 2).is_err());
+}
+
+#[test]
+fn one_group_is_the_closed_form_and_bounds_hold() {
+    let (world, lamps) = lamp_room(&[[3, 3], [12, 12]], &[1.0; 2]);
+    let target = Vec3::splat(20.0);
+    let goals = [goal(Place::Surface(FLOOR), target)];
+    let responses = respond(&world, &lamps, &goals).grouped(&[0, 0], 1).unwrap();
+    let free = solve_groups(&responses, &goals, &GroupParams::default()).unwrap();
+    let expected = 20.0 / responses.all(0).mean.x;
+    assert!((free.scale[0].x / expected - 1.0).abs() < 1e-9, "{free:?}, expected {expected}");
+    assert!(free.half_width[0].x > 0.0 && free.half_width[0].x < 0.05 * expected);
+    assert_eq!((free.outcomes[0].reach, &free.unreachable), ([Reach::Met; 3], &None));
+    // Half of what it takes is allowed: the bound is the nearest answer, and the reason says so.
+    let bounded = GroupParams { most: vec![expected / 2.0], ..GroupParams::default() };
+    let bounded = solve_groups(&responses, &goals, &bounded).unwrap();
+    assert_eq!(bounded.scale[0].x, expected / 2.0);
+    assert_eq!(bounded.outcomes[0].reach, [Reach::TooDim; 3]);
+    assert!((bounded.outcomes[0].achieved.x - 10.0).abs() < 1e-6);
+    assert!(bounded.unreachable.unwrap().contains("largest power"));
+}
+
+/// Identical groups share alike, groups of very different strength are no trouble, and darkness is a goal like another.
+#[test]
+fn groups_that_are_alike_unlike_or_dark() {
+    let (world, lamps) = lamp_room(&[[3, 3], [12, 3], [3, 12], [12, 12]], &[1.0, 1.0, 1.0, 1e-12]);
+    let goals = [goal(Place::Surface(FLOOR), Vec3::splat(20.0))];
+    let responses = respond(&world, &lamps, &goals);
+    let solution = solve_groups(&responses, &goals, &GroupParams::default()).unwrap();
+    let x: Vec<f64> = solution.scale.iter().map(|x| x.x).collect();
+    // The small pull towards equal lamps decides what one goal leaves open: all are alike.
+    assert!(x.iter().all(|v| (v / x[0] - 1.0).abs() < 1e-6), "{x:?}");
+    assert!((solution.outcomes[0].achieved.x / 20.0 - 1.0).abs() < 1e-6);
+    // A goal of darkness turns them off.
+    let dark = [goal(Place::Surface(FLOOR), Vec3::ZERO)];
+    let off = solve_groups(&responses, &dark, &GroupParams::default()).unwrap();
+    assert!(off.scale.iter().all(|x| *x == DVec3::ZERO) && off.unreachable.is_none(), "{off:?}");
+    // Two desks, each under a lamp; one is to be brighter than the other.
+    let goals = [goal(desk(0.9, 0.9), Vec3::splat(40.0)), goal(desk(3.1, 3.1), Vec3::splat(25.0))];
+    let (world, lamps) = lamp_room(&[[3, 3], [12, 12]], &[1.0; 2]);
+    let responses = respond(&world, &lamps, &goals);
+    let solution = solve_groups(&responses, &goals, &GroupParams::default()).unwrap();
+    assert!(solution.scale[0].x > 1.3 * solution.scale[1].x, "{solution:?}");
+    for (outcome, want) in solution.outcomes.iter().zip([40.0, 25.0]) {
+        assert!((outcome.achieved.x / want - 1.0).abs() < 1e-3 && outcome.reach == [Reach::Met; 3], "{outcome:?}");
+    }
+    // One lamp for both cannot: the answer lies between, and the reason names a goal.
+    let one = responses.grouped(&[0, 0], 1).unwrap();
+    let torn = solve_groups(&one, &goals, &GroupParams::default()).unwrap();
+    assert!(torn.outcomes[0].achieved.x < 40.0 && torn.outcomes[1].achieved.x > 25.0);
+    assert!(torn.unreachable.unwrap().contains("goal 0"));
+    // A heavier goal comes nearer.
+    let heavy = [Goal { weight: 100.0, ..goals[0] }, goals[1]];
+    let heavy = solve_groups(&one, &heavy, &GroupParams::default()).unwrap();
+    assert!((heavy.outcomes[0].achieved.x / 40.0 - 1.0).abs() < 1e-3);
+}
+
+#[test]
+fn other_light_that_is_too_bright_is_named() {
+    let (world, lamps) = lamp_room(&[[3, 3], [12, 12]], &[1.0; 2]);
+    let mut scene = (**world.scene()).clone();
+    scene.lights.push(PunctualLight::Point { position: Vec3::new(2.0, 1.0, 2.0), intensity: Vec3::splat(1e4) });
+    let world = World::build(Arc::new(scene), Monitor::default().job()).unwrap();
+    let goals = [goal(Place::Surface(FLOOR), Vec3::ONE)];
+    let responses = respond(&world, &lamps, &goals);
+    let params = GroupParams { colour: Colour::Free, ..GroupParams::default() };
+    let solution = solve_groups(&responses, &goals, &params).unwrap();
+    assert!(solution.scale.iter().all(|x| *x == DVec3::ZERO));
+    assert_eq!(solution.outcomes[0].reach, [Reach::TooBright; 3]);
+    assert!(solution.unreachable.unwrap().contains("other lights alone"));
+    // Parameters name themselves.
+    for bad in [
+        GroupParams { evenness: 0.0, ..GroupParams::default() },
+        GroupParams { most: vec![1.0], ..GroupParams::default() },
+        GroupParams { most: vec![1.0, f64::NAN], ..GroupParams::default() },
+    ] {
+        assert_eq!(solve_groups(&responses, &goals, &bad).unwrap_err().kind, ErrorKind::InvalidArgument);
+    }
+}
+
+/// Colours that are free are solved channel by channel, as the closed form does.
+#[test]
+fn free_colours_meet_a_coloured_goal() {
+    let (world, lamps) = lamp_room(&[[3, 3], [12, 12]], &[1.0; 2]);
+    let target = Vec3::new(30.0, 20.0, 10.0);
+    let goals = [goal(Place::Surface(FLOOR), target)];
+    let responses = respond(&world, &lamps, &goals);
+    let params = GroupParams { colour: Colour::Free, ..GroupParams::default() };
+    let solution = solve_groups(&responses, &goals, &params).unwrap();
+    let achieved = solution.outcomes[0].achieved;
+    assert!(((achieved / target.as_dvec3()) - 1.0).abs().max_element() < 1e-6, "{achieved}");
+    // White lamps of one power cannot be coloured.
+    let kept = solve_groups(&responses, &goals, &GroupParams::default()).unwrap();
+    assert!(kept.unreachable.unwrap().contains("colour"));
+}
+
+/// The whole loop with many lamps: intervals of single lamps hold their truth, here the mean of many paths.
+#[test]
+fn intervals_of_single_lamps_cover() {
+    let places: Vec<[usize; 2]> = (0..64).map(|i| [2 * (i % 8), 2 * (i / 8)]).collect();
+    let (world, lamps) = lamp_room(&places, &[1.0; 64]);
+    let goals = [goal(Place::Surface(FLOOR), Vec3::ONE)];
+    let trace = |paths, seed| {
+        let params = Params { paths, target_error: 0.0, seed, ..Params::default() };
+        let monitor = Monitor::default();
+        Pool::new(2).unwrap().run(|| lamp_responses(&world, 1, &lamps, &goals, &params, monitor.job()).unwrap())
+    };
+    let (truth, tried) = (trace(1 << 18, 1), trace(1 << 13, 2));
+    let inside = (0..64)
+        .filter(|&lamp| {
+            let (a, b) = (truth.lamp(0, lamp), tried.lamp(0, lamp));
+            let sigma = a.standard_error.x.hypot(b.standard_error.x);
+            (a.mean.x - b.mean.x).abs() < 2.04 * sigma
+        })
+        .count();
+    // 64 trials at 95 %: fewer than 54 has a probability below 1e-3.
+    assert!(inside >= 54, "{inside} of 64");
+}
+
+#[test]
+fn responses_have_the_same_bits_for_any_number_of_threads() {
+    let (world, lamps) = lamp_room(&[[3, 3], [12, 12]], &[1.0; 2]);
+    let goals = [goal(Place::Surface(FLOOR), Vec3::ONE), goal(desk(1.0, 1.0), Vec3::ONE)];
+    let params = Params { paths: 1 << 12, ..Params::default() };
+    let with = |threads| {
+        let responses = Pool::new(threads)
+            .unwrap()
+            .run(|| lamp_responses(&world, 1, &lamps, &goals, &params, Monitor::default().job()).unwrap());
+        [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(goal, lamp)| responses.lamp(goal, lamp))
+    };
+    assert_eq!(with(1), with(3));
+}

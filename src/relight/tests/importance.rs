@@ -1,0 +1,132 @@
+//! The importance map against direct tracing, and reciprocity.
+
+use super::*;
+use crate::image::Image;
+use crate::rng::Rng;
+use crate::scene::{Texture, TextureRef};
+use glam::Mat3;
+
+const FLOOR: &[(usize, usize)] = &[(0, 0), (0, 1)];
+const SIZE: Vec3 = Vec3::new(4.0, 2.5, 3.0);
+
+fn coloured_room() -> Scene {
+    room(SIZE, Vec3::new(0.7, 0.5, 0.3), Vec3::splat(0.8), Vec3::ZERO)
+}
+
+fn floor(quantity: Quantity) -> Goal<'static> {
+    Goal { place: Place::Surface(FLOOR), quantity, target: Vec3::ONE, weight: 1.0 }
+}
+
+fn map(scene: &Scene, cells: usize, error: f32) -> Importance {
+    let tracing = Params { target_error: error, ..Params::default() };
+    let params = MapParams { width: cells, height: cells, tracing };
+    let (scene, monitor) = (Arc::new(scene.clone()), Monitor::default());
+    let goal = floor(Quantity::Outgoing);
+    Pool::new(2).unwrap().run(|| Importance::trace(&scene, 1, &goal, &params, monitor.job()).unwrap())
+}
+
+/// Lamps of several colours and sizes.
+fn lamps() -> Texture {
+    let mut image = Image::new(64, 64, 3).unwrap();
+    let mut rng = Rng::new(5, &[]);
+    for _ in 0..12 {
+        let (x, y, side) = (rng.below(56), rng.below(56), 2 + rng.below(6));
+        let colour = Vec3::new(rng.next_f32(), rng.next_f32(), rng.next_f32()) * 1000.0;
+        for i in 0..side * side {
+            colour.write_to_slice(image.pixel_mut(x + i % side, y + i / side));
+        }
+    }
+    Texture::new("lamps", image)
+}
+
+/// Importance times texture is what tracing the textured room finds, within the joint interval, wherever the texture
+/// lies.
+#[test]
+fn a_dot_product_stands_for_tracing() {
+    let scene = coloured_room();
+    let map = map(&scene, 32, 0.004);
+    let turned =
+        Mat3::from_translation(Vec2::new(0.3, 0.1)) * Mat3::from_angle(0.6) * Mat3::from_scale(Vec2::new(1.7, 0.8));
+    for placement in [Mat3::IDENTITY, turned] {
+        let texture = lamps();
+        let response = map.respond(&texture, &placement, Monitor::default().job()).unwrap();
+        let mut lit = scene.clone();
+        lit.textures.push(texture);
+        lit.materials[1].emission = Vec3::ONE;
+        lit.materials[1].emission_texture = Some(TextureRef { transform: placement, ..TextureRef::new(0) });
+        let direct = solve(&lit, Vec3::ONE, &Params { target_error: 0.004, ..Params::default() }).unwrap();
+        for c in 0..3 {
+            let direct_error = direct.half_width[c] / direct.scale[c] * direct.response[c] / 2.04;
+            let sigma = response.light.standard_error[c].hypot(direct_error);
+            let off = (response.light.mean[c] - direct.response[c]).abs();
+            let allowed = 4.0 * sigma + response.band_error[c].abs();
+            assert!(off < allowed, "channel {c}: {response:?} {direct:?}");
+            // A test that can fail: the joint interval is narrow.
+            assert!(allowed < 0.1 * direct.response[c], "{allowed} {}", direct.response[c]);
+        }
+        // The closed form from the map is the target over the response.
+        let solution = map.solve(&response, Vec3::ONE).unwrap();
+        assert!((solution.scale * response.light.mean - 1.0).abs().max_element() < 1e-2);
+    }
+}
+
+/// What the floor gets from an even ceiling, per area, is what the ceiling gets from an even floor: light takes the same
+/// ways back, all its reflections included.
+#[test]
+fn light_takes_the_same_ways_back() {
+    let mean = |emitter: usize, target: usize| {
+        let mut scene = coloured_room();
+        // The floor gets a material of its own, so that either can shine.
+        scene.materials.push(Material { name: "floor".into(), ..scene.materials[0].clone() });
+        scene.meshes[0].material = 2;
+        scene.materials[emitter].emission = Vec3::ONE;
+        let world = World::build(Arc::new(scene), Monitor::default().job()).unwrap();
+        let triangles = [(target, 0), (target, 1)];
+        let input = Input { world: &world, emitter, target_triangles: &triangles, target: Vec3::ONE };
+        let params = Params { quantity: Quantity::Incident, target_error: 0.003, ..Params::default() };
+        Pool::new(2).unwrap().run(|| run(&input, &params, Monitor::default().job()).unwrap())
+    };
+    // Floor and ceiling have the same area: mesh 0 and 1, materials 2 and 1.
+    let (down, up) = (mean(1, 0), mean(2, 1));
+    for c in 0..3 {
+        let relative = |s: &Solution| s.half_width[c] / s.scale[c] / 2.04;
+        let sigma = relative(&down).hypot(relative(&up));
+        assert!((down.response[c] / up.response[c] - 1.0).abs() < 4.0 * sigma, "{down:?} {up:?}");
+        assert!(sigma < 0.003);
+    }
+}
+
+/// Finer cells say the same of a smooth texture, and how far they may be off falls.
+#[test]
+fn cells_limit_the_band() {
+    let scene = coloured_room();
+    let texture = lamps();
+    let job = Monitor::default();
+    let respond = |cells| map(&scene, cells, 0.005).respond(&texture, &Mat3::IDENTITY, job.job()).unwrap();
+    let (coarse, fine) = (respond(4), respond(32));
+    assert!(fine.band_error.abs().max_element() < coarse.band_error.abs().max_element());
+    for c in 0..3 {
+        let off = (coarse.light.mean[c] - fine.light.mean[c]).abs();
+        let sigma = coarse.light.standard_error[c].hypot(fine.light.standard_error[c]);
+        assert!(off < 4.0 * sigma + coarse.band_error[c].abs() + fine.band_error[c].abs(), "{coarse:?} {fine:?}");
+    }
+}
+
+#[test]
+fn a_map_needs_texture_coordinates_and_has_the_same_bits() {
+    let mut scene = coloured_room();
+    let params =
+        MapParams { width: 8, height: 8, tracing: Params { paths: 1 << 12, target_error: 0.0, ..Params::default() } };
+    let goal = floor(Quantity::Incident);
+    let trace = |scene: &Scene, threads| {
+        let (scene, monitor) = (Arc::new(scene.clone()), Monitor::default());
+        Pool::new(threads).unwrap().run(|| Importance::trace(&scene, 1, &goal, &params, monitor.job()))
+    };
+    let image = trace(&scene, 1).unwrap().image().unwrap();
+    assert_eq!(image.data, trace(&scene, 3).unwrap().image().unwrap().data);
+    // The middle of the ceiling means more to the floor than its corners.
+    assert!(image.rgb(4, 4).x > 1.2 * image.rgb(0, 0).x);
+    scene.meshes[1].uvs[0].clear();
+    let error = trace(&scene, 1).unwrap_err();
+    assert!(error.message.contains("ceiling") && error.message.contains("texture coordinates"), "{error}");
+}
