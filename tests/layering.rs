@@ -11,6 +11,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("rng", &[]),
     ("image", &["error", "job", "exec"]),
     ("geometry", &["error", "rng"]),
+    ("photometry", &["error", "image"]),
     ("scene", &["error", "job", "exec", "rng", "image", "geometry"]),
     ("render", &["error", "job", "exec", "rng", "image", "geometry", "scene"]),
     ("patch", &["error", "job", "exec", "rng", "image"]),

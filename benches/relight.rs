@@ -1,0 +1,249 @@
+//! The solve of the emission: error against time in the demonstration room, whether its intervals hold, and what many lamps
+//! cost. Two threads; times include the preparation of the scene.
+
+mod harness;
+
+use glam::{DVec3, Mat3, Vec2, Vec3};
+use harness::plot::Plot;
+use harness::{Clock, Table, absent, figure, interleaved, median, scenes, time};
+use luxfer::exec::Pool;
+use luxfer::image::Image;
+use luxfer::job::Monitor;
+use luxfer::relight::{
+    Goal, GroupParams, Importance, Input, Lamps, MapParams, Params, Place, Quantity, Solution, lamp_responses, run,
+    solve_groups,
+};
+use luxfer::render::World;
+use luxfer::scene::{Material, Mesh, Scene, Texture, TextureRef, surface};
+use std::sync::Arc;
+
+/// Solves per target of the curve.
+const ROUNDS: usize = 5;
+/// Solves that the coverage is counted over, and the error they ask for.
+const SEEDS: u64 = 1000;
+const COVERAGE_ERROR: f32 = 0.05;
+/// Targets of the curve.
+const ERRORS: [f32; 6] = [0.1, 0.05, 0.02, 0.01, 0.005, 0.002];
+
+/// A room, what shines in it, and the surface that is to look as asked.
+struct Case {
+    scene: Arc<Scene>,
+    emitter: usize,
+    target: Vec<(usize, usize)>,
+}
+
+impl Case {
+    fn world(&self) -> World {
+        World::build(self.scene.clone(), Monitor::default().job()).expect("a valid scene")
+    }
+
+    fn solve(&self, world: &World, params: &Params) -> Solution {
+        let input =
+            Input { world, emitter: self.emitter, target_triangles: &self.target, target: Vec3::new(40.0, 36.0, 30.0) };
+        run(&input, params, Monitor::default().job()).expect("light reaches the ceiling")
+    }
+}
+
+fn main() {
+    let pool = Pool::new(2).expect("two threads");
+    match demo() {
+        Ok(case) => pool.run(|| {
+            let truth = truth(&case);
+            curve(&case, truth);
+            coverage(&case, truth);
+            map(&case);
+        }),
+        Err(reason) => {
+            for name in ["relight.to_1pct.seconds", "relight.to_5pct.seconds", "relight.coverage"] {
+                absent(name, &reason);
+            }
+        }
+    }
+    pool.run(lamps);
+    absent("relight.vs_mitsuba_prb", "the adjoint of Mitsuba is not driven from here yet");
+}
+
+/// The demonstration room under its lamp; the ceiling is the target.
+fn demo() -> Result<Case, String> {
+    let setting = scenes::demo_room()?;
+    let ceiling = surface::find(&setting.scene, "Ceiling").map_err(|e| e.to_string())?;
+    let emitter = setting.scene.materials.len() - 1;
+    Ok(Case { scene: Arc::new(setting.scene), emitter, target: ceiling.triangles })
+}
+
+/// The answer of very many paths.
+fn truth(case: &Case) -> DVec3 {
+    let params = Params { paths: 1 << 22, target_error: 0.0, seed: 1 << 40, ..Params::default() };
+    let (seconds, solution) = time(Clock::Wall, || case.solve(&case.world(), &params));
+    println!("reference: {} paths in {seconds:.1} s, known to {:.3} %", solution.paths, 100.0 * solution.error());
+    solution.scale
+}
+
+fn curve(case: &Case, truth: DVec3) {
+    let mut table =
+        Table::new(["asked for %", "seconds", "paths", "interval %", "worst channel off %", "colour dE2000 95 %"]);
+    let mut plot = Plot::new("Solve of the emission, demonstration room", "seconds", "relative error");
+    let (mut intervals, mut errors) = (Vec::new(), Vec::new());
+    for target_error in ERRORS {
+        let mut runs = Vec::new();
+        for seed in 0..ROUNDS as u64 {
+            let params = Params { target_error, paths: 1 << 26, seed: 100 + seed, ..Params::default() };
+            runs.push(time(Clock::Wall, || case.solve(&case.world(), &params)));
+        }
+        let of = |f: &dyn Fn(&(f64, Solution)) -> f64| median(&runs.iter().map(f).collect::<Vec<_>>());
+        let seconds = of(&|r| r.0);
+        let off = of(&|r| ((r.1.scale - truth) / truth).abs().max_element());
+        let interval = of(&|r| r.1.error());
+        table.row([
+            format!("{}", 100.0 * target_error),
+            format!("{seconds:.3}"),
+            format!("{:.0}", of(&|r| f64::from(r.1.paths))),
+            format!("{:.2}", 100.0 * interval),
+            format!("{:.2}", 100.0 * off),
+            format!("{:.2}", of(&|r| r.1.delta_e)),
+        ]);
+        intervals.push([seconds, interval]);
+        errors.push([seconds, off]);
+        match target_error {
+            0.05 => figure("relight.to_5pct.seconds", seconds, "s"),
+            0.01 => figure("relight.to_1pct.seconds", seconds, "s"),
+            _ => {}
+        }
+    }
+    table.print("error against time");
+    plot.add("stated (95 %)", intervals);
+    plot.add("worst channel", errors);
+    if let Err(error) = plot.write("relight") {
+        println!("# no plot: {error}");
+    }
+}
+
+/// Share of intervals that hold the truth, over seeds and channels.
+fn coverage(case: &Case, truth: DVec3) {
+    let world = case.world();
+    let mut inside = [0u32; 3];
+    let mut colour = 0;
+    for seed in 0..SEEDS {
+        let params = Params { target_error: COVERAGE_ERROR, seed: 1000 + seed, ..Params::default() };
+        let solution = case.solve(&world, &params);
+        for (c, count) in inside.iter_mut().enumerate() {
+            *count += u32::from((solution.scale[c] - truth[c]).abs() <= solution.half_width[c]);
+        }
+        let target = DVec3::new(40.0, 36.0, 30.0);
+        let seen = |rgb: DVec3| luxfer::image::colour::linear_to_lab((rgb * (0.18 / 36.4)).as_vec3());
+        let off = luxfer::image::colour::delta_e_2000(seen(target), seen(target * solution.scale / truth));
+        colour += u32::from(off <= solution.delta_e);
+    }
+    let share = |count: u32| 100.0 * f64::from(count) / SEEDS as f64;
+    println!("\ncoverage per channel: {:?} %, of the colour {} %", inside.map(share), share(colour));
+    figure("relight.coverage", inside.iter().map(|&c| share(c)).sum::<f64>() / 3.0, "%");
+}
+
+/// What a map of the importance costs, and one look at it.
+fn map(case: &Case) {
+    // The ceiling's own importance needs texture coordinates: the lamp gets some.
+    let mut scene = (*case.scene).clone();
+    for mesh in scene.meshes.iter_mut().filter(|m| m.material == case.emitter) {
+        mesh.uvs[0] = mesh.positions.iter().map(|p| Vec2::new((p.x - 2.2) / 1.6, (p.z - 1.2) / 1.6)).collect();
+    }
+    let scene = Arc::new(scene);
+    let monitor = Monitor::default();
+    let goal =
+        Goal { place: Place::Surface(&case.target), quantity: Quantity::Outgoing, target: Vec3::ONE, weight: 1.0 };
+    let (seconds, map) = time(Clock::Wall, || {
+        Importance::trace(&scene, case.emitter, &goal, &MapParams::default(), monitor.job()).expect("a map")
+    });
+    let texture = Texture::new(
+        "lamps",
+        Image::from_fn(512, 512, |x, y| [f32::from(u8::from(x % 64 < 16 && y % 64 < 16))]).expect("an image"),
+    );
+    let placement = Mat3::from_angle(0.3);
+    let (look, response) = time(Clock::Wall, || map.respond(&texture, &placement, monitor.job()).expect("a response"));
+    println!(
+        "\nimportance, 64 x 64 cells: {seconds:.3} s; a texture of 512 x 512: {:.2} ms, known to {:.2} %, cells +- {:.2} %",
+        look * 1e3,
+        100.0 * response.light.half_width().y / response.light.mean.y,
+        100.0 * (response.band_error.y / response.light.mean.y).abs()
+    );
+}
+
+/// Texels along the side of a texture of lamps, and the side of a hall that hangs them.
+const TEXELS: usize = 2048;
+const SIDE: f32 = 30.0;
+/// Share of the ceiling that shines.
+const LIT: f32 = 0.01;
+
+/// From scene to the powers of all lamps, for 1 and for 10,000 lamps of the same total flux, to 1 %.
+fn lamps() {
+    let halls = [1usize, 100, 10_000].map(|count| (count, Arc::new(hall(count))));
+    let floor = [(0, 0), (0, 1)];
+    let goals =
+        [Goal { place: Place::Surface(&floor), quantity: Quantity::Incident, target: Vec3::splat(100.0), weight: 1.0 }];
+    let solve = |scene: &Arc<Scene>| {
+        let monitor = Monitor::default();
+        let world = World::build(scene.clone(), monitor.job()).expect("a valid scene");
+        let lamps = Lamps::of_texture(&scene.textures[0].image).expect("lamps");
+        let responses =
+            lamp_responses(&world, 1, &lamps, &goals, &Params::default(), monitor.job()).expect("responses");
+        let solution = solve_groups(&responses, &goals, &GroupParams::default()).expect("powers");
+        (lamps.count(), responses.paths, solution)
+    };
+    for (count, scene) in &halls {
+        let (seconds, (found, paths, solution)) = time(Clock::Wall, || solve(scene));
+        let achieved = solution.outcomes[0].achieved.y;
+        println!(
+            "{count} lamps: {found} found, {paths} paths, {seconds:.3} s, {achieved:.2} of 100 cd/m² on the floor"
+        );
+    }
+    let mut run = halls.each_ref().map(|(_, scene)| move || drop(solve(scene)));
+    let [one, hundred, many] = &mut run;
+    let timings = interleaved(Clock::Wall, ROUNDS, &mut [one, hundred, many]);
+    println!(
+        "powers of 1, 100, 10000 lamps: {:.3} {:.3} {:.3} s",
+        timings.median(0),
+        timings.median(1),
+        timings.median(2)
+    );
+    figure("relight.lamps_10000_over_1", timings.ratio(2, 0), "ratio of time");
+}
+
+fn quad(corner: Vec3, u: Vec3, v: Vec3, material: usize) -> Mesh {
+    Mesh {
+        material,
+        positions: vec![corner, corner + u, corner + u + v, corner + v],
+        uvs: [vec![Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y], Vec::new()],
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+        ..Mesh::default()
+    }
+}
+
+/// A grey hall of 30 × 30 × 4 m whose ceiling has `count` square lamps in its texture.
+fn hall(count: usize) -> Scene {
+    let (x, y, z) = (Vec3::X * SIDE, Vec3::Y * 4.0, Vec3::Z * SIDE);
+    let sides = [(Vec3::ZERO, z, x), (Vec3::ZERO, x, y), (z, y, x), (Vec3::ZERO, y, z), (x, z, y), (y, x, z)];
+    let mut image = Image::new(TEXELS, TEXELS, 1).expect("an image");
+    let side = ((TEXELS as f32) * (LIT / count as f32).sqrt()).round().max(1.0) as usize;
+    let grid = (count as f64).sqrt().ceil() as usize;
+    for cell in (0..count).map(|i| i * grid * grid / count) {
+        let corner = [cell % grid, cell / grid].map(|c| (c * TEXELS + TEXELS / 2) / grid - side / 2);
+        for i in 0..side * side {
+            image.pixel_mut(corner[0] + i % side, corner[1] + i / side)[0] = 1.0;
+        }
+    }
+    // Rounding of the sides changes the flux; the emission makes up for it.
+    let lit = image.data.iter().sum::<f32>() / (TEXELS * TEXELS) as f32;
+    let shining = Material {
+        emission: Vec3::splat(1e4 * LIT / lit),
+        emission_texture: Some(TextureRef::new(0)),
+        double_sided: false,
+        ..Material::diffuse("lamp", Vec3::ZERO)
+    };
+    let mut meshes: Vec<Mesh> = sides.into_iter().map(|(corner, u, v)| quad(corner, u, v, 0)).collect();
+    meshes[5].material = 1;
+    Scene {
+        meshes,
+        materials: vec![Material::diffuse("grey", Vec3::splat(0.5)), shining],
+        textures: vec![Texture::new("lamps", image)],
+        ..Scene::default()
+    }
+}

@@ -1,0 +1,229 @@
+//! Unified glare rating of a luminance image (CIE 117:1995): `UGR = 8 log10(0.25 / Lb · Σ L² ω / p²)` over the sources of
+//! glare, with the luminance `L` and solid angle `ω` of each, its position index `p`, and the luminance `Lb` of the
+//! background.
+//!
+//! Sources are the connected patches brighter than a threshold: an emissive texture is brighter in some places than in
+//! others, and a rating from the luminaire's mean would miss what the eye sees (Scheir et al. 2017). The background is the
+//! mean of the rest of the image, by its share of the illuminance at the eye: the wider the image, the truer. The position
+//! index is Guth's above the line of sight, and below it that of Iwata and Tokura (1997), as in `evalglare`.
+
+use crate::error::{Error, Result, check_range};
+use crate::image::{Image, colour, try_vec};
+use glam::{DVec3, Vec3};
+use std::f64::consts::PI;
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct Params {
+    /// Vertical angle of view of the image in radians, in `(0, π)`. The line of sight is its centre, level.
+    pub fov_y: f64,
+    /// Luminance from which on a pixel is a source of glare, in cd/m²; 0 = five times the mean of the image.
+    pub threshold: f64,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rating {
+    /// Unified glare rating; below 10 it means none, and `-∞` that there is no source.
+    pub ugr: f64,
+    /// In cd/m².
+    pub background: f64,
+    /// What counted as glare, in cd/m².
+    pub threshold: f64,
+    pub sources: Vec<Source>,
+}
+
+/// A source of glare.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Source {
+    /// Mean luminance in cd/m².
+    pub luminance: f64,
+    /// Solid angle in steradian. CIE 117 is meant for 0.0003 to 0.1 sr.
+    pub solid_angle: f64,
+    /// Position index, 1 on the line of sight.
+    pub position: f64,
+}
+
+/// Sums over a patch of pixels.
+#[derive(Clone, Copy, Default)]
+struct Patch {
+    solid_angle: f64,
+    light: f64,
+    direction: DVec3,
+}
+
+/// Rates an image of luminance (1 channel) or of linear RGB in cd/m².
+///
+/// # Errors
+/// An image that is empty or not finite, parameters out of range.
+pub fn rate(image: &Image, params: &Params) -> Result<Rating> {
+    check_range("fov_y", params.fov_y, 1e-3, PI - 1e-3)?;
+    check_range("threshold", params.threshold, 0.0, 1e12)?;
+    if image.width == 0 || image.height == 0 || image.count_non_finite() > 0 {
+        return Err(Error::argument("the luminance image is empty or has values that are not finite"));
+    }
+    let (width, height) = (image.width, image.height);
+    let luminance = |i: usize| match image.pixel(i % width, i / width) {
+        [r, g, b, ..] => f64::from(colour::luminance(Vec3::new(*r, *g, *b))).max(0.0),
+        [l, ..] => f64::from(*l).max(0.0),
+        [] => 0.0,
+    };
+    let view = View::new(width, height, params.fov_y);
+    let threshold = match params.threshold {
+        t if t > 0.0 => t,
+        _ => {
+            let (light, angle) = (0..width * height).fold((0.0, 0.0), |(light, angle), i| {
+                let (_, omega) = view.pixel(i);
+                (light + luminance(i) * omega, angle + omega)
+            });
+            5.0 * light / angle
+        }
+    };
+
+    // The background, by the illuminance at the eye.
+    let glares = |i: usize| threshold > 0.0 && luminance(i) >= threshold;
+    let (mut light, mut weight) = (0.0, 0.0);
+    for i in (0..width * height).filter(|&i| !glares(i)) {
+        let (direction, omega) = view.pixel(i);
+        light += luminance(i) * omega * -direction.z;
+        weight += omega * -direction.z;
+    }
+    let background = if weight > 0.0 { light / weight } else { 0.0 };
+
+    // The sources.
+    let mut seen = try_vec(width * height, false)?;
+    let (mut open, mut sources) = (Vec::new(), Vec::new());
+    for start in 0..width * height {
+        if seen[start] || !glares(start) {
+            continue;
+        }
+        let mut patch = Patch::default();
+        seen[start] = true;
+        open.push(start);
+        while let Some(i) = open.pop() {
+            let (direction, omega) = view.pixel(i);
+            patch.solid_angle += omega;
+            patch.light += luminance(i) * omega;
+            patch.direction += direction * (luminance(i) * omega);
+            let (x, y) = (i % width, i / width);
+            let sides = [
+                (x > 0, i.wrapping_sub(1)),
+                (x + 1 < width, i + 1),
+                (y > 0, i.wrapping_sub(width)),
+                (y + 1 < height, i + width),
+            ];
+            for (_, next) in sides.into_iter().filter(|(inside, _)| *inside) {
+                if !seen[next] && glares(next) {
+                    seen[next] = true;
+                    open.push(next);
+                }
+            }
+        }
+        sources.push(Source {
+            luminance: patch.light / patch.solid_angle,
+            solid_angle: patch.solid_angle,
+            position: position_index(patch.direction.normalize()),
+        });
+    }
+    let sum: f64 = sources.iter().map(|s| s.luminance * s.luminance * s.solid_angle / (s.position * s.position)).sum();
+    let ugr = 8.0 * (0.25 / background.max(f64::MIN_POSITIVE) * sum).log10();
+    Ok(Rating { ugr, background, threshold, sources })
+}
+
+/// A pinhole camera that looks along -z, y up.
+struct View {
+    width: usize,
+    centre: [f64; 2],
+    /// Side of a pixel on the plane at distance 1.
+    pixel: f64,
+}
+
+impl View {
+    fn new(width: usize, height: usize, fov_y: f64) -> Self {
+        let pixel = 2.0 * (fov_y / 2.0).tan() / height as f64;
+        Self { width, centre: [width as f64 / 2.0, height as f64 / 2.0], pixel }
+    }
+
+    /// Unit direction of a pixel, and its solid angle by the exact integral over its square.
+    fn pixel(&self, i: usize) -> (DVec3, f64) {
+        let x = ((i % self.width) as f64 - self.centre[0]) * self.pixel;
+        let y = (self.centre[1] - (i / self.width) as f64) * self.pixel;
+        let corner = |x: f64, y: f64| (x * y / (1.0 + x * x + y * y).sqrt()).atan();
+        let (x1, y0) = (x + self.pixel, y - self.pixel);
+        let omega = corner(x1, y) - corner(x, y) - corner(x1, y0) + corner(x, y0);
+        (DVec3::new(x + self.pixel / 2.0, y - self.pixel / 2.0, -1.0).normalize(), omega)
+    }
+}
+
+/// Position index of a direction, the line of sight being -z and y up.
+fn position_index(direction: DVec3) -> f64 {
+    let (side, up, ahead) = (direction.x, direction.y, -direction.z);
+    if up >= 0.0 {
+        // Guth 1963: τ from the vertical, σ from the line of sight, in degrees.
+        let tau = side.abs().atan2(up).to_degrees();
+        let tau = if side == 0.0 && up == 0.0 { 0.0 } else { tau };
+        let sigma = side.hypot(up).atan2(ahead).to_degrees();
+        let first = (35.2 - 0.318_89 * tau - 1.22 * (-2.0 * tau / 9.0).exp()) * 1e-3 * sigma;
+        let second = (21.0 + 0.266_67 * tau - 0.002_963 * tau * tau) * 1e-5 * sigma * sigma;
+        (first + second).exp()
+    } else {
+        // Iwata and Tokura 1997: by the distance below and beside, relative to that ahead.
+        let ratio = side.hypot(up) / ahead.max(1e-9);
+        let factor = if ratio < 0.6 { 0.8 } else { 1.2 };
+        (1.0 + factor * ratio).min(16.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A view with a square patch whose first pixel is given.
+    fn view(side: usize, first: [usize; 2], patch: usize, lamp: f32) -> Image {
+        let inside = |v: usize, from: usize| v >= from && v < from + patch;
+        let lit = |x: usize, y: usize| inside(x, first[0]) && inside(y, first[1]);
+        Image::from_fn(side, side, |x, y| [if lit(x, y) { lamp } else { 100.0 }]).unwrap()
+    }
+
+    #[test]
+    fn one_lamp_is_the_formula() {
+        let fov_y = 1.0f64;
+        let params = Params { fov_y, threshold: 1000.0 };
+        let rating = rate(&view(200, [90, 90], 20, 10_000.0), &params).unwrap();
+        // A tenth of the view's side, on the line of sight: ω = 4 asin(a² / (1 + a²)), a half of it.
+        let a = 0.1 * (fov_y / 2.0).tan();
+        let omega = 4.0 * (a * a / (1.0 + a * a)).asin();
+        let [source] = rating.sources[..] else { panic!("{:?}", rating.sources) };
+        assert!((source.solid_angle / omega - 1.0).abs() < 1e-9 && (source.luminance - 1e4).abs() < 1e-6);
+        assert!((source.position - 1.0).abs() < 1e-3 && (rating.background - 100.0).abs() < 1e-9);
+        let expected = 8.0 * (0.25 / 100.0 * 1e8 * omega).log10();
+        assert!((rating.ugr - expected).abs() < 1e-2, "{} {expected}", rating.ugr);
+        // Two such lamps rate 8 log10(2) higher, but for where they are.
+        let mut two = view(200, [60, 90], 20, 10_000.0);
+        let other = view(200, [120, 90], 20, 10_000.0);
+        two.data.iter_mut().zip(&other.data).for_each(|(a, b)| *a = a.max(*b));
+        let (one, two) = (rate(&other, &params).unwrap(), rate(&two, &params).unwrap());
+        assert_eq!(two.sources.len(), 2);
+        assert!((two.ugr - one.ugr - 8.0 * 2f64.log10()).abs() < 1e-2);
+    }
+
+    #[test]
+    fn glare_falls_away_from_the_line_of_sight() {
+        let params = Params { fov_y: 1.4, threshold: 1000.0 };
+        let ugr = |at: [usize; 2]| rate(&view(201, at, 11, 2e4), &params).unwrap().ugr;
+        let (ahead, above, beside, below) = (ugr([95, 95]), ugr([95, 15]), ugr([15, 95]), ugr([95, 175]));
+        assert!(ahead > above + 3.0 && ahead > beside + 2.0 && ahead > below + 2.0, "{ahead} {above} {beside} {below}");
+        // Guth: 10° straight up has p = exp((35.2 - 1.22) 0.01 + 21e-3) = 1.434.
+        let up = position_index(DVec3::new(0.0, 10f64.to_radians().sin(), -10f64.to_radians().cos()));
+        assert!((up - (0.3398f64 + 0.021).exp()).abs() < 1e-6, "{up}");
+    }
+
+    #[test]
+    fn nothing_glares_in_the_dark_and_bad_images_are_refused() {
+        let dark = rate(&Image::new(8, 8, 3).unwrap(), &Params { fov_y: 1.0, threshold: 0.0 }).unwrap();
+        assert!(dark.ugr == f64::NEG_INFINITY && dark.sources.is_empty());
+        let even = rate(&Image::from_fn(8, 8, |_, _| [50.0]).unwrap(), &Params { fov_y: 1.0, threshold: 0.0 }).unwrap();
+        assert!(even.sources.is_empty() && (even.background - 50.0).abs() < 1e-9);
+        let bad = Image::from_fn(2, 2, |_, _| [f32::NAN]).unwrap();
+        assert!(rate(&bad, &Params { fov_y: 1.0, threshold: 0.0 }).is_err());
+        assert!(rate(&Image::new(2, 2, 1).unwrap(), &Params { fov_y: 4.0, threshold: 0.0 }).is_err());
+    }
+}

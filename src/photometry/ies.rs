@@ -1,0 +1,257 @@
+//! IES LM-63 files, all editions from 1986 to 2019, type C photometry (the other types are for floodlights and car lamps).
+
+use super::lines::{self, Lines, MOST_ANGLES, MOST_VALUES, at, count, number, plain, within};
+use super::luminaire::Luminaire;
+use crate::error::{Error, ErrorKind, Result};
+use crate::image::try_vec;
+use std::fmt::Write;
+
+const FEET: f64 = 0.3048;
+
+/// The words of the lines after `TILT=`, each with its line.
+struct Words<'a> {
+    list: std::vec::IntoIter<(usize, &'a str)>,
+    line: usize,
+}
+
+impl<'a> Words<'a> {
+    fn next(&mut self, what: &str) -> Result<(usize, &'a str)> {
+        let word = self.list.next().ok_or_else(|| at(self.line, format_args!("the file ends before {what}")))?;
+        self.line = word.0;
+        Ok(word)
+    }
+
+    fn within(&mut self, what: &str, low: f64, high: f64) -> Result<f64> {
+        let (line, word) = self.next(what)?;
+        within(line, word, what, low, high)
+    }
+
+    fn count(&mut self, what: &str, low: usize, high: usize) -> Result<usize> {
+        let (line, word) = self.next(what)?;
+        count(line, word, what, low, high)
+    }
+
+    fn list(&mut self, what: &str, n: usize, high: f64) -> Result<Vec<f64>> {
+        let mut values = try_vec(n, 0.0)?;
+        for value in &mut values {
+            let (line, word) = self.next(what)?;
+            *value = within(line, word, what, -high, high)?;
+        }
+        Ok(values)
+    }
+}
+
+/// Reads a file from memory.
+///
+/// # Errors
+/// `Format` with the line if the file is malformed; `Unsupported` for types A and B.
+pub fn read(bytes: &[u8]) -> Result<Luminaire> {
+    let text = Lines::new(bytes)?;
+    let mut lines = text.numbered();
+    let mut luminaire = Luminaire::lambertian("", 0.0, [0.0; 3]);
+
+    // Keywords, up to the line that says what the lamp's tilt does.
+    let mut last = 1;
+    let tilt = loop {
+        let Some((number, line)) = lines.next() else {
+            return Err(at(last, "the file has no line TILT=, so it is no IES file or ends too soon"));
+        };
+        last = number;
+        if let Some(tilt) = line.strip_prefix("TILT=") {
+            break tilt.trim();
+        }
+        if let Some((key, value)) = line.strip_prefix('[').and_then(|rest| rest.split_once(']')) {
+            match key.to_ascii_uppercase().as_str() {
+                "LUMINAIRE" => luminaire.name = value.trim().into(),
+                "MANUFAC" => luminaire.manufacturer = value.trim().into(),
+                _ => {}
+            }
+        }
+    };
+    let list: Vec<_> = lines
+        .flat_map(|(n, line)| line.split([' ', '\t', ',']).filter(|w| !w.is_empty()).map(move |word| (n, word)))
+        .collect();
+    let mut words = Words { list: list.into_iter(), line: last };
+    if tilt.eq_ignore_ascii_case("INCLUDE") {
+        words.next("the lamp's orientation")?;
+        let pairs = words.count("the number of tilt angles", 0, MOST_ANGLES)?;
+        words.list("a tilt angle", pairs, 360.0)?;
+        words.list("a tilt factor", pairs, 1e9)?;
+    }
+
+    // Ten numbers on one line and three on the next, in practice on any.
+    let lamps = words.within("the number of lamps", 0.0, 1e6)?;
+    let (line, word) = words.next("lumens per lamp")?;
+    let lumens: f64 = number(line, word, "lumens per lamp")?;
+    let multiplier = words.within("the candela multiplier", 0.0, 1e9)?;
+    let gammas = words.count("the number of vertical angles", 1, MOST_ANGLES)?;
+    let planes = words.count("the number of horizontal angles", 1, MOST_ANGLES)?;
+    if gammas * planes > MOST_VALUES {
+        return Err(at(words.line, format_args!("{gammas} x {planes} intensities; at most {MOST_VALUES} are read")));
+    }
+    let kind = words.count("the photometric type", 1, 3)?;
+    if kind != 1 {
+        let message = format!("line {}: photometry of type {}; only type C is read", words.line, ["B", "A"][kind - 2]);
+        return Err(Error::new(ErrorKind::Unsupported, message));
+    }
+    let unit = if words.count("the unit", 1, 2)? == 1 { FEET } else { 1.0 };
+    let [width, length, height] = [
+        words.within("the width", -1e4, 1e4)?,
+        words.within("the length", -1e4, 1e4)?,
+        words.within("the height", -1e4, 1e4)?,
+    ];
+    luminaire.size = [length * unit, width * unit, height * unit];
+    let ballast = words.within("the ballast factor", 0.0, 1e6)?;
+    let lamp_factor = words.within("the ballast-lamp factor", 0.0, 1e6)?;
+    luminaire.watts = words.within("the input watts", 0.0, 1e9)?;
+    luminaire.lamp_flux = if lumens > 0.0 && lumens.is_finite() { lumens * lamps } else { 0.0 };
+
+    luminaire.gammas = words.list("a vertical angle", gammas, 360.0)?;
+    let horizontal = words.list("a horizontal angle", planes, 360.0)?;
+    let factor = multiplier * ballast * if lamp_factor > 0.0 { lamp_factor } else { 1.0 };
+    let mut candela = words.list("an intensity", gammas * planes, 1e12)?;
+    candela.iter_mut().for_each(|v| *v *= factor);
+    (luminaire.planes, luminaire.candela) = unfold(&horizontal, candela, gammas, words.line)?;
+    luminaire.check().map_err(|e| e.within(format_args!("line {}", words.line)))?;
+    Ok(luminaire)
+}
+
+/// The whole circle of planes, from the part that symmetry lets a file leave out.
+fn unfold(angles: &[f64], candela: Vec<f64>, gammas: usize, line: usize) -> Result<(Vec<f64>, Vec<f64>)> {
+    let (first, last) = (angles[0], angles[angles.len() - 1]);
+    if angles.windows(2).any(|w| w[0] >= w[1]) {
+        return Err(at(line, "the horizontal angles do not ascend"));
+    }
+    let plane = |i: usize| (angles[i], &candela[i * gammas..][..gammas]);
+    let mut all: Vec<(f64, &[f64])> = (0..angles.len()).map(plane).collect();
+    let mirror = |all: &mut Vec<(f64, &[f64])>, about: f64| {
+        // What lies on the mirror is its own image; so is what falls on a plane there is.
+        let images: Vec<_> = all.iter().map(|&(c, values)| ((2.0 * about - c).rem_euclid(360.0), values)).collect();
+        let missing: Vec<_> = images.into_iter().filter(|(c, _)| all.iter().all(|(d, _)| d != c)).collect();
+        all.extend(missing);
+    };
+    match (first, last) {
+        (0.0, 0.0) => {}
+        (0.0, 90.0) => {
+            mirror(&mut all, 90.0);
+            mirror(&mut all, 180.0);
+        }
+        (0.0, 180.0) => mirror(&mut all, 180.0),
+        // Symmetric about the plane through 90° and 270°.
+        (90.0, 270.0) => mirror(&mut all, 90.0),
+        (0.0, end) if end > 180.0 && end < 360.0 => {}
+        (0.0, 360.0) => {
+            all.pop();
+        }
+        _ => {
+            return Err(at(
+                line,
+                format_args!(
+                    "the horizontal angles go from {first} to {last}; they must go from 0 to 0, 90, 180 or 360, or from 90 to 270"
+                ),
+            ));
+        }
+    }
+    all.sort_by(|a, b| a.0.total_cmp(&b.0));
+    Ok((all.iter().map(|(c, _)| *c).collect(), all.iter().flat_map(|(_, values)| values.iter().copied()).collect()))
+}
+
+/// The file of a luminaire, as LM-63-2002.
+///
+/// # Errors
+/// As [`Luminaire::check`].
+pub fn write(luminaire: &Luminaire) -> Result<String> {
+    luminaire.check()?;
+    let l = luminaire;
+    let round = l.planes.len() == 1;
+    let mut text = format!(
+        "IESNA:LM-63-2002\r\n[TEST] none\r\n[TESTLAB] none\r\n[ISSUEDATE] none\r\n[MANUFAC] {}\r\n",
+        plain(&l.manufacturer)
+    );
+    let _ = write!(text, "[LUMINAIRE] {}\r\nTILT=NONE\r\n", plain(&l.name));
+    // Absolute photometry states -1 lumens.
+    let lumens = if l.lamp_flux > 0.0 { l.lamp_flux } else { -1.0 };
+    let planes = if round { 1 } else { l.planes.len() + 1 };
+    let [length, width, height] = l.size;
+    let _ =
+        write!(text, "1 {lumens} 1 {} {planes} 1 2 {width} {length} {height}\r\n1 1 {}\r\n", l.gammas.len(), l.watts);
+    push(&mut text, &l.gammas);
+    let horizontal: Vec<f64> = l.planes.iter().copied().chain((!round).then_some(360.0)).collect();
+    push(&mut text, &horizontal);
+    for plane in 0..planes {
+        let from = plane % l.planes.len() * l.gammas.len();
+        push(&mut text, &l.candela[from..from + l.gammas.len()]);
+    }
+    Ok(text)
+}
+
+/// Numbers, so many to a line that old programs can read it.
+fn push(text: &mut String, values: &[f64]) {
+    for line in values.chunks(10) {
+        let words: Vec<String> = line.iter().map(|v| v.to_string()).collect();
+        let _ = write!(text, "{}\r\n", words.join(" "));
+    }
+}
+
+/// Largest file that is read, in bytes.
+pub const MOST_BYTES: usize = lines::MOST_BYTES;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const QUARTER: &str = "IESNA:LM-63-1995\n[MANUFAC] Works\n[LUMINAIRE] Two tubes\n[OTHER] x\nTILT=NONE\n\
+        2 1000 1.5 3 3 1 1 1 2 0\n0.9 1 40\n0 45 90\n0 45 90\n100 80 0\n100 70,0\n100 60 0\n";
+
+    #[test]
+    fn a_quarter_is_unfolded() {
+        let l = read(QUARTER.as_bytes()).unwrap();
+        assert_eq!(
+            (l.name.as_str(), l.manufacturer.as_str(), l.lamp_flux, l.watts),
+            ("Two tubes", "Works", 2000.0, 40.0)
+        );
+        assert_eq!(l.planes, [0.0, 45.0, 90.0, 135.0, 180.0, 225.0, 270.0, 315.0]);
+        assert!((l.size[0] - 0.6096).abs() < 1e-12 && (l.size[1] - 0.3048).abs() < 1e-12);
+        let factor = 1.5 * 0.9;
+        for (c, want) in
+            [(0.0, 80.0), (45.0, 70.0), (90.0, 60.0), (135.0, 70.0), (180.0, 80.0), (270.0, 60.0), (22.5, 75.0)]
+        {
+            assert!((l.intensity(c, 45.0) - want * factor).abs() < 1e-9, "{c}");
+        }
+    }
+
+    #[test]
+    fn what_is_written_is_read() {
+        for l in [Luminaire::lambertian("panel", 3500.0, [0.6, 0.6, 0.0]), read(QUARTER.as_bytes()).unwrap()] {
+            let again = read(write(&l).unwrap().as_bytes()).unwrap();
+            assert_eq!(again, l);
+        }
+        // Tilt data are passed over; numbers may be on any lines.
+        let tilted = QUARTER
+            .replace("TILT=NONE", "TILT=INCLUDE\n1\n2\n0 90\n1 0.5")
+            .replace("0 45 90\n0 45 90", "0\n45 90 0\n45 90");
+        assert_eq!(read(tilted.as_bytes()).unwrap(), read(QUARTER.as_bytes()).unwrap());
+    }
+
+    #[test]
+    fn malformed_files_are_refused_with_the_line() {
+        let says = |text: &str, what: &str| {
+            let error = read(text.as_bytes()).unwrap_err();
+            assert!(error.message.contains(what), "{error}");
+        };
+        says("", "TILT");
+        says(&QUARTER.replace("100 60 0\n", ""), "line 11: the file ends before an intensity");
+        says(&QUARTER.replace("0.9 1 40", "0.9 one 40"), "line 7: the ballast-lamp factor is \"one\"");
+        says(&QUARTER.replace("3 3 1 1", "3 900000000 1 1"), "line 6: the number of horizontal angles");
+        says(&QUARTER.replace("3 3 1 1", "3 3 2 1"), "type B");
+        says(&QUARTER.replace("0 45 90\n0 45 90", "0 90 45\n0 45 90"), "vertical angles must ascend");
+        says(&QUARTER.replace("0 45 90\n0 45 90", "0 45 90\n0 45 80"), "0 to 80");
+        says(&QUARTER.replace("100 80 0", "100 -80 0"), "an intensity is");
+        says(&QUARTER.replace("100 80 0", "100 NaN 0"), "an intensity is");
+        assert!(read(&[0xff, 0x00, 0x12]).is_err());
+        // Every beginning of a file is refused, and none makes trouble.
+        for end in 0..QUARTER.len() - 3 {
+            assert!(read(&QUARTER.as_bytes()[..end]).is_err(), "{end}");
+        }
+    }
+}

@@ -1,0 +1,302 @@
+//! EULUMDAT files (Stockmar 1990): a value per line in a fixed order, intensities in candela per 1000 lumens of the lamps.
+
+use super::lines::{Lines, MOST_ANGLES, MOST_VALUES, at, count, plain, within};
+use super::luminaire::Luminaire;
+use crate::error::Result;
+use crate::image::try_vec;
+use std::fmt::Write;
+
+/// Most sets of lamps of a file.
+const MOST_SETS: usize = 20;
+/// Room indices for which a file has direct ratios.
+const ROOM_INDICES: usize = 10;
+
+struct Rows<'a, I> {
+    lines: I,
+    line: usize,
+    text: &'a str,
+}
+
+impl<'a, I: Iterator<Item = (usize, &'a str)>> Rows<'a, I> {
+    fn next(&mut self, what: &str) -> Result<&'a str> {
+        let (line, text) =
+            self.lines.next().ok_or_else(|| at(self.line + 1, format_args!("the file ends before {what}")))?;
+        (self.line, self.text) = (line, text);
+        Ok(text)
+    }
+
+    fn skip(&mut self, n: usize, what: &str) -> Result<()> {
+        (0..n).try_for_each(|_| self.next(what).map(drop))
+    }
+
+    fn within(&mut self, what: &str, low: f64, high: f64) -> Result<f64> {
+        let text = self.next(what)?;
+        within(self.line, text, what, low, high)
+    }
+
+    fn count(&mut self, what: &str, low: usize, high: usize) -> Result<usize> {
+        let text = self.next(what)?;
+        count(self.line, text, what, low, high)
+    }
+
+    fn list(&mut self, n: usize, what: &str, low: f64, high: f64) -> Result<Vec<f64>> {
+        let mut values = try_vec(n, 0.0)?;
+        for value in &mut values {
+            *value = self.within(what, low, high)?;
+        }
+        Ok(values)
+    }
+}
+
+/// Reads a file from memory.
+///
+/// # Errors
+/// `Format` with the line if the file is malformed.
+pub fn read(bytes: &[u8]) -> Result<Luminaire> {
+    let text = Lines::new(bytes)?;
+    let mut rows = Rows { lines: text.numbered(), line: 0, text: "" };
+    let manufacturer = rows.next("the manufacturer")?.to_string();
+    rows.count("the type", 0, 3)?;
+    let symmetry = rows.count("the symmetry", 0, 4)?;
+    let planes = rows.count("the number of C planes", 1, MOST_ANGLES)?;
+    rows.within("the distance between C planes", 0.0, 360.0)?;
+    let gammas = rows.count("the number of intensities of a plane", 1, MOST_ANGLES)?;
+    rows.within("the distance between intensities", 0.0, 180.0)?;
+    rows.next("the report's number")?;
+    let name = rows.next("the luminaire's name")?.to_string();
+    rows.skip(3, "the date")?;
+    if gammas * planes > MOST_VALUES {
+        return Err(at(rows.line, format_args!("{gammas} x {planes} intensities; at most {MOST_VALUES} are read")));
+    }
+
+    // Of both the housing and the luminous area there are sizes in millimetres; the latter counts.
+    rows.list(3, "a size of the luminaire", 0.0, 1e7)?;
+    let [length, width] = [rows.within("the luminous length", 0.0, 1e7)?, rows.within("the luminous width", 0.0, 1e7)?];
+    let height = rows.list(4, "a height of the luminous area", 0.0, 1e7)?.into_iter().fold(0.0, f64::max);
+    // Round ones have a diameter and no width.
+    let size = if width == 0.0 { [-length, -length, height] } else { [length, width, height] }.map(|mm| mm / 1e3);
+    rows.skip(2, "the light output ratio")?;
+    let factor = rows.within("the conversion factor", 0.0, 1e9)?;
+    rows.skip(1, "the tilt")?;
+
+    // Sets of lamps; the first is the one measured. A negative number of lamps means absolute photometry.
+    let sets = rows.count("the number of sets of lamps", 1, MOST_SETS)?;
+    let (mut lumens, mut watts, mut absolute) = (0.0, 0.0, false);
+    for set in 0..sets {
+        let lamps = rows.within("the number of lamps", -1e6, 1e6)?;
+        rows.next("the type of lamps")?;
+        let flux = rows.within("the lamps' flux", 0.0, 1e12)?;
+        rows.skip(2, "the colour rendering")?;
+        let power = rows.within("the power", 0.0, 1e9)?;
+        if set == 0 {
+            (lumens, watts, absolute) = (flux, power, lamps < 0.0);
+        }
+    }
+    rows.list(ROOM_INDICES, "a direct ratio", -1e9, 1e9)?;
+
+    let angles = rows.list(planes, "the angle of a C plane", 0.0, 360.0)?;
+    let vertical = rows.list(gammas, "a vertical angle", 0.0, 180.0)?;
+    let stored = stored_planes(symmetry, planes).map_err(|what| at(3, what))?;
+    let scale = factor * lumens / 1000.0;
+    let mut values = rows.list(stored.len() * gammas, "an intensity", 0.0, 1e12)?;
+    values.iter_mut().for_each(|v| *v *= scale);
+
+    // Every plane of the circle shows one that is stored.
+    let single = symmetry == 1;
+    let (mut shown, mut candela) = (Vec::new(), Vec::new());
+    for plane in 0..if single { 1 } else { planes } {
+        if !single && angles[plane] >= 360.0 {
+            continue;
+        }
+        let source = image_of(symmetry, plane, planes);
+        let at_stored = stored.iter().position(|s| *s == source).unwrap_or(0);
+        shown.push(if single { 0.0 } else { angles[plane] });
+        candela.extend_from_slice(&values[at_stored * gammas..][..gammas]);
+    }
+    let luminaire = Luminaire {
+        name,
+        manufacturer,
+        gammas: vertical,
+        planes: shown,
+        candela,
+        lamp_flux: if absolute { 0.0 } else { lumens },
+        watts,
+        size,
+    };
+    luminaire.check().map_err(|e| e.within(format_args!("line {}", rows.line)))?;
+    Ok(luminaire)
+}
+
+/// The planes that a file has intensities of, by its symmetry.
+fn stored_planes(symmetry: usize, planes: usize) -> std::result::Result<Vec<usize>, &'static str> {
+    match symmetry {
+        0 => Ok((0..planes).collect()),
+        1 => Ok(vec![0]),
+        2 if planes.is_multiple_of(2) => Ok((0..=planes / 2).collect()),
+        3 if planes.is_multiple_of(4) => Ok((0..=planes / 2).map(|i| (3 * planes / 4 + i) % planes).collect()),
+        4 if planes.is_multiple_of(4) => Ok((0..=planes / 4).collect()),
+        _ => Err("the symmetry needs a number of C planes that it divides"),
+    }
+}
+
+/// The stored plane that shows what a plane does.
+fn image_of(symmetry: usize, plane: usize, planes: usize) -> usize {
+    let about_0 = |p: usize| (planes - p) % planes;
+    let about_90 = |p: usize| (planes + planes / 2 - p) % planes;
+    match symmetry {
+        0 => plane,
+        1 => 0,
+        2 => plane.min(about_0(plane)),
+        3 if plane > planes / 4 && plane < 3 * planes / 4 => about_90(plane),
+        3 => plane,
+        _ => {
+            let half = plane.min(about_0(plane));
+            half.min(about_90(half))
+        }
+    }
+}
+
+/// The file of a luminaire, without symmetry unless it has one plane only.
+///
+/// # Errors
+/// As [`Luminaire::check`].
+pub fn write(luminaire: &Luminaire) -> Result<String> {
+    luminaire.check()?;
+    let l = luminaire;
+    let single = l.planes.len() == 1;
+    // One plane stands for a circle of 24, as interior luminaires have.
+    let planes: Vec<f64> = if single { (0..24).map(|i| f64::from(i) * 15.0).collect() } else { l.planes.clone() };
+    let step = |angles: &[f64]| match angles {
+        [a, b, ..] if angles.windows(2).all(|w| (w[1] - w[0] - (b - a)).abs() < 1e-9) => b - a,
+        _ => 0.0,
+    };
+    let flux = l.flux();
+    let lumens = if l.lamp_flux > 0.0 { l.lamp_flux } else { flux };
+    let down: f64 = {
+        let below = Luminaire {
+            candela: l
+                .candela
+                .iter()
+                .enumerate()
+                .map(|(i, v)| if l.gammas[i % l.gammas.len()] <= 90.0 { *v } else { 0.0 })
+                .collect(),
+            ..l.clone()
+        };
+        if flux > 0.0 { 100.0 * below.flux() / flux } else { 0.0 }
+    };
+    let output_ratio = if lumens > 0.0 { 100.0 * flux / lumens } else { 0.0 };
+    let [length, width, height] = l.size.map(|m| m * 1e3);
+    let (length, width) = if length < 0.0 { (-length, 0.0) } else { (length, width.abs()) };
+    let mut text = String::new();
+    let mut line = |value: &dyn std::fmt::Display| {
+        let _ = write!(text, "{value}\r\n");
+    };
+    line(&plain(&l.manufacturer));
+    line(&if single { 1 } else { 3 });
+    line(&if single { 1 } else { 0 });
+    line(&planes.len());
+    line(&step(&planes));
+    line(&l.gammas.len());
+    line(&step(&l.gammas));
+    for text in ["", &plain(&l.name), "", "", ""] {
+        line(&text);
+    }
+    for value in [length, width, height.abs(), length, width] {
+        line(&value);
+    }
+    (0..4).for_each(|_| line(&height.abs()));
+    for value in [down, output_ratio, 1.0, 0.0] {
+        line(&value);
+    }
+    // One set of lamps, a negative number of them for absolute photometry.
+    line(&1);
+    line(&if l.lamp_flux > 0.0 { 1 } else { -1 });
+    line(&"");
+    line(&lumens);
+    line(&"");
+    line(&"");
+    line(&l.watts);
+    (0..ROOM_INDICES).for_each(|_| line(&0));
+    planes.iter().for_each(|c| line(c));
+    l.gammas.iter().for_each(|g| line(g));
+    let per_kilolumen = if lumens > 0.0 { 1000.0 / lumens } else { 0.0 };
+    l.candela.iter().for_each(|v| line(&(v * per_kilolumen)));
+    Ok(text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A luminaire of `planes` C planes and two angles, with intensities of the stored planes at 90 degrees.
+    fn file(symmetry: usize, planes: usize, values: &[f64]) -> String {
+        let mut lines: Vec<String> = ["Works", "3"].map(String::from).into();
+        lines.push(symmetry.to_string());
+        lines.push(planes.to_string());
+        lines.extend([(360.0 / planes as f64).to_string(), "2".into(), "90".into(), "".into(), "Lamp".into()]);
+        lines.extend(
+            ["", "", "", "1200", "300", "80", "1190", "0", "0", "0", "0", "0", "100", "80", "1", "0"].map(String::from),
+        );
+        lines.extend(["1", "2", "tube", "2000", "840", "80", "58"].map(String::from));
+        lines.extend((0..10).map(|_| "0".into()));
+        lines.extend((0..planes).map(|i| (360.0 / planes as f64 * i as f64).to_string()));
+        lines.extend(["0".into(), "90,0".into()]);
+        lines.extend(values.iter().flat_map(|v| ["50".into(), v.to_string()]));
+        lines.join("\r\n")
+    }
+
+    #[test]
+    fn symmetries_are_unfolded() {
+        let side = |symmetry, values: &[f64]| {
+            let l = read(file(symmetry, 4, values).as_bytes()).unwrap();
+            // 2000 lm: twice what is written per 1000.
+            [0.0, 90.0, 180.0, 270.0].map(|c| l.intensity(c, 90.0) / 2.0)
+        };
+        assert_eq!(side(0, &[1.0, 2.0, 3.0, 4.0]), [1.0, 2.0, 3.0, 4.0]);
+        assert_eq!(side(1, &[7.0]), [7.0; 4]);
+        assert_eq!(side(2, &[1.0, 2.0, 3.0]), [1.0, 2.0, 3.0, 2.0]);
+        // From C270 by way of C0 to C90.
+        assert_eq!(side(3, &[4.0, 1.0, 2.0]), [1.0, 2.0, 1.0, 4.0]);
+        assert_eq!(side(4, &[1.0, 2.0]), [1.0, 2.0, 1.0, 2.0]);
+        let l = read(file(1, 24, &[7.0]).as_bytes()).unwrap();
+        assert_eq!((l.name.as_str(), l.watts, l.lamp_flux, l.size), ("Lamp", 58.0, 2000.0, [-1.19, -1.19, 0.0]));
+    }
+
+    #[test]
+    fn what_is_written_is_read() {
+        let uneven = Luminaire {
+            planes: vec![0.0, 30.0, 200.0],
+            candela: [vec![1.0; 37], vec![2.0; 37], vec![3.0; 37]].concat(),
+            lamp_flux: 0.0,
+            ..Luminaire::lambertian("uneven", 0.0, [0.3, 0.2, 0.1])
+        };
+        for l in [Luminaire::lambertian("panel", 3500.0, [-0.6, -0.6, 0.0]), uneven] {
+            let again = read(write(&l).unwrap().as_bytes()).unwrap();
+            let near = |a: &[f64], b: &[f64]| {
+                a.len() == b.len() && a.iter().zip(b).all(|(a, b)| (a - b).abs() <= 1e-9 * (1.0 + b.abs()))
+            };
+            assert!(near(&again.candela, &l.candela) && near(&again.size, &l.size) && near(&again.planes, &l.planes));
+            assert!((again.flux() / l.flux() - 1.0).abs() < 1e-9);
+            assert_eq!((again.name, again.lamp_flux), (l.name, l.lamp_flux));
+        }
+    }
+
+    #[test]
+    fn malformed_files_are_refused_with_the_line() {
+        let good = file(2, 4, &[1.0, 2.0, 3.0]);
+        let says = |text: &str, what: &str| {
+            let error = read(text.as_bytes()).unwrap_err();
+            assert!(error.message.contains(what), "{error}");
+        };
+        says("", "line 1: the file ends");
+        says(&good.replacen("\r\n4\r\n", "\r\n5\r\n", 1), "");
+        says(&good.replacen("\r\n4\r\n", "\r\n400000000\r\n", 1), "line 4: the number of C planes");
+        says(&good.replacen("tube\r\n2000", "tube\r\nmany", 1), "\"many\"");
+        says(&good.replacen("Works\r\n3", "Works\r\n9", 1), "line 2: the type is 9");
+        // Every beginning that lacks a line is refused.
+        let lines: Vec<&str> = good.lines().collect();
+        for end in 0..lines.len() {
+            assert!(read(lines[..end].join("\n").as_bytes()).is_err(), "{end}");
+        }
+    }
+}

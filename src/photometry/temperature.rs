@@ -1,0 +1,184 @@
+//! Correlated colour temperature: the blackbody whose colour is nearest, and how far it is.
+//!
+//! The blackbody locus is Krystek's rational approximation in the CIE 1960 diagram ("An algorithm to calculate correlated
+//! colour temperature", 1985), within 8e-5 of the locus from 1000 K to 15000 K. Distances are in that diagram, as the
+//! definition of the correlated temperature has it (CIE 15), searched in mired, where the eye's steps are even.
+
+use crate::image::colour;
+use glam::{DMat3, DVec2, DVec3, Vec3};
+
+/// Temperatures that are told apart, in kelvin.
+pub const LEAST_KELVIN: f64 = 1000.0;
+pub const MOST_KELVIN: f64 = 20_000.0;
+
+/// Steps in mired of the search before it is refined: the distance to the locus has one minimum within two of them.
+const SCAN: usize = 96;
+/// Golden sections, down to rounding.
+const SECTIONS: usize = 60;
+
+/// A colour as lighting people name it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Temperature {
+    /// In kelvin, in `[1000, 20000]`; at an end the colour may lie beyond.
+    pub kelvin: f64,
+    /// Distance from the blackbody locus in the CIE 1960 diagram, positive above it (greenish), negative below (pinkish).
+    /// Beyond ±0.05 a temperature means little.
+    pub duv: f64,
+}
+
+/// CIE 1931 chromaticity of a linear RGB colour; `None` for black and what is no light.
+pub fn chromaticity(rgb: DVec3) -> Option<DVec2> {
+    let xyz = to_xyz() * rgb;
+    let sum = xyz.element_sum();
+    (sum > 0.0 && sum.is_finite()).then(|| DVec2::new(xyz.x, xyz.y) / sum)
+}
+
+/// Correlated temperature of a linear RGB colour; `None` for black and what is no light.
+pub fn of_rgb(rgb: DVec3) -> Option<Temperature> {
+    chromaticity(rgb).map(of_chromaticity)
+}
+
+/// Correlated temperature of a CIE 1931 chromaticity.
+pub fn of_chromaticity(xy: DVec2) -> Temperature {
+    let uv = to_1960(xy);
+    let mired = search(|mired| locus(1e6 / mired).distance_squared(uv));
+    let kelvin = 1e6 / mired;
+    let nearest = locus(kelvin);
+    // Above the locus is the side of larger v.
+    let side = if uv.y >= nearest.y { 1.0 } else { -1.0 };
+    Temperature { kelvin, duv: side * uv.distance(nearest) }
+}
+
+/// CIE 1931 chromaticity of a temperature and a distance from the locus.
+pub fn chromaticity_of(temperature: Temperature) -> DVec2 {
+    let kelvin = temperature.kelvin.clamp(LEAST_KELVIN, MOST_KELVIN);
+    // Along the locus u falls as the temperature rises: its normal upwards is the tangent turned.
+    let (a, b) = (locus(kelvin * 0.9995), locus(kelvin * 1.0005));
+    let tangent = (a - b).normalize();
+    let normal = if tangent.x >= 0.0 { tangent.perp() } else { -tangent.perp() };
+    from_1960(locus(kelvin) + normal * temperature.duv)
+}
+
+/// Linear RGB of luminance 1 of a colour; channels may be negative where it is out of gamut (below about 1900 K).
+pub fn to_rgb(temperature: Temperature) -> DVec3 {
+    let xy = chromaticity_of(temperature);
+    to_xyz().inverse() * DVec3::new(xy.x / xy.y, 1.0, (1.0 - xy.x - xy.y) / xy.y)
+}
+
+/// Linear RGB of luminance 1 of a blackbody, without what is out of gamut.
+pub fn blackbody(kelvin: f64) -> DVec3 {
+    let rgb = to_rgb(Temperature { kelvin, duv: 0.0 }).max(DVec3::ZERO);
+    rgb / f64::from(colour::luminance(rgb.as_vec3()))
+}
+
+/// The blackbody light that brings a target nearest to what is wanted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fit {
+    pub kelvin: f64,
+    /// What to multiply [`blackbody`] of it with, ≥ 0: the luminance of the emission, where its strength was 1 cd/m².
+    pub luminance: f64,
+}
+
+/// Finds temperature and strength of blackbody light for a target of mean radiance `target`, which has `background` from
+/// other lights and `response` per unit of emission, all per channel: at each temperature the strength is a closed form.
+/// `None` where nothing responds.
+pub fn fit(response: DVec3, background: DVec3, target: DVec3) -> Option<Fit> {
+    let wanted = target - background;
+    let at = |kelvin: f64| {
+        let light = response * blackbody(kelvin);
+        let square = light.length_squared();
+        let strength = if square > 0.0 { (light.dot(wanted) / square).max(0.0) } else { 0.0 };
+        (strength, (light * strength - wanted).length_squared())
+    };
+    if !(response.max_element() > 0.0 && response.is_finite() && wanted.is_finite()) {
+        return None;
+    }
+    let kelvin = 1e6 / search(|mired| at(1e6 / mired).1);
+    Some(Fit { kelvin, luminance: at(kelvin).0 })
+}
+
+/// Where a function of the mired is least: a scan, then golden sections about the least.
+fn search(f: impl Fn(f64) -> f64) -> f64 {
+    let (low, high) = (1e6 / MOST_KELVIN, 1e6 / LEAST_KELVIN);
+    let at = |i: usize| low + (high - low) * i as f64 / SCAN as f64;
+    let best = (0..=SCAN).min_by(|&a, &b| f(at(a)).total_cmp(&f(at(b)))).unwrap_or(0);
+    let (mut a, mut b) = (at(best.saturating_sub(1)), at((best + 1).min(SCAN)));
+    let golden = (5f64.sqrt() - 1.0) / 2.0;
+    for _ in 0..SECTIONS {
+        let (left, right) = (b - golden * (b - a), a + golden * (b - a));
+        if f(left) <= f(right) { b = right } else { a = left }
+    }
+    0.5 * (a + b)
+}
+
+/// A point of the blackbody locus in the CIE 1960 diagram.
+fn locus(t: f64) -> DVec2 {
+    let u = (0.860_117_757 + 1.541_182_54e-4 * t + 1.286_412_12e-7 * t * t)
+        / (1.0 + 8.424_202_35e-4 * t + 7.081_451_63e-7 * t * t);
+    let v = (0.317_398_726 + 4.228_062_45e-5 * t + 4.204_816_91e-8 * t * t)
+        / (1.0 - 2.897_418_16e-5 * t + 1.614_560_53e-7 * t * t);
+    DVec2::new(u, v)
+}
+
+fn to_1960(xy: DVec2) -> DVec2 {
+    DVec2::new(4.0 * xy.x, 6.0 * xy.y) / (12.0 * xy.y - 2.0 * xy.x + 3.0)
+}
+
+fn from_1960(uv: DVec2) -> DVec2 {
+    DVec2::new(3.0 * uv.x, 2.0 * uv.y) / (2.0 * uv.x - 8.0 * uv.y + 4.0)
+}
+
+fn to_xyz() -> DMat3 {
+    DMat3::from_cols(colour::linear_to_xyz(Vec3::X), colour::linear_to_xyz(Vec3::Y), colour::linear_to_xyz(Vec3::Z))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Standard illuminants by their published chromaticities (CIE 15, table T.3).
+    #[test]
+    fn standard_illuminants() {
+        for (xy, kelvin, duv) in [
+            ([0.44758, 0.40745], 2856.0, 0.0000),
+            ([0.34567, 0.35850], 5003.0, 0.0032),
+            ([0.33242, 0.34743], 5503.0, 0.0032),
+            ([0.31272, 0.32903], 6504.0, 0.0032),
+            ([0.29902, 0.31485], 7504.0, 0.0032),
+        ] {
+            let t = of_chromaticity(DVec2::from(xy));
+            assert!((t.kelvin / kelvin - 1.0).abs() < 0.003, "{xy:?}: {t:?}, expected {kelvin}");
+            assert!((t.duv - duv).abs() < 3e-4, "{xy:?}: {t:?}, expected {duv}");
+        }
+        let white = of_rgb(DVec3::splat(7.0)).unwrap();
+        assert!((white.kelvin - 6504.0).abs() < 15.0, "{white:?}");
+        assert_eq!(of_rgb(DVec3::ZERO), None);
+        assert_eq!(of_rgb(DVec3::NAN), None);
+    }
+
+    #[test]
+    fn there_and_back() {
+        for kelvin in [1200.0, 2000.0, 2700.0, 4000.0, 6500.0, 10_000.0, 18_000.0] {
+            for duv in [-0.01, 0.0, 0.006] {
+                let again = of_chromaticity(chromaticity_of(Temperature { kelvin, duv }));
+                assert!((again.kelvin / kelvin - 1.0).abs() < 1e-3, "{kelvin} {duv}: {again:?}");
+                assert!((again.duv - duv).abs() < 1e-5, "{kelvin} {duv}: {again:?}");
+            }
+        }
+        // Warm light is red, cold light is blue, and its luminance is 1.
+        let (warm, cold) = (blackbody(2700.0), blackbody(10_000.0));
+        assert!(warm.x > 2.0 * warm.z && cold.z > cold.x);
+        assert!((colour::luminance(warm.as_vec3()) - 1.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_blackbody_is_found_through_the_transport() {
+        let (response, background) = (DVec3::new(0.3, 0.2, 0.1), DVec3::new(5.0, 4.0, 3.0));
+        let target = background + response * blackbody(3500.0) * 800.0;
+        let fit = fit(response, background, target).unwrap();
+        assert!((fit.kelvin / 3500.0 - 1.0).abs() < 1e-6 && (fit.luminance / 800.0 - 1.0).abs() < 1e-6, "{fit:?}");
+        // Other lights are brighter: off.
+        assert_eq!(super::fit(response, background, DVec3::ZERO).unwrap().luminance, 0.0);
+        assert_eq!(super::fit(DVec3::ZERO, background, target), None);
+    }
+}
