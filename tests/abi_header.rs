@@ -34,6 +34,10 @@ const GROUPS: &[&str] = &[
     "render_outputs",
     "illuminance",
     "relight",
+    "lamps",
+    "importance",
+    "photometry",
+    "distribution",
     "transfer",
     "transfer_results",
     "guides",
@@ -351,7 +355,17 @@ layouts! {
     luxfer_illuminance_grid: struct_size origin across down normal reserved;
     luxfer_illuminance_report: struct_size points least mean largest mean_error;
     luxfer_relight_params: struct_size quantity paths target_error time_budget_ms reserved seed;
-    luxfer_relight_report: struct_size paths scale half_width response background reach reserved error;
+    luxfer_relight_report: struct_size paths scale half_width response background reach reserved error delta_e;
+    luxfer_lamps_params: struct_size group row_tolerance free_colour most evenness tolerance paths target_error
+        time_budget_ms reserved seed;
+    luxfer_lamps_report: struct_size lamps groups goals paths met;
+    luxfer_lamp: struct_size group centre scale half_width;
+    luxfer_lamps_goal: struct_size reach target achieved half_width background;
+    luxfer_lamps_response: struct_size reserved mean half_width;
+    luxfer_importance_params: struct_size width height quantity paths target_error time_budget_ms reserved seed;
+    luxfer_importance_report: struct_size paths response half_width band_error;
+    luxfer_glare_report: struct_size sources ugr background threshold solid_angle;
+    luxfer_distribution_report: struct_size planes angles reserved flux lamp_flux watts size;
     luxfer_transfer_params: struct_size max_texels plane_distance white_luminance target rectify features plane lights
         emission relight render;
     luxfer_transfer_report: struct_size fixtures seconds view_error depth_confidence plane_error lights_error

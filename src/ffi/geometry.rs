@@ -75,7 +75,7 @@ fn corners(place: *const f64, name: &str) -> Result<[DVec2; 4]> {
 }
 
 /// `N` numbers of the caller's, at any alignment.
-fn numbers<const N: usize>(place: *const f64, name: &str) -> Result<[f64; N]> {
+pub(super) fn numbers<const N: usize>(place: *const f64, name: &str) -> Result<[f64; N]> {
     let bytes = bytes(place.cast(), N * size_of::<f64>(), name)?;
     let mut numbers = [0.0; N];
     for (number, raw) in numbers.iter_mut().zip(bytes.chunks_exact(size_of::<f64>())) {

@@ -92,6 +92,16 @@ unsafe impl Versioned for luxfer_illuminance_grid {
     }
 }
 
+impl luxfer_illuminance_grid {
+    /// Origin, across, down and normal.
+    pub(super) fn vectors(&self) -> Result<[Vec3; 4]> {
+        if self.reserved != 0 {
+            return Err(Error::argument(format!("grid.reserved is {}; it must be 0", self.reserved)));
+        }
+        Ok([self.origin, self.across, self.down, self.normal].map(Vec3::from_array))
+    }
+}
+
 /// The illuminance on the whole, in lux. Set struct_size before the call.
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -188,11 +198,7 @@ pub unsafe extern "C" fn luxfer_illuminance_start_grid(
     job: *mut *mut luxfer_job,
 ) -> luxfer_status {
     enter(illuminance, |stage| {
-        let grid = params::read(grid)?;
-        if grid.reserved != 0 {
-            return Err(Error::argument(format!("grid.reserved is {}; it must be 0", grid.reserved)));
-        }
-        let [origin, across, down, normal] = [grid.origin, grid.across, grid.down, grid.normal].map(Vec3::from_array);
+        let [origin, across, down, normal] = params::read(grid)?.vectors()?;
         start(stage, Place::Grid { origin, across, down, normal }, params, job)
     })
 }

@@ -82,13 +82,8 @@ unsafe impl Versioned for luxfer_relight_params {
 
 impl luxfer_relight_params {
     pub(super) fn params(&self) -> Result<relight::Params> {
-        let quantity = match self.quantity {
-            LUXFER_QUANTITY_OUTGOING => Quantity::Outgoing,
-            LUXFER_QUANTITY_INCIDENT => Quantity::Incident,
-            other => return Err(Error::argument(format!("quantity is {other}; it must be a LUXFER_QUANTITY_ value"))),
-        };
         Ok(relight::Params {
-            quantity,
+            quantity: quantity(self.quantity)?,
             paths: self.paths,
             target_error: self.target_error,
             time_budget_ms: self.time_budget_ms,
@@ -119,15 +114,18 @@ pub struct luxfer_relight_report {
     pub reserved: u32,
     /// The widest relative half-width among the channels that met their target.
     pub error: f64,
+    /// How far the target's colour may be off: 95 % of errors are below this CIEDE2000 difference, seen at the exposure
+    /// that shows the target as a middle grey.
+    pub delta_e: f64,
 }
 
 // SAFETY: plain numbers.
 unsafe impl Versioned for luxfer_relight_report {
     const NAME: &'static str = "luxfer_relight_report";
-    const SIZES: &'static [usize] = &[128];
+    const SIZES: &'static [usize] = &[136];
     fn defaults() -> Self {
         Self {
-            struct_size: 128,
+            struct_size: 136,
             paths: 0,
             scale: [0.0; 3],
             half_width: [0.0; 3],
@@ -136,7 +134,16 @@ unsafe impl Versioned for luxfer_relight_report {
             reach: [0; 3],
             reserved: 0,
             error: 0.0,
+            delta_e: 0.0,
         }
+    }
+}
+
+pub(super) fn quantity(value: luxfer_quantity) -> Result<Quantity> {
+    match value {
+        LUXFER_QUANTITY_OUTGOING => Ok(Quantity::Outgoing),
+        LUXFER_QUANTITY_INCIDENT => Ok(Quantity::Incident),
+        other => Err(Error::argument(format!("quantity is {other}; it must be a LUXFER_QUANTITY_ value"))),
     }
 }
 
@@ -159,6 +166,7 @@ impl luxfer_relight_report {
             background: solution.background.to_array(),
             reach: solution.reach.map(reach_value),
             error: solution.error(),
+            delta_e: solution.delta_e,
             ..Self::defaults()
         }
     }

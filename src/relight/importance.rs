@@ -111,6 +111,11 @@ impl Importance {
         }
     }
 
+    /// Cells along u and v.
+    pub fn size(&self) -> (usize, usize) {
+        (self.width, self.height)
+    }
+
     /// The map as an image of `width × height` cells: the target's mean radiance where a cell emits 1 cd/m².
     pub fn image(&self) -> Result<Image> {
         let mut image = Image::new(self.width, self.height, 3)?;

@@ -3,7 +3,7 @@
 use crate::error::{Error, Result};
 use crate::image::{Image, try_vec};
 use crate::scene::Scene;
-use glam::{Vec2, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 
 /// Lamps of an emission, counted from 0.
 #[derive(Clone, Debug, PartialEq)]
@@ -136,6 +136,41 @@ impl Lamps {
         &self.centres
     }
 
+    /// The group of each lamp, where a group is all lamps together.
+    pub fn together(&self) -> (Vec<u32>, usize) {
+        (vec![0; self.count], 1)
+    }
+
+    /// The group of each lamp, where every lamp is one.
+    pub fn each(&self) -> (Vec<u32>, usize) {
+        ((0..self.count as u32).collect(), self.count)
+    }
+
+    /// A texture whose lamps are multiplied, each with its own scale; what belongs to no lamp stays.
+    ///
+    /// # Errors
+    /// `InvalidArgument` unless the lamps are texels of a texture of this size, and there is a scale for each.
+    pub fn scaled(&self, texture: &Image, scale: &[DVec3]) -> Result<Image> {
+        let fits = match &self.division {
+            Division::Texels { width, height } => (*width, *height) == (texture.width, texture.height),
+            Division::Triangles { .. } => false,
+        };
+        if !fits || scale.len() != self.count {
+            return Err(Error::argument("the lamps are not those of this texture"));
+        }
+        let mut scaled = Image::new(texture.width, texture.height, 3)?;
+        for (i, pixel) in scaled.data.chunks_exact_mut(3).enumerate() {
+            let colour = match *texture.pixel(i % texture.width, i / texture.width) {
+                [r, g, b, ..] => Vec3::new(r, g, b),
+                [v, ..] => Vec3::splat(v),
+                [] => Vec3::ZERO,
+            };
+            let scale = (self.labels[i] as usize).checked_sub(1).map_or(Vec3::ONE, |lamp| scale[lamp].as_vec3());
+            (colour * scale).write_to_slice(pixel);
+        }
+        Ok(scaled)
+    }
+
     /// Groups the lamps that lie in a row: whose centres differ by less than `tolerance` along an axis. Returns the group
     /// of each lamp and the number of groups; groups are numbered along the axis.
     pub fn rows(&self, axis: usize, tolerance: f32) -> (Vec<u32>, usize) {
@@ -208,6 +243,13 @@ mod tests {
         assert_eq!([at(-0.5, 1.5), at(5.5, 0.5)], [Some(1), Some(0)]);
         assert!((lamps.centres()[1] - Vec3::new(0.9, 2.0 / 3.0, 0.0)).length() < 1e-6);
         assert!(Lamps::of_texture(&Image::new(3, 3, 3).unwrap()).is_err());
+        // Each is multiplied for itself.
+        let scaled = lamps.scaled(&image, &[DVec3::splat(2.0), DVec3::new(1.0, 0.0, 3.0)]).unwrap();
+        assert_eq!(
+            [scaled.rgb(0, 0), scaled.rgb(4, 2), scaled.rgb(2, 0)],
+            [Vec3::splat(2.0), Vec3::new(1.0, 0.0, 3.0), Vec3::ZERO]
+        );
+        assert!(lamps.scaled(&image, &[DVec3::ONE]).is_err());
 
         let strip = |x: f32| [Vec3::X * x, Vec3::X * (x + 1.0), Vec3::new(x, 1.0, 0.0)];
         let positions: Vec<Vec3> = [0.0, 10.0, 20.0].into_iter().flat_map(strip).collect();

@@ -25,7 +25,7 @@ mod transport;
 
 pub use estimate::BATCHES;
 pub use groups::{Colour, GroupParams, GroupSolution, Outcome, solve_groups};
-pub use importance::{Importance, MapParams};
+pub use importance::{Importance, MapParams, Response};
 pub use lamps::Lamps;
 pub use responses::{Estimate, Goal, Responses, lamp_responses};
 

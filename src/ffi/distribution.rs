@@ -1,0 +1,221 @@
+//! Luminous intensity distributions
+//!
+//! What a luminaire sends out in which direction, from and to IES (LM-63) and EULUMDAT files. These calls return when they
+//! are done.
+
+use super::context::{Context, luxfer_context};
+use super::guard::enter;
+use super::handle::{self, Handle, Owned, tag};
+use super::params::{Report, Versioned};
+use super::pointer::{Out, bytes, copy_text, text};
+use super::status::luxfer_status;
+use crate::error::{Error, Result};
+use crate::image::io;
+use crate::photometry::{Luminaire, ies, ldt};
+use std::ffi::{c_char, c_void};
+use std::path::Path;
+use std::sync::Arc;
+
+/// A luminous intensity distribution. See luxfer_distribution_load.
+pub struct luxfer_distribution {
+    _opaque: [u8; 0],
+}
+
+/// A file format of distributions: a LUXFER_DISTRIBUTION_ value.
+pub type luxfer_distribution_format = i32;
+/// IES LM-63, type C.
+pub const LUXFER_DISTRIBUTION_IES: luxfer_distribution_format = 0;
+/// EULUMDAT.
+pub const LUXFER_DISTRIBUTION_LDT: luxfer_distribution_format = 1;
+
+/// A distribution on the whole. Set struct_size before the call.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_distribution_report {
+    /// sizeof(luxfer_distribution_report), set by the caller.
+    pub struct_size: u32,
+    /// C planes, and vertical angles of each.
+    pub planes: u32,
+    pub angles: u32,
+    /// 0.
+    pub reserved: u32,
+    /// Luminous flux in lumens: the intensity over all directions.
+    pub flux: f64,
+    /// Rated flux of its lamps in lumens; 0 if the file states none (absolute photometry).
+    pub lamp_flux: f64,
+    /// Electric power in watts; 0 if not known.
+    pub watts: f64,
+    /// Length, width and height of the luminous opening in metres; negative for round ones.
+    pub size: [f64; 3],
+}
+
+// SAFETY: plain numbers.
+unsafe impl Versioned for luxfer_distribution_report {
+    const NAME: &'static str = "luxfer_distribution_report";
+    const SIZES: &'static [usize] = &[64];
+    fn defaults() -> Self {
+        Self {
+            struct_size: 64,
+            planes: 0,
+            angles: 0,
+            reserved: 0,
+            flux: 0.0,
+            lamp_flux: 0.0,
+            watts: 0.0,
+            size: [0.0; 3],
+        }
+    }
+}
+
+pub(super) struct Distribution {
+    context: Arc<Context>,
+    luminaire: Luminaire,
+}
+
+impl Owned for Distribution {
+    fn context(&self) -> &Arc<Context> {
+        &self.context
+    }
+}
+
+impl Handle for luxfer_distribution {
+    type Object = Distribution;
+    const TAG: u64 = tag(b"lux.dist");
+    const NAME: &'static str = "luxfer_distribution";
+}
+
+/// The format that a path's extension names.
+fn format_of(path: &Path) -> Result<luxfer_distribution_format> {
+    let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
+    match extension.as_str() {
+        "ies" => Ok(LUXFER_DISTRIBUTION_IES),
+        "ldt" => Ok(LUXFER_DISTRIBUTION_LDT),
+        _ => Err(Error::argument(format!("{} ends neither in .ies nor in .ldt", path.display()))),
+    }
+}
+
+fn read(bytes: &[u8], format: luxfer_distribution_format) -> Result<Luminaire> {
+    match format {
+        LUXFER_DISTRIBUTION_IES => ies::read(bytes),
+        LUXFER_DISTRIBUTION_LDT => ldt::read(bytes),
+        _ => Err(Error::argument(format!("format is {format}; it must be a LUXFER_DISTRIBUTION_ value"))),
+    }
+}
+
+/// Loads an .ies or .ldt file; path is UTF-8. The caller releases *distribution. Any thread.
+/// LUXFER_IO if the file cannot be read, LUXFER_FORMAT, with the line, if it is malformed, LUXFER_UNSUPPORTED for types A and
+/// B of IES, LUXFER_INVALID_ARGUMENT for another extension.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_distribution_load(
+    context: *mut luxfer_context,
+    path: *const c_char,
+    distribution: *mut *mut luxfer_distribution,
+) -> luxfer_status {
+    enter(context, |object| {
+        let out = Out::new(distribution, "distribution")?;
+        let path = text(path, "path")?;
+        let format = format_of(Path::new(path))?;
+        let luminaire = read(&io::read_file(Path::new(path))?, format).map_err(|e| e.within(path))?;
+        out.set(handle::give(Arc::new(Distribution { context: object.context().clone(), luminaire })));
+        Ok(())
+    })
+}
+
+/// Loads from the size bytes of a file held in memory; format is a LUXFER_DISTRIBUTION_ value. Otherwise as
+/// luxfer_distribution_load.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_distribution_load_memory(
+    context: *mut luxfer_context,
+    data: *const c_void,
+    size: usize,
+    format: luxfer_distribution_format,
+    distribution: *mut *mut luxfer_distribution,
+) -> luxfer_status {
+    enter(context, |object| {
+        let out = Out::new(distribution, "distribution")?;
+        let luminaire = read(bytes(data.cast(), size, "data")?, format)?;
+        out.set(handle::give(Arc::new(Distribution { context: object.context().clone(), luminaire })));
+        Ok(())
+    })
+}
+
+/// Saves to an .ies or .ldt file; path is UTF-8. An existing file is replaced only by a complete one. Any thread.
+/// LUXFER_INVALID_ARGUMENT for another extension, LUXFER_IO if the file cannot be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_distribution_save(
+    distribution: *mut luxfer_distribution,
+    path: *const c_char,
+) -> luxfer_status {
+    enter(distribution, |object| {
+        let path = Path::new(text(path, "path")?);
+        let file = match format_of(path)? {
+            LUXFER_DISTRIBUTION_IES => ies::write(&object.luminaire)?,
+            _ => ldt::write(&object.luminaire)?,
+        };
+        io::write_file(path, file.as_bytes())
+    })
+}
+
+/// Tells the distribution on the whole. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_distribution_get_report(
+    distribution: *mut luxfer_distribution,
+    report: *mut luxfer_distribution_report,
+) -> luxfer_status {
+    enter(distribution, |object| {
+        let l = &object.luminaire;
+        Report::new(report)?.set(luxfer_distribution_report {
+            planes: l.planes.len() as u32,
+            angles: l.gammas.len() as u32,
+            flux: l.flux(),
+            lamp_flux: l.lamp_flux,
+            watts: l.watts,
+            size: l.size,
+            ..luxfer_distribution_report::defaults()
+        });
+        Ok(())
+    })
+}
+
+/// Copies the luminaire's name, zero-terminated, into buffer of capacity bytes, cut if it is longer. *needed, unless NULL,
+/// receives the capacity for all of it. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_distribution_get_name(
+    distribution: *mut luxfer_distribution,
+    buffer: *mut c_char,
+    capacity: usize,
+    needed: *mut usize,
+) -> luxfer_status {
+    enter(distribution, |object| copy_text(&object.luminaire.name, buffer, capacity, needed))
+}
+
+/// Tells the luminous intensity in candela in a direction, in degrees: c around the axis, gamma from straight down at 0 to
+/// straight up at 180. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_distribution_get_intensity(
+    distribution: *mut luxfer_distribution,
+    c: f64,
+    gamma: f64,
+    candela: *mut f64,
+) -> luxfer_status {
+    enter(distribution, |object| {
+        let out = Out::new(candela, "candela")?;
+        if !(c.is_finite() && gamma.is_finite()) {
+            return Err(Error::argument(format!("the direction is ({c}, {gamma}); both angles must be finite")));
+        }
+        out.set(object.luminaire.intensity(c, gamma));
+        Ok(())
+    })
+}
+
+/// Adds a reference. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_distribution_retain(distribution: *mut luxfer_distribution) -> luxfer_status {
+    handle::retain(distribution)
+}
+
+/// Gives a reference back. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_distribution_release(distribution: *mut luxfer_distribution) -> luxfer_status {
+    handle::release(distribution)
+}

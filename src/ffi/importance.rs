@@ -1,0 +1,283 @@
+//! Importance
+//!
+//! What each point of an emission's surface means to a target: traced once, after which the light of any texture there,
+//! however it is scaled, turned and shifted, is told at once, with a confidence interval.
+
+use super::context::luxfer_context;
+use super::geometry::numbers;
+use super::guard::{enter, guard};
+use super::handle::{self, Handle, Owned, tag};
+use super::image::{Pixels, luxfer_image};
+use super::job::luxfer_job;
+use super::params::{self, Report, Versioned};
+use super::pointer::Out;
+use super::relight::{LUXFER_QUANTITY_OUTGOING, luxfer_quantity, luxfer_relight_report, quantity};
+use super::scene::{SceneObject, colour, luxfer_scene, missing};
+use super::stage::{Stage, need};
+use super::status::luxfer_status;
+use crate::error::{Error, Result};
+use crate::job::Monitor;
+use crate::relight::{self, Goal, Importance, MapParams, Place};
+use crate::scene::Texture;
+use glam::{DMat3, Mat3, Vec3};
+use std::sync::Arc;
+
+/// A map of importance. See luxfer_importance_create.
+pub struct luxfer_importance {
+    _opaque: [u8; 0],
+}
+
+/// Settings of the map. Fill them with luxfer_importance_params_init.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_importance_params {
+    /// sizeof(luxfer_importance_params), set by luxfer_importance_params_init.
+    pub struct_size: u32,
+    /// Cells along u and v of the surface, each in [1, 1024]; default 64.
+    pub width: u32,
+    pub height: u32,
+    /// LUXFER_QUANTITY_ value; default LUXFER_QUANTITY_OUTGOING.
+    pub quantity: luxfer_quantity,
+    /// Most paths to trace, in [1024, 2^30]; default 2^20.
+    pub paths: u32,
+    /// Stop when the response to an even emission is known to this share, in [0, 1]; default 0.01; 0 = never.
+    pub target_error: f32,
+    /// Stop after this many milliseconds; default 0: never.
+    pub time_budget_ms: u32,
+    /// Must be 0.
+    pub reserved: u32,
+    /// Seed of the paths; default 1.
+    pub seed: u64,
+}
+
+// SAFETY: plain numbers.
+unsafe impl Versioned for luxfer_importance_params {
+    const NAME: &'static str = "luxfer_importance_params";
+    const SIZES: &'static [usize] = &[40];
+    fn defaults() -> Self {
+        let d = MapParams::default();
+        Self {
+            struct_size: 40,
+            width: d.width as u32,
+            height: d.height as u32,
+            quantity: LUXFER_QUANTITY_OUTGOING,
+            paths: d.tracing.paths,
+            target_error: d.tracing.target_error,
+            time_budget_ms: d.tracing.time_budget_ms,
+            reserved: 0,
+            seed: d.tracing.seed,
+        }
+    }
+}
+
+/// What a texture means to the target. Set struct_size before the call.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_importance_report {
+    /// sizeof(luxfer_importance_report), set by the caller.
+    pub struct_size: u32,
+    /// Paths behind the map.
+    pub paths: u32,
+    /// Mean radiance of the target under the texture, in cd/m² per channel as the texture's values are.
+    pub response: [f64; 3],
+    /// Half-widths of the 95 % confidence intervals of response.
+    pub half_width: [f64; 3],
+    /// What cells of twice the side change, noise included; the cells themselves are off by about a third of it.
+    pub band_error: [f64; 3],
+}
+
+// SAFETY: plain numbers.
+unsafe impl Versioned for luxfer_importance_report {
+    const NAME: &'static str = "luxfer_importance_report";
+    const SIZES: &'static [usize] = &[80];
+    fn defaults() -> Self {
+        Self { struct_size: 80, paths: 0, response: [0.0; 3], half_width: [0.0; 3], band_error: [0.0; 3] }
+    }
+}
+
+#[derive(Clone, Default)]
+pub(super) struct Inputs {
+    emission: Option<(Arc<SceneObject>, u32, u32)>,
+}
+
+impl Handle for luxfer_importance {
+    type Object = Stage<Inputs, Importance>;
+    const TAG: u64 = tag(b"lux.impo");
+    const NAME: &'static str = "luxfer_importance";
+}
+
+/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_importance_params_init(
+    params: *mut luxfer_importance_params,
+    size: usize,
+) -> luxfer_status {
+    guard(|| params::init(params, size))
+}
+
+/// Creates the stage. The caller releases *importance. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_importance_create(
+    context: *mut luxfer_context,
+    importance: *mut *mut luxfer_importance,
+) -> luxfer_status {
+    enter(context, |object| {
+        let out = Out::new(importance, "importance")?;
+        out.set(handle::give(Stage::new(object.context(), Inputs::default())));
+        Ok(())
+    })
+}
+
+/// Sets the scene, the material of the surfaces that will emit, which need texture coordinates, and the mesh that is the
+/// target; what of it emits in the scene as it is is left out. Any thread.
+/// LUXFER_NOT_FOUND if the scene has no such material or mesh.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_importance_set_scene(
+    importance: *mut luxfer_importance,
+    scene: *mut luxfer_scene,
+    material: u32,
+    mesh: u32,
+) -> luxfer_status {
+    enter(importance, |stage| {
+        let scene = handle::borrow_in(stage.context(), scene, "scene")?;
+        let snapshot = scene.snapshot();
+        if material as usize >= snapshot.materials.len() {
+            return Err(missing("material", material, snapshot.materials.len()));
+        }
+        if mesh as usize >= snapshot.meshes.len() {
+            return Err(missing("mesh", mesh, snapshot.meshes.len()));
+        }
+        stage.change(|inputs| {
+            inputs.emission = Some((scene, material, mesh));
+            Ok(())
+        })
+    })
+}
+
+/// Starts a job that traces the map. params may be NULL for the defaults. The caller releases *job. Any thread.
+/// LUXFER_INVALID_OPERATION if the scene is missing or a job runs already. The job may end with LUXFER_INVALID_ARGUMENT if
+/// the scene is not valid, the surfaces have no texture coordinates, or a setting is out of range.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_importance_start(
+    importance: *mut luxfer_importance,
+    params: *const luxfer_importance_params,
+    job: *mut *mut luxfer_job,
+) -> luxfer_status {
+    enter(importance, |stage| {
+        let p = params::read(params)?;
+        if p.reserved != 0 {
+            return Err(Error::argument(format!("reserved is {}; it must be 0", p.reserved)));
+        }
+        let quantity = quantity(p.quantity)?;
+        let tracing = relight::Params {
+            quantity,
+            paths: p.paths,
+            target_error: p.target_error,
+            time_budget_ms: p.time_budget_ms,
+            seed: p.seed,
+        };
+        let params = MapParams { width: p.width as usize, height: p.height as usize, tracing };
+        let (object, material, mesh) = need(&stage.inputs().emission, "luxfer_importance_set_scene")?.clone();
+        let scene = object.snapshot();
+        stage.start(job, move |_, _, job| {
+            let count = scene.meshes.get(mesh as usize).map_or(0, |m| m.triangles.len());
+            let triangles: Vec<_> = (0..count).map(|t| (mesh as usize, t)).collect();
+            let goal = Goal { place: Place::Surface(&triangles), quantity, target: Vec3::ONE, weight: 1.0 };
+            Importance::trace(&scene, material as usize, &goal, &params, job)
+        })
+    })
+}
+
+/// Gets the map: what the target's mean radiance would be, per channel, if a cell emitted 1 cd/m² and nothing else did. The
+/// caller releases *image. Any thread.
+/// LUXFER_NOT_READY before a job has succeeded.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_importance_get_image(
+    importance: *mut luxfer_importance,
+    image: *mut *mut luxfer_image,
+) -> luxfer_status {
+    enter(importance, |stage| {
+        let out = Out::new(image, "image")?;
+        let map = stage.output()?;
+        let (width, height) = map.size();
+        out.set(handle::give(Pixels::counted(stage.context(), width, height, 3, || map.image())?));
+        Ok(())
+    })
+}
+
+/// Tells what a texture (linear, in cd/m²; it repeats) means to the target. placement leads from the surface's texture
+/// coordinates to those of the texture: 3 x 3, row by row, the last row 0 0 1; NULL for where they are the same. Takes some
+/// milliseconds. Any thread.
+/// LUXFER_NOT_READY before a job has succeeded, LUXFER_INVALID_ARGUMENT if placement is not finite.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_importance_respond(
+    importance: *mut luxfer_importance,
+    texture: *mut luxfer_image,
+    placement: *const f64,
+    report: *mut luxfer_importance_report,
+) -> luxfer_status {
+    enter(importance, |stage| {
+        let out = Report::new(report)?;
+        let (map, response) = respond(stage, texture, placement)?;
+        out.set(luxfer_importance_report {
+            paths: map.paths,
+            response: response.light.mean.to_array(),
+            half_width: response.light.half_width().to_array(),
+            band_error: response.band_error.to_array(),
+            ..luxfer_importance_report::defaults()
+        });
+        Ok(())
+    })
+}
+
+/// Solves for what to multiply a texture with, so that the target has a mean radiance, in cd/m² per channel, each finite and
+/// >= 0, as luxfer_relight does it by tracing; texture and placement as above. Any thread.
+/// LUXFER_NOT_READY before a job has succeeded, LUXFER_UNREACHABLE if no light of the texture can reach the target.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_importance_solve(
+    importance: *mut luxfer_importance,
+    texture: *mut luxfer_image,
+    placement: *const f64,
+    red: f32,
+    green: f32,
+    blue: f32,
+    report: *mut luxfer_relight_report,
+) -> luxfer_status {
+    enter(importance, |stage| {
+        let out = Report::new(report)?;
+        let target = colour("target", red, green, blue)?;
+        let (map, response) = respond(stage, texture, placement)?;
+        out.set(luxfer_relight_report::new(&map.solve(&response, target)?));
+        Ok(())
+    })
+}
+
+fn respond(
+    stage: &Stage<Inputs, Importance>,
+    texture: *mut luxfer_image,
+    placement: *const f64,
+) -> Result<(Arc<Importance>, relight::Response)> {
+    let map = stage.output()?;
+    let image = handle::borrow_in(stage.context(), texture, "texture")?;
+    let placement = if placement.is_null() {
+        Mat3::IDENTITY
+    } else {
+        DMat3::from_cols_array(&numbers(placement, "placement")?).transpose().as_mat3()
+    };
+    let texture = Texture::new("texture", image.image().clone());
+    let monitor = Monitor::default();
+    let response = stage.context().pool.run(|| map.respond(&texture, &placement, monitor.job()))?;
+    Ok((map, response))
+}
+
+/// Adds a reference. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_importance_retain(importance: *mut luxfer_importance) -> luxfer_status {
+    handle::retain(importance)
+}
+
+/// Gives a reference back; a job that runs goes on. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_importance_release(importance: *mut luxfer_importance) -> luxfer_status {
+    handle::release(importance)
+}

@@ -1,0 +1,598 @@
+//! Lamps
+//!
+//! Powers of the lamps of an emission, within bounds, that come nearest to several goals: surfaces and calculation grids
+//! that should have a given light. One set of paths per goal measures its response to every lamp, thousands of them at
+//! once.
+
+use super::context::luxfer_context;
+use super::guard::{enter, guard};
+use super::handle::{self, Handle, Owned, tag};
+use super::illuminance::luxfer_illuminance_grid;
+use super::image::{Pixels, luxfer_image};
+use super::job::luxfer_job;
+use super::params::{self, Report, Versioned};
+use super::pointer::{Out, copy_text};
+use super::relight::{luxfer_quantity, luxfer_reach, quantity, reach_value};
+use super::scene::{SceneObject, colour, luxfer_scene, missing};
+use super::stage::{Stage, need};
+use super::status::luxfer_status;
+use crate::error::{Error, ErrorKind, Result};
+use crate::relight::{
+    self, Colour, Estimate, Goal, GroupParams, GroupSolution, Lamps, Place, Quantity, Responses, lamp_responses,
+    solve_groups,
+};
+use crate::scene::Scene;
+use glam::{DVec3, Vec3};
+use std::ffi::c_char;
+use std::sync::Arc;
+
+/// A calculation of lamps. See luxfer_lamps_create.
+pub struct luxfer_lamps {
+    _opaque: [u8; 0],
+}
+
+/// Which lamps share their power: a LUXFER_GROUP_ value. A lamp is a connected patch of the emission's texture, or, where it
+/// has none, a connected piece of its meshes.
+pub type luxfer_group = i32;
+/// All lamps.
+pub const LUXFER_GROUP_ALL: luxfer_group = 0;
+/// Every lamp for itself.
+pub const LUXFER_GROUP_EACH: luxfer_group = 1;
+/// Those whose centres agree in their first coordinate: u of a texture, x of meshes.
+pub const LUXFER_GROUP_FIRST: luxfer_group = 2;
+/// Those whose centres agree in their second coordinate: v of a texture, y of meshes.
+pub const LUXFER_GROUP_SECOND: luxfer_group = 3;
+/// Those whose centres agree in their third coordinate: z of meshes.
+pub const LUXFER_GROUP_THIRD: luxfer_group = 4;
+
+/// Settings of the calculation. Fill them with luxfer_lamps_params_init.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_lamps_params {
+    /// sizeof(luxfer_lamps_params), set by luxfer_lamps_params_init.
+    pub struct_size: u32,
+    /// LUXFER_GROUP_ value; default LUXFER_GROUP_EACH.
+    pub group: luxfer_group,
+    /// Centres agree whose neighbours along the coordinate are closer than this, >= 0; default 0.01.
+    pub row_tolerance: f32,
+    /// 1: each channel of a group is solved for itself; 0: its power alone; default 0.
+    pub free_colour: u32,
+    /// Largest multiplier of a group, >= 0; default infinity.
+    pub most: f64,
+    /// How much lamps that differ weigh against missing the goals, in [1e-9, 1e3]; default 1e-6.
+    pub evenness: f64,
+    /// A goal is met when it is missed by no more than this share of itself, in [1e-6, 1], or its noise; default 0.01.
+    pub tolerance: f64,
+    /// Most paths to trace for a goal, in [1024, 2^30]; default 2^20.
+    pub paths: u32,
+    /// Stop when a goal's response to all lamps together is known to this share, in [0, 1]; default 0.01; 0 = never.
+    pub target_error: f32,
+    /// Stop after this many milliseconds; default 0: never.
+    pub time_budget_ms: u32,
+    /// Must be 0.
+    pub reserved: u32,
+    /// Seed of the paths; default 1.
+    pub seed: u64,
+}
+
+// SAFETY: plain numbers.
+unsafe impl Versioned for luxfer_lamps_params {
+    const NAME: &'static str = "luxfer_lamps_params";
+    const SIZES: &'static [usize] = &[64];
+    fn defaults() -> Self {
+        let (tracing, groups) = (relight::Params::default(), GroupParams::default());
+        Self {
+            struct_size: 64,
+            group: LUXFER_GROUP_EACH,
+            row_tolerance: 0.01,
+            free_colour: 0,
+            most: f64::INFINITY,
+            evenness: groups.evenness,
+            tolerance: groups.tolerance,
+            paths: tracing.paths,
+            target_error: tracing.target_error,
+            time_budget_ms: tracing.time_budget_ms,
+            reserved: 0,
+            seed: tracing.seed,
+        }
+    }
+}
+
+/// The result on the whole. Set struct_size before the call.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_lamps_report {
+    /// sizeof(luxfer_lamps_report), set by the caller.
+    pub struct_size: u32,
+    /// Number of lamps, of groups, and of goals.
+    pub lamps: u32,
+    pub groups: u32,
+    pub goals: u32,
+    /// Paths traced for each goal.
+    pub paths: u32,
+    /// 1 if all goals are met; 0 if not: luxfer_lamps_get_reason tells why.
+    pub met: u32,
+}
+
+// SAFETY: plain integers.
+unsafe impl Versioned for luxfer_lamps_report {
+    const NAME: &'static str = "luxfer_lamps_report";
+    const SIZES: &'static [usize] = &[24];
+    fn defaults() -> Self {
+        Self { struct_size: 24, lamps: 0, groups: 0, goals: 0, paths: 0, met: 0 }
+    }
+}
+
+/// One lamp. Set struct_size before the call.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_lamp {
+    /// sizeof(luxfer_lamp), set by the caller.
+    pub struct_size: u32,
+    /// The group it is in.
+    pub group: u32,
+    /// Its centre: texture coordinates and 0, or metres.
+    pub centre: [f64; 3],
+    /// What to multiply its emission with, per channel, >= 0.
+    pub scale: [f64; 3],
+    /// Half-widths of the 95 % confidence intervals of scale.
+    pub half_width: [f64; 3],
+}
+
+// SAFETY: plain numbers.
+unsafe impl Versioned for luxfer_lamp {
+    const NAME: &'static str = "luxfer_lamp";
+    const SIZES: &'static [usize] = &[80];
+    fn defaults() -> Self {
+        Self { struct_size: 80, group: 0, centre: [0.0; 3], scale: [0.0; 3], half_width: [0.0; 3] }
+    }
+}
+
+/// What a goal gets. Set struct_size before the call.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_lamps_goal {
+    /// sizeof(luxfer_lamps_goal), set by the caller.
+    pub struct_size: u32,
+    /// LUXFER_REACH_ value of each channel.
+    pub reach: [luxfer_reach; 3],
+    /// Mean radiance asked for, in cd/m²; illuminance / pi for a grid.
+    pub target: [f64; 3],
+    /// Mean radiance under the powers found.
+    pub achieved: [f64; 3],
+    /// Half-widths of the 95 % confidence intervals of achieved.
+    pub half_width: [f64; 3],
+    /// Mean radiance under all other light.
+    pub background: [f64; 3],
+}
+
+// SAFETY: plain numbers.
+unsafe impl Versioned for luxfer_lamps_goal {
+    const NAME: &'static str = "luxfer_lamps_goal";
+    const SIZES: &'static [usize] = &[112];
+    fn defaults() -> Self {
+        let zero = [0.0; 3];
+        Self { struct_size: 112, reach: [0; 3], target: zero, achieved: zero, half_width: zero, background: zero }
+    }
+}
+
+/// What one lamp means to one goal. Set struct_size before the call.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_lamps_response {
+    /// sizeof(luxfer_lamps_response), set by the caller.
+    pub struct_size: u32,
+    /// 0.
+    pub reserved: u32,
+    /// Mean radiance of the goal under the lamp as it is, in cd/m² per channel.
+    pub mean: [f64; 3],
+    /// Half-widths of the 95 % confidence intervals of mean.
+    pub half_width: [f64; 3],
+}
+
+// SAFETY: plain numbers.
+unsafe impl Versioned for luxfer_lamps_response {
+    const NAME: &'static str = "luxfer_lamps_response";
+    const SIZES: &'static [usize] = &[56];
+    fn defaults() -> Self {
+        Self { struct_size: 56, reserved: 0, mean: [0.0; 3], half_width: [0.0; 3] }
+    }
+}
+
+#[derive(Clone, Default)]
+pub(super) struct Inputs {
+    emission: Option<(Arc<SceneObject>, u32)>,
+    goals: Vec<Aim>,
+}
+
+/// A goal as the host has set it.
+#[derive(Clone)]
+struct Aim {
+    place: Where,
+    quantity: Quantity,
+    target: Vec3,
+    weight: f64,
+}
+
+#[derive(Clone)]
+enum Where {
+    Mesh(u32),
+    Grid { origin: Vec3, across: Vec3, down: Vec3, normal: Vec3 },
+}
+
+pub(super) struct Output {
+    scene: Arc<Scene>,
+    material: usize,
+    lamps: Lamps,
+    group_of: Vec<u32>,
+    responses: Responses,
+    targets: Vec<Vec3>,
+    solution: GroupSolution,
+}
+
+impl Handle for luxfer_lamps {
+    type Object = Stage<Inputs, Output>;
+    const TAG: u64 = tag(b"lux.lamp");
+    const NAME: &'static str = "luxfer_lamps";
+}
+
+/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_lamps_params_init(params: *mut luxfer_lamps_params, size: usize) -> luxfer_status {
+    guard(|| params::init(params, size))
+}
+
+/// Creates the stage. The caller releases *lamps. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_lamps_create(
+    context: *mut luxfer_context,
+    lamps: *mut *mut luxfer_lamps,
+) -> luxfer_status {
+    enter(context, |object| {
+        Out::new(lamps, "lamps")?.set(handle::give(Stage::new(object.context(), Inputs::default())));
+        Ok(())
+    })
+}
+
+/// Sets the scene and the emitting material whose lamps are solved for, at the strength that the solution will multiply;
+/// forgets the goals. Any thread.
+/// LUXFER_NOT_FOUND if the scene has no such material.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_lamps_set_scene(
+    lamps: *mut luxfer_lamps,
+    scene: *mut luxfer_scene,
+    material: u32,
+) -> luxfer_status {
+    enter(lamps, |stage| {
+        let scene = handle::borrow_in(stage.context(), scene, "scene")?;
+        let materials = scene.snapshot().materials.len();
+        if material as usize >= materials {
+            return Err(missing("material", material, materials));
+        }
+        stage.change(|inputs| {
+            *inputs = Inputs { emission: Some((scene, material)), goals: Vec::new() };
+            Ok(())
+        })
+    })
+}
+
+/// Adds a goal: the mean radiance a mesh should have, in cd/m² per channel, each finite and >= 0; quantity is a
+/// LUXFER_QUANTITY_ value; weight, >= 0, is what missing it weighs beside the other goals. Any thread.
+/// LUXFER_NOT_FOUND if the scene has no such mesh, LUXFER_INVALID_OPERATION before luxfer_lamps_set_scene.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_lamps_add_mesh(
+    lamps: *mut luxfer_lamps,
+    mesh: u32,
+    quantity: luxfer_quantity,
+    red: f32,
+    green: f32,
+    blue: f32,
+    weight: f64,
+) -> luxfer_status {
+    enter(lamps, |stage| {
+        let (quantity, target) = (self::quantity(quantity)?, colour("target", red, green, blue)?);
+        add(stage, Aim { place: Where::Mesh(mesh), quantity, target, weight })
+    })
+}
+
+/// Adds a goal: the mean illuminance in lux that a calculation grid should have, of white light; weight as above. grid may
+/// be NULL for its default. Any thread.
+/// LUXFER_INVALID_ARGUMENT if lux is not finite or negative, LUXFER_INVALID_OPERATION before luxfer_lamps_set_scene.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_lamps_add_grid(
+    lamps: *mut luxfer_lamps,
+    grid: *const luxfer_illuminance_grid,
+    lux: f32,
+    weight: f64,
+) -> luxfer_status {
+    enter(lamps, |stage| {
+        let [origin, across, down, normal] = params::read(grid)?.vectors()?;
+        let target = colour("lux", lux, lux, lux)? / std::f32::consts::PI;
+        let place = Where::Grid { origin, across, down, normal };
+        add(stage, Aim { place, quantity: Quantity::Incident, target, weight })
+    })
+}
+
+fn add(stage: &Stage<Inputs, Output>, aim: Aim) -> Result<()> {
+    if !(aim.weight >= 0.0 && aim.weight.is_finite()) {
+        return Err(Error::argument(format!("weight is {}; it must be finite and not negative", aim.weight)));
+    }
+    stage.change(|inputs| {
+        let (scene, _) = need(&inputs.emission, "luxfer_lamps_set_scene")?;
+        let meshes = scene.snapshot().meshes.len();
+        if let Where::Mesh(mesh) = aim.place
+            && mesh as usize >= meshes
+        {
+            return Err(missing("mesh", mesh, meshes));
+        }
+        inputs.goals.push(aim);
+        Ok(())
+    })
+}
+
+/// Forgets the goals. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_lamps_clear_goals(lamps: *mut luxfer_lamps) -> luxfer_status {
+    enter(lamps, |stage| {
+        stage.change(|inputs| {
+            inputs.goals.clear();
+            Ok(())
+        })
+    })
+}
+
+/// Starts a job that measures and solves. params may be NULL for the defaults. The caller releases *job. Any thread.
+/// LUXFER_INVALID_OPERATION if the scene or a goal is missing or a job runs already. Goals that cannot be met are no
+/// error: the powers then are the nearest that the bounds allow. The job may end with LUXFER_UNREACHABLE if no goal gets
+/// light from any lamp, LUXFER_INVALID_ARGUMENT if the scene is not valid, the emission has no lamp, or a setting is out of
+/// range.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_lamps_start(
+    lamps: *mut luxfer_lamps,
+    params: *const luxfer_lamps_params,
+    job: *mut *mut luxfer_job,
+) -> luxfer_status {
+    enter(lamps, |stage| {
+        let params = params::read(params)?;
+        params.check()?;
+        let inputs = stage.inputs();
+        let (object, material) = need(&inputs.emission, "luxfer_lamps_set_scene")?.clone();
+        if inputs.goals.is_empty() {
+            return Err(Error::new(
+                ErrorKind::InvalidOperation,
+                "there is no goal: call luxfer_lamps_add_mesh or luxfer_lamps_add_grid before the start",
+            ));
+        }
+        let scene = object.snapshot();
+        stage.start(job, move |inputs, _, job| {
+            let world = object.world(&scene, job.part(0.0, 0.1))?;
+            let lamps = params.lamps(&scene, material as usize)?;
+            let (group_of, groups) = params.groups(&lamps);
+            let triangles: Vec<Vec<(usize, usize)>> = inputs.goals.iter().map(|aim| aim.triangles(&scene)).collect();
+            let goals: Vec<Goal> = inputs.goals.iter().zip(&triangles).map(|(aim, t)| aim.goal(t)).collect();
+            let tracing = params.tracing();
+            let responses = lamp_responses(&world, material as usize, &lamps, &goals, &tracing, job.part(0.1, 0.95))?;
+            let solution = solve_groups(&responses.grouped(&group_of, groups)?, &goals, &params.solving(groups))?;
+            let targets = inputs.goals.iter().map(|aim| aim.target).collect();
+            let material = material as usize;
+            Ok(Output { scene, material, lamps, group_of, responses, targets, solution })
+        })
+    })
+}
+
+impl luxfer_lamps_params {
+    fn check(&self) -> Result<()> {
+        if self.free_colour > 1 || self.reserved != 0 {
+            return Err(Error::argument("free_colour must be 0 or 1, and reserved 0"));
+        }
+        if !(LUXFER_GROUP_ALL..=LUXFER_GROUP_THIRD).contains(&self.group) {
+            return Err(Error::argument(format!("group is {}; it must be a LUXFER_GROUP_ value", self.group)));
+        }
+        if !(self.row_tolerance >= 0.0) {
+            return Err(Error::argument(format!("row_tolerance is {}; it must not be negative", self.row_tolerance)));
+        }
+        Ok(())
+    }
+
+    fn lamps(&self, scene: &Scene, material: usize) -> Result<Lamps> {
+        match scene.materials[material].emission_texture {
+            Some(map) => Lamps::of_texture(&scene.textures[map.texture].image),
+            None => Lamps::of_meshes(scene, material),
+        }
+    }
+
+    fn groups(&self, lamps: &Lamps) -> (Vec<u32>, usize) {
+        match self.group {
+            LUXFER_GROUP_ALL => lamps.together(),
+            LUXFER_GROUP_EACH => lamps.each(),
+            other => lamps.rows((other - LUXFER_GROUP_FIRST) as usize, self.row_tolerance),
+        }
+    }
+
+    fn tracing(&self) -> relight::Params {
+        relight::Params {
+            paths: self.paths,
+            target_error: self.target_error,
+            time_budget_ms: self.time_budget_ms,
+            seed: self.seed,
+            ..relight::Params::default()
+        }
+    }
+
+    fn solving(&self, groups: usize) -> GroupParams {
+        GroupParams {
+            colour: if self.free_colour == 1 { Colour::Free } else { Colour::Kept },
+            most: vec![self.most; groups],
+            evenness: self.evenness,
+            tolerance: self.tolerance,
+        }
+    }
+}
+
+impl Aim {
+    fn triangles(&self, scene: &Scene) -> Vec<(usize, usize)> {
+        match self.place {
+            Where::Mesh(mesh) => {
+                let count = scene.meshes.get(mesh as usize).map_or(0, |m| m.triangles.len());
+                (0..count).map(|t| (mesh as usize, t)).collect()
+            }
+            Where::Grid { .. } => Vec::new(),
+        }
+    }
+
+    fn goal<'a>(&self, triangles: &'a [(usize, usize)]) -> Goal<'a> {
+        let place = match self.place {
+            Where::Mesh(_) => Place::Surface(triangles),
+            Where::Grid { origin, across, down, normal } => Place::Grid { origin, across, down, normal },
+        };
+        Goal { place, quantity: self.quantity, target: self.target, weight: self.weight }
+    }
+}
+
+/// Tells the result on the whole. Any thread.
+/// LUXFER_NOT_READY before a job has succeeded.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_lamps_get_report(
+    lamps: *mut luxfer_lamps,
+    report: *mut luxfer_lamps_report,
+) -> luxfer_status {
+    enter(lamps, |stage| {
+        let out = Report::new(report)?;
+        let o = stage.output()?;
+        out.set(luxfer_lamps_report {
+            lamps: o.lamps.count() as u32,
+            groups: o.solution.scale.len() as u32,
+            goals: o.targets.len() as u32,
+            paths: o.responses.paths,
+            met: u32::from(o.solution.unreachable.is_none()),
+            ..luxfer_lamps_report::defaults()
+        });
+        Ok(())
+    })
+}
+
+/// Tells the power of a lamp. Any thread.
+/// LUXFER_NOT_READY before a job has succeeded, LUXFER_NOT_FOUND if there is no such lamp.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_lamps_get_lamp(
+    lamps: *mut luxfer_lamps,
+    index: u32,
+    lamp: *mut luxfer_lamp,
+) -> luxfer_status {
+    enter(lamps, |stage| {
+        let out = Report::new(lamp)?;
+        let o = stage.output()?;
+        let &group = o.group_of.get(index as usize).ok_or_else(|| missing("lamp", index, o.group_of.len()))?;
+        out.set(luxfer_lamp {
+            group,
+            centre: o.lamps.centres()[index as usize].as_dvec3().to_array(),
+            scale: o.solution.scale[group as usize].to_array(),
+            half_width: o.solution.half_width[group as usize].to_array(),
+            ..luxfer_lamp::defaults()
+        });
+        Ok(())
+    })
+}
+
+/// Tells what a goal gets. Any thread.
+/// LUXFER_NOT_READY before a job has succeeded, LUXFER_NOT_FOUND if there is no such goal.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_lamps_get_goal(
+    lamps: *mut luxfer_lamps,
+    index: u32,
+    goal: *mut luxfer_lamps_goal,
+) -> luxfer_status {
+    enter(lamps, |stage| {
+        let out = Report::new(goal)?;
+        let o = stage.output()?;
+        let i = index as usize;
+        let outcome = o.solution.outcomes.get(i).ok_or_else(|| missing("goal", index, o.targets.len()))?;
+        out.set(luxfer_lamps_goal {
+            reach: outcome.reach.map(reach_value),
+            target: o.targets[i].as_dvec3().to_array(),
+            achieved: outcome.achieved.to_array(),
+            half_width: outcome.half_width.to_array(),
+            background: o.responses.background(i).mean.to_array(),
+            ..luxfer_lamps_goal::defaults()
+        });
+        Ok(())
+    })
+}
+
+/// Tells what a lamp means to a goal, for hosts that mix the light themselves. Any thread.
+/// LUXFER_NOT_READY before a job has succeeded, LUXFER_NOT_FOUND if there is no such goal or lamp.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_lamps_get_response(
+    lamps: *mut luxfer_lamps,
+    goal: u32,
+    lamp: u32,
+    response: *mut luxfer_lamps_response,
+) -> luxfer_status {
+    enter(lamps, |stage| {
+        let out = Report::new(response)?;
+        let o = stage.output()?;
+        if goal as usize >= o.responses.goals() {
+            return Err(missing("goal", goal, o.responses.goals()));
+        }
+        if lamp as usize >= o.responses.lamps() {
+            return Err(missing("lamp", lamp, o.responses.lamps()));
+        }
+        let estimate: Estimate = o.responses.lamp(goal as usize, lamp as usize);
+        out.set(luxfer_lamps_response {
+            mean: estimate.mean.to_array(),
+            half_width: estimate.half_width().to_array(),
+            ..luxfer_lamps_response::defaults()
+        });
+        Ok(())
+    })
+}
+
+/// Copies the reason why the goals are not all met, zero-terminated, into buffer of capacity bytes, cut if it is longer;
+/// empty if they are. *needed, unless NULL, receives the capacity for all of it. Any thread.
+/// LUXFER_NOT_READY before a job has succeeded.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_lamps_get_reason(
+    lamps: *mut luxfer_lamps,
+    buffer: *mut c_char,
+    capacity: usize,
+    needed: *mut usize,
+) -> luxfer_status {
+    enter(lamps, |stage| {
+        let output = stage.output()?;
+        copy_text(output.solution.unreachable.as_deref().unwrap_or(""), buffer, capacity, needed)
+    })
+}
+
+/// Gets the emission's texture with every lamp multiplied by its scale; linear RGB. The caller releases *texture. Any
+/// thread.
+/// LUXFER_NOT_READY before a job has succeeded, LUXFER_NOT_FOUND if the emission has no texture.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_lamps_get_texture(
+    lamps: *mut luxfer_lamps,
+    texture: *mut *mut luxfer_image,
+) -> luxfer_status {
+    enter(lamps, |stage| {
+        let out = Out::new(texture, "texture")?;
+        let o = stage.output()?;
+        let map = o.scene.materials[o.material].emission_texture;
+        let map =
+            map.ok_or_else(|| Error::new(ErrorKind::NotFound, "the emission has no texture: scale its meshes"))?;
+        let image = &o.scene.textures[map.texture].image;
+        let scale: Vec<DVec3> = o.group_of.iter().map(|&g| o.solution.scale[g as usize]).collect();
+        let scaled = Pixels::counted(stage.context(), image.width, image.height, 3, || o.lamps.scaled(image, &scale))?;
+        out.set(handle::give(scaled));
+        Ok(())
+    })
+}
+
+/// Adds a reference. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_lamps_retain(lamps: *mut luxfer_lamps) -> luxfer_status {
+    handle::retain(lamps)
+}
+
+/// Gives a reference back; a job that runs goes on. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_lamps_release(lamps: *mut luxfer_lamps) -> luxfer_status {
+    handle::release(lamps)
+}
