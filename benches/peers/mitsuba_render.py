@@ -154,7 +154,8 @@ def both_sides(glb):
             yield index, behind.astype(np.float32), back, uvs, np.ascontiguousarray(triangles[:, ::-1])
 
 
-def build():
+def build(attach=lambda index, properties: None):
+    """The scene; `attach` may give the mesh of a material more properties."""
     glb = Glb(scene_path)
     position, forward, up, fov = glb.camera()
     scene = {
@@ -178,6 +179,7 @@ def build():
         uvs = uvs[material.get("emissiveTexture", {}).get("texCoord", 0)]
         if light is not None:
             properties["mesh_emitter"] = light
+        attach(index, properties)
         mesh = mi.Mesh(
             f"mesh{i}", len(positions), len(triangles), properties, normals is not None, uvs is not None
         )
@@ -203,18 +205,19 @@ def render(scene, spp, seed):
     return total / spp
 
 
-scene = build()
-dr.set_thread_count(2)
-print(json.dumps({"ready": mi.__version__}), flush=True)
-compiled = set()
-for job in sys.stdin:
-    spp, seed = map(int, job.split())
-    part = min(spp, max(1, WAVEFRONT // (width * height)))
-    if part not in compiled:
-        render(scene, part, 10**6)
-        compiled.add(part)
-    start = time.perf_counter()
-    image = render(scene, spp, seed)
-    seconds = time.perf_counter() - start
-    image.astype(np.float32).tofile(out)
-    print(json.dumps({"spp": spp, "seed": seed, "seconds": seconds}), flush=True)
+if __name__ == "__main__":
+    scene = build()
+    dr.set_thread_count(2)
+    print(json.dumps({"ready": mi.__version__}), flush=True)
+    compiled = set()
+    for job in sys.stdin:
+        spp, seed = map(int, job.split())
+        part = min(spp, max(1, WAVEFRONT // (width * height)))
+        if part not in compiled:
+            render(scene, part, 10**6)
+            compiled.add(part)
+        start = time.perf_counter()
+        image = render(scene, spp, seed)
+        seconds = time.perf_counter() - start
+        image.astype(np.float32).tofile(out)
+        print(json.dumps({"spp": spp, "seed": seed, "seconds": seconds}), flush=True)

@@ -28,6 +28,7 @@
 #pragma once
 
 #include "luxfer/core.hpp"
+#include "luxfer/lighting.hpp"
 #include "luxfer/photo.hpp"
 #include "luxfer/render.hpp"
 #include "luxfer/result.hpp"

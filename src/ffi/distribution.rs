@@ -34,8 +34,9 @@ pub const LUXFER_DISTRIBUTION_LDT: luxfer_distribution_format = 1;
 pub struct luxfer_distribution_report {
     /// sizeof(luxfer_distribution_report), set by the caller.
     pub struct_size: u32,
-    /// C planes, and vertical angles of each.
+    /// C planes.
     pub planes: u32,
+    /// Vertical angles of each plane.
     pub angles: u32,
     /// 0.
     pub reserved: u32,

@@ -104,9 +104,11 @@ unsafe impl Versioned for luxfer_lamps_params {
 pub struct luxfer_lamps_report {
     /// sizeof(luxfer_lamps_report), set by the caller.
     pub struct_size: u32,
-    /// Number of lamps, of groups, and of goals.
+    /// Number of lamps.
     pub lamps: u32,
+    /// Number of groups.
     pub groups: u32,
+    /// Number of goals.
     pub goals: u32,
     /// Paths traced for each goal.
     pub paths: u32,

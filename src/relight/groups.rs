@@ -71,7 +71,7 @@ pub struct GroupSolution {
 pub fn solve_groups(responses: &Responses, goals: &[Goal], params: &GroupParams) -> Result<GroupSolution> {
     check(responses, goals, params)?;
     let system = System { responses, goals, params };
-    let everything = system.means(None);
+    let everything = system.means();
     if everything.rows.iter().flatten().all(|r| *r == DVec3::ZERO) {
         return Err(Error::new(
             ErrorKind::Unreachable,
@@ -80,7 +80,7 @@ pub fn solve_groups(responses: &Responses, goals: &[Goal], params: &GroupParams)
         ));
     }
     let whole = system.solve(&everything)?;
-    let rest = (0..BATCHES).map(|b| system.solve(&system.means(Some(b)))).collect::<Result<Vec<_>>>()?;
+    let rest = (0..BATCHES).map(|b| system.solve(&system.means_without(&everything, b))).collect::<Result<Vec<_>>>()?;
 
     // The jackknife, for every group and channel.
     let half_width = (0..whole.len())
@@ -128,7 +128,7 @@ struct System<'a> {
     params: &'a GroupParams,
 }
 
-/// Mean responses of all batches, or of all but one.
+/// Mean responses.
 struct Measured {
     /// For each goal, of each group.
     rows: Vec<Vec<DVec3>>,
@@ -136,24 +136,37 @@ struct Measured {
 }
 
 impl System<'_> {
-    fn means(&self, left_out: Option<usize>) -> Measured {
-        let groups = self.responses.lamps();
-        let batches = || (0..BATCHES).filter(|b| Some(*b) != left_out);
-        let n = batches().count() as f64;
-        let rows = (0..self.goals.len())
-            .map(|goal| {
-                let mut sums = vec![DVec3::ZERO; groups];
-                for b in batches() {
-                    sums.iter_mut().zip(self.responses.batch(goal, b)).for_each(|(s, r)| *s += *r);
-                }
-                sums.iter_mut().for_each(|s| *s /= n);
-                sums
-            })
-            .collect();
-        let background = (0..self.goals.len())
-            .map(|goal| batches().map(|b| self.responses.background_of_batch(goal, b)).sum::<DVec3>() / n)
-            .collect();
-        Measured { rows, background }
+    /// Of all batches.
+    fn means(&self) -> Measured {
+        let n = BATCHES as f64;
+        let mean = |goal: usize| {
+            let mut sums = vec![DVec3::ZERO; self.responses.lamps()];
+            for b in 0..BATCHES {
+                sums.iter_mut().zip(self.responses.batch(goal, b)).for_each(|(s, r)| *s += *r);
+            }
+            sums.iter_mut().for_each(|s| *s /= n);
+            sums
+        };
+        let background = |goal| (0..BATCHES).map(|b| self.responses.background_of_batch(goal, b)).sum::<DVec3>() / n;
+        let goals = 0..self.goals.len();
+        Measured { rows: goals.clone().map(mean).collect(), background: goals.map(background).collect() }
+    }
+
+    /// Of all batches but one.
+    fn means_without(&self, all: &Measured, batch: usize) -> Measured {
+        // What is left of nothing may be less than nothing by rounding.
+        let rest = |mean: &DVec3, part: DVec3| {
+            let n = BATCHES as f64;
+            ((*mean * n - part) / (n - 1.0)).max(DVec3::ZERO)
+        };
+        let row = |(goal, row): (usize, &Vec<DVec3>)| {
+            row.iter().zip(self.responses.batch(goal, batch)).map(|(mean, part)| rest(mean, *part)).collect()
+        };
+        let other = |(goal, mean): (usize, &DVec3)| rest(mean, self.responses.background_of_batch(goal, batch));
+        Measured {
+            rows: all.rows.iter().enumerate().map(row).collect(),
+            background: all.background.iter().enumerate().map(other).collect(),
+        }
     }
 
     fn solve(&self, measured: &Measured) -> Result<Vec<DVec3>> {

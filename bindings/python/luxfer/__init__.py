@@ -18,7 +18,10 @@ from .features import Features
 from .guides import Guides
 from .illuminance import Illuminance
 from .image import Image, homography
+from .importance import Importance
 from .job import Job
+from .lamps import Lamps
+from .photometry import Distribution, colour_of_temperature, colour_temperature, glare
 from .rectify import Rectify
 from .relight import Relight
 from .render import Render
@@ -33,13 +36,16 @@ __version__ = f"{abi.LUXFER_VERSION_MAJOR}.{abi.LUXFER_VERSION_MINOR}.{abi.LUXFE
 __all__ = [
     "Context",
     "DemoPhoto",
+    "Distribution",
     "Emission",
     "Error",
     "Features",
     "Guides",
     "Illuminance",
     "Image",
+    "Importance",
     "Job",
+    "Lamps",
     "Rectify",
     "Relight",
     "Render",
@@ -49,7 +55,10 @@ __all__ = [
     "Transfer",
     "abi",
     "align_sheet",
+    "colour_of_temperature",
+    "colour_temperature",
     "errors",
+    "glare",
     "homography",
     "library",
     "print_sheet",

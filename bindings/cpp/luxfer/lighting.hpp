@@ -1,0 +1,153 @@
+// Lighting design: powers of lamps for several goals, maps of importance, luminaire files, colour temperature and glare.
+//
+// SPDX-License-Identifier: MIT OR Apache-2.0
+#pragma once
+
+#include "render.hpp"
+
+namespace luxfer {
+
+using LampsParams = Params<luxfer_lamps_params, luxfer_lamps_params_init>;
+using ImportanceParams = Params<luxfer_importance_params, luxfer_importance_params_init>;
+
+/// Powers of the lamps of an emission that come nearest to several goals. See luxfer_lamps.
+class Lamps : public Handle<luxfer_lamps, luxfer_lamps_retain, luxfer_lamps_release> {
+public:
+    using Handle::Handle;
+
+    static Result<Lamps> create(const Context &context) { return make_in<Lamps>(context, luxfer_lamps_create); }
+
+    /// The emitting material whose lamps are solved for; forgets the goals.
+    Result<> set_scene(const Scene &scene, std::uint32_t material) const {
+        return call(luxfer_lamps_set_scene, scene.get(), material);
+    }
+
+    /// The mean radiance that a mesh should have, in cd/m²; quantity is a LUXFER_QUANTITY_ value.
+    Result<> add_mesh(std::uint32_t mesh, luxfer_quantity quantity, Rgb target, double weight = 1) const {
+        return call(luxfer_lamps_add_mesh, mesh, quantity, target.red, target.green, target.blue, weight);
+    }
+
+    /// The mean illuminance that a calculation grid should have, in lux.
+    Result<> add_grid(const luxfer_illuminance_grid &grid, float lux, double weight = 1) const {
+        return call(luxfer_lamps_add_grid, &grid, lux, weight);
+    }
+
+    Result<> clear_goals() const { return call(luxfer_lamps_clear_goals); }
+
+    Result<Job> start(const luxfer_lamps_params &params = LampsParams()) const {
+        return make<Job>(luxfer_lamps_start, &params);
+    }
+
+    Result<luxfer_lamps_report> report() const { return value<luxfer_lamps_report>(luxfer_lamps_get_report); }
+    Result<luxfer_lamp> lamp(std::uint32_t index) const { return value<luxfer_lamp>(luxfer_lamps_get_lamp, index); }
+    Result<luxfer_lamps_goal> goal(std::uint32_t index) const {
+        return value<luxfer_lamps_goal>(luxfer_lamps_get_goal, index);
+    }
+    Result<luxfer_lamps_response> response(std::uint32_t goal, std::uint32_t lamp) const {
+        return value<luxfer_lamps_response>(luxfer_lamps_get_response, goal, lamp);
+    }
+
+    /// Why the goals are not all met; empty if they are.
+    Result<std::string> reason() const { return text(luxfer_lamps_get_reason); }
+
+    /// The emission's texture with every lamp multiplied.
+    Result<Image> texture() const { return make<Image>(luxfer_lamps_get_texture); }
+};
+
+/// What each point of an emission's surface means to a target. See luxfer_importance.
+class Importance : public Handle<luxfer_importance, luxfer_importance_retain, luxfer_importance_release> {
+public:
+    using Handle::Handle;
+
+    static Result<Importance> create(const Context &context) {
+        return make_in<Importance>(context, luxfer_importance_create);
+    }
+
+    /// The material of the surfaces that will emit, and the mesh that is the target.
+    Result<> set_scene(const Scene &scene, std::uint32_t material, std::uint32_t mesh) const {
+        return call(luxfer_importance_set_scene, scene.get(), material, mesh);
+    }
+
+    Result<Job> start(const luxfer_importance_params &params = ImportanceParams()) const {
+        return make<Job>(luxfer_importance_start, &params);
+    }
+
+    Result<Image> image() const { return make<Image>(luxfer_importance_get_image); }
+
+    /// What a texture in cd/m² means to the target.
+    Result<luxfer_importance_report> respond(const Image &texture) const {
+        return value<luxfer_importance_report>(luxfer_importance_respond, texture.get(), nullptr);
+    }
+
+    /// The same of one that is placed: from the surface's texture coordinates to its own, row by row.
+    Result<luxfer_importance_report> respond(const Image &texture, Numbers<9> placement) const {
+        return value<luxfer_importance_report>(luxfer_importance_respond, texture.get(), placement.data());
+    }
+
+    /// What to multiply a texture with, so that the target has a mean radiance.
+    Result<luxfer_relight_report> solve(const Image &texture, Rgb target) const {
+        return value<luxfer_relight_report>(luxfer_importance_solve, texture.get(), nullptr, target.red, target.green,
+                                            target.blue);
+    }
+    Result<luxfer_relight_report> solve(const Image &texture, Numbers<9> placement, Rgb target) const {
+        return value<luxfer_relight_report>(luxfer_importance_solve, texture.get(), placement.data(), target.red,
+                                            target.green, target.blue);
+    }
+};
+
+/// A luminous intensity distribution from an IES or EULUMDAT file. See luxfer_distribution.
+class Distribution : public Handle<luxfer_distribution, luxfer_distribution_retain, luxfer_distribution_release> {
+public:
+    using Handle::Handle;
+
+    static Result<Distribution> load(const Context &context, Text path) {
+        return make_in<Distribution>(context, luxfer_distribution_load, path.get());
+    }
+
+    /// From a file in memory; format is a LUXFER_DISTRIBUTION_ value.
+    static Result<Distribution> load(const Context &context, Text file, luxfer_distribution_format format) {
+        const void *data = file.get();
+        return make_in<Distribution>(context, luxfer_distribution_load_memory, data, std::strlen(file.get()), format);
+    }
+
+    /// To an .ies or .ldt file.
+    Result<> save(Text path) const { return call(luxfer_distribution_save, path.get()); }
+
+    Result<luxfer_distribution_report> report() const {
+        return value<luxfer_distribution_report>(luxfer_distribution_get_report);
+    }
+    Result<std::string> name() const { return text(luxfer_distribution_get_name); }
+
+    /// Candela in a direction, in degrees.
+    Result<double> intensity(double c, double gamma) const {
+        return value<double>(luxfer_distribution_get_intensity, c, gamma);
+    }
+};
+
+/// The blackbody nearest to a colour.
+struct ColourTemperature {
+    double kelvin, duv;
+};
+
+inline Result<ColourTemperature> colour_temperature(const Context &context, double red, double green, double blue) {
+    ColourTemperature found = {};
+    const luxfer_status status =
+        luxfer_colour_temperature(context.get(), red, green, blue, &found.kelvin, &found.duv);
+    return detail::finish(context.get(), status, found);
+}
+
+/// The linear colour of luminance 1 of a temperature.
+inline Result<std::array<double, 3>> colour_of_temperature(const Context &context, ColourTemperature temperature) {
+    std::array<double, 3> rgb = {};
+    const luxfer_status status =
+        luxfer_colour_of_temperature(context.get(), temperature.kelvin, temperature.duv, rgb.data());
+    return detail::finish(context.get(), status, rgb);
+}
+
+/// The unified glare rating of a luminance image; threshold 0 is five times its mean.
+inline Result<luxfer_glare_report> glare(const Image &image, double fov_y, double threshold = 0) {
+    return detail::get_value<luxfer_glare_report>(image.context().get(), luxfer_image_glare, image.get(), fov_y,
+                                                  threshold);
+}
+
+} // namespace luxfer

@@ -1,0 +1,72 @@
+"""What each point of an emission's surface means to a target."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, cast
+
+from . import _abi, _params
+from .image import Image, image_of
+from .job import Job, Progress, StageBase
+from .types import ImportanceReport, RelightReport
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from .image import ImageLike
+    from .scene import Scene
+    from .types import ImportanceParams
+
+
+class Importance(StageBase):
+    """Traced once; then the light of any texture there, however it is placed, is told at once.
+
+    >>> room = Scene.demo(context, "target-room")
+    >>> mesh, material = room.place_emission("Ceiling", np.zeros((1, 1, 3)), (1, 1, 1))
+    >>> importance = Importance(context)
+    >>> importance.set_scene(room, material, mesh)
+    >>> lamps = np.zeros((8, 8, 3)); lamps[3:5, 3:5] = 100
+    >>> response = importance.run(width=8, height=8, paths=4096).respond(lamps).response
+    >>> scale = importance.solve(lamps, (12, 10, 8)).scale
+    >>> round(response[0] * scale[0] / 12, 1)
+    1.0
+    """
+
+    kind = "importance"
+
+    def set_scene(self, scene: Scene, material: int, mesh: int) -> None:
+        """The scene, the material of the surfaces that will emit, and the mesh that is the target."""
+        self._call("set_scene", scene, material, mesh)
+
+    def start(self, **params: Unpack[ImportanceParams]) -> Job[Importance]:
+        """Starts the work."""
+        return self._job("start", _params.fill(_abi.luxfer_importance_params, params, []))
+
+    def run(self, progress: Progress | None = None, **params: Unpack[ImportanceParams]) -> Importance:
+        """Starts the work and waits for it."""
+        return self.start(**params).wait(progress)
+
+    @property
+    def image(self) -> Image:
+        """The target's mean radiance if a cell emitted 1 cd/m² and nothing else did."""
+        return self._get_image("get_image")
+
+    def respond(self, texture: ImageLike, placement: Sequence[float] | None = None) -> ImportanceReport:
+        """What a texture in cd/m² means to the target. placement, nine numbers row by row, leads from the surface's texture
+        coordinates to those of the texture."""
+        image = image_of(self._context, texture)
+        out = self._read("respond", _abi.luxfer_importance_report, image, _nine(placement))
+        return cast(ImportanceReport, out)
+
+    def solve(
+        self, texture: ImageLike, radiance: Sequence[float], placement: Sequence[float] | None = None
+    ) -> RelightReport:
+        """What to multiply a texture with, so that the target has a mean radiance, in cd/m² per channel."""
+        image, (red, green, blue) = image_of(self._context, texture), (float(v) for v in radiance)
+        out = self._read("solve", _abi.luxfer_relight_report, image, _nine(placement), red, green, blue)
+        return cast(RelightReport, out)
+
+
+def _nine(placement: Sequence[float] | None) -> Any:
+    return None if placement is None else (ctypes.c_double * 9)(*(float(v) for v in placement))

@@ -1,0 +1,87 @@
+"""Powers of the lamps of an emission that come nearest to several goals."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, cast
+
+from . import _abi, _params
+from .image import Image
+from .job import Job, Progress, StageBase
+from .types import Lamp, LampsGoal, LampsReport, LampsResponse, Quantity
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from .scene import Scene
+    from .types import IlluminanceGrid, LampsParams
+
+
+class Lamps(StageBase):
+    """One set of paths per goal measures its response to every lamp; the powers are solved within bounds.
+
+    >>> room = Scene.demo(context, "target-room")
+    >>> mesh, material = room.place_emission("Ceiling", np.eye(4).repeat(3).reshape(4, 4, 3), (100, 100, 100))
+    >>> lamps = Lamps(context)
+    >>> lamps.set_scene(room, material)
+    >>> lamps.add_grid({"origin": (1, 0.8, 1), "across": (2, 0, 0), "down": (0, 0, 1)}, 500)
+    >>> report = lamps.run(paths=4096).report
+    >>> report.lamps, lamps.goal(0).reach, lamps.reason
+    (1, (0, 0, 0), '')
+    """
+
+    kind = "lamps"
+
+    def set_scene(self, scene: Scene, material: int) -> None:
+        """The scene and the emitting material whose lamps are solved for; forgets the goals."""
+        self._call("set_scene", scene, material)
+
+    def add_mesh(
+        self, mesh: int, radiance: Sequence[float], quantity: Quantity | str = Quantity.OUTGOING, weight: float = 1
+    ) -> None:
+        """The mean radiance a mesh should have, in cd/m² per channel."""
+        red, green, blue = (float(v) for v in radiance)
+        self._call("add_mesh", mesh, _params.member(Quantity, quantity), red, green, blue, weight)
+
+    def add_grid(self, grid: IlluminanceGrid | Mapping[str, Any], lux: float, weight: float = 1) -> None:
+        """The mean illuminance a calculation grid should have: origin, across, down and normal, in metres."""
+        self._call("add_grid", _params.fill(_abi.luxfer_illuminance_grid, grid, [], "grid."), lux, weight)
+
+    def clear_goals(self) -> None:
+        """Forgets the goals."""
+        self._call("clear_goals")
+
+    def start(self, **params: Unpack[LampsParams]) -> Job[Lamps]:
+        """Starts the work."""
+        return self._job("start", _params.fill(_abi.luxfer_lamps_params, params, []))
+
+    def run(self, progress: Progress | None = None, **params: Unpack[LampsParams]) -> Lamps:
+        """Starts the work and waits for it."""
+        return self.start(**params).wait(progress)
+
+    @property
+    def report(self) -> LampsReport:
+        """The result on the whole."""
+        return cast(LampsReport, self._read("get_report", _abi.luxfer_lamps_report))
+
+    @property
+    def reason(self) -> str:
+        """Why the goals are not all met; empty if they are."""
+        return self._get_text("get_reason")
+
+    @property
+    def texture(self) -> Image:
+        """The emission's texture with every lamp multiplied."""
+        return self._get_image("get_texture")
+
+    def lamp(self, index: int) -> Lamp:
+        """The power of a lamp."""
+        return cast(Lamp, self._read("get_lamp", _abi.luxfer_lamp, index))
+
+    def goal(self, index: int) -> LampsGoal:
+        """What a goal gets."""
+        return cast(LampsGoal, self._read("get_goal", _abi.luxfer_lamps_goal, index))
+
+    def response(self, goal: int, lamp: int) -> LampsResponse:
+        """What a lamp means to a goal."""
+        return cast(LampsResponse, self._read("get_response", _abi.luxfer_lamps_response, goal, lamp))

@@ -1,0 +1,90 @@
+"""What lighting design calls a light: luminaire files, colour temperature, glare."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, cast
+
+from . import _abi, _params
+from ._handle import Handle, call
+from .image import image_of
+from .types import DistributionFormat, DistributionReport, GlareReport
+
+if TYPE_CHECKING:
+    from .context import Context
+    from .image import ImageLike
+
+
+class Distribution(Handle):
+    """A luminous intensity distribution, from and to IES and EULUMDAT files.
+
+    >>> panel = "IESNA:LM-63-2002\\nTILT=NONE\\n1 -1 1 3 1 1 2 0.6 0.6 0\\n1 1 30\\n0 45 90\\n0\\n1000 707 0\\n"
+    >>> distribution = Distribution.load_memory(context, panel.encode(), "ies")
+    >>> distribution.report.watts, distribution.intensity(90, 0)
+    (30.0, 1000.0)
+    """
+
+    kind = "distribution"
+
+    @classmethod
+    def load(cls, context: Context, path: str | os.PathLike[str]) -> Distribution:
+        """From an .ies or .ldt file."""
+        pointer = ctypes.POINTER(_abi.luxfer_distribution)()
+        call(context, "luxfer_distribution_load", context, os.fspath(path).encode(), pointer)
+        return cls._adopt(context, pointer)
+
+    @classmethod
+    def load_memory(cls, context: Context, data: bytes, format: DistributionFormat | str) -> Distribution:
+        """From the bytes of a file, "ies" or "ldt"."""
+        pointer = ctypes.POINTER(_abi.luxfer_distribution)()
+        kind = _params.member(DistributionFormat, format)
+        call(context, "luxfer_distribution_load_memory", context, data, len(data), kind, pointer)
+        return cls._adopt(context, pointer)
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """To an .ies or .ldt file."""
+        self._call("save", os.fspath(path).encode())
+
+    @property
+    def report(self) -> DistributionReport:
+        """The distribution on the whole."""
+        return cast(DistributionReport, self._read("get_report", _abi.luxfer_distribution_report))
+
+    @property
+    def name(self) -> str:
+        """The luminaire's name."""
+        return self._get_text("get_name")
+
+    def intensity(self, c: float, gamma: float) -> float:
+        """Candela in a direction, in degrees: c around the axis, gamma from straight down."""
+        out = ctypes.c_double()
+        self._call("get_intensity", c, gamma, out)
+        return out.value
+
+
+def colour_temperature(context: Context, colour: Sequence[float]) -> tuple[float, float]:
+    """Correlated temperature in kelvin of a linear colour, and its distance from the blackbody.
+
+    >>> [round(v, 3) for v in colour_temperature(context, (1, 1, 1))][1]
+    0.003
+    """
+    kelvin, duv = ctypes.c_double(), ctypes.c_double()
+    red, green, blue = (float(v) for v in colour)
+    call(context, "luxfer_colour_temperature", context, red, green, blue, kelvin, duv)
+    return kelvin.value, duv.value
+
+
+def colour_of_temperature(context: Context, kelvin: float, duv: float = 0) -> tuple[float, float, float]:
+    """The linear colour of luminance 1 of a temperature."""
+    rgb = (ctypes.c_double * 3)()
+    call(context, "luxfer_colour_of_temperature", context, kelvin, duv, rgb)
+    return rgb[0], rgb[1], rgb[2]
+
+
+def glare(context: Context, image: ImageLike, fov_y: float, threshold: float = 0) -> GlareReport:
+    """The unified glare rating of a luminance image in cd/m²; threshold 0 is five times its mean."""
+    report = _params.sized(_abi.luxfer_glare_report)
+    call(context, "luxfer_image_glare", image_of(context, image), fov_y, threshold, report)
+    return cast(GlareReport, _params.report(report))
