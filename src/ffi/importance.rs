@@ -33,9 +33,9 @@ pub struct luxfer_importance {
 pub struct luxfer_importance_params {
     /// sizeof(luxfer_importance_params), set by luxfer_importance_params_init.
     pub struct_size: u32,
-    /// Cells along u of the surface, in [1, 1024]; default 64.
+    /// Cells along u of the surface, in [1, 512]; default 64.
     pub width: u32,
-    /// Cells along v, in [1, 1024]; default 64.
+    /// Cells along v, in [1, 512]; default 64.
     pub height: u32,
     /// LUXFER_QUANTITY_ value; default LUXFER_QUANTITY_OUTGOING.
     pub quantity: luxfer_quantity,

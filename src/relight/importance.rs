@@ -25,7 +25,7 @@ use std::sync::Arc;
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct MapParams {
-    /// Cells along u and v, each in `[1, 1024]`.
+    /// Cells along u and v, each in `[1, 512]`.
     pub width: usize,
     pub height: usize,
     /// When to stop, by the interval of the response to an even emission; `quantity` is not used.
@@ -62,6 +62,9 @@ pub struct Response {
     measured: Vec<DVec3>,
 }
 
+/// Most cells along each side: a map of so many takes 200 MB.
+const MAX_CELLS: usize = 512;
+
 /// Texels looked up along each side of a cell, at most.
 const MOST_LOOK_UPS: usize = 64;
 
@@ -72,8 +75,8 @@ impl Importance {
     /// # Errors
     /// Parameters out of range, a material or a target that is not there, surfaces without texture coordinates; cancelled.
     pub fn trace(scene: &Arc<Scene>, emitter: usize, goal: &Goal, params: &MapParams, job: Job) -> Result<Self> {
-        check_range("width", params.width, 1, 1024)?;
-        check_range("height", params.height, 1, 1024)?;
+        check_range("width", params.width, 1, MAX_CELLS)?;
+        check_range("height", params.height, 1, MAX_CELLS)?;
         let tracing = &params.tracing;
         check_range("paths", tracing.paths, 1024, 1 << 30)?;
         check_range("target_error", tracing.target_error, 0.0, 1.0)?;

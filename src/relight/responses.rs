@@ -24,6 +24,8 @@ pub struct Goal<'a> {
 
 /// Most goals there may be.
 pub const MAX_GOALS: usize = 64;
+/// Most lamps times goals there may be: each takes [`BATCHES`] colours of memory, twice while the results are made.
+pub const MAX_PAIRS: usize = 1 << 20;
 
 /// A mean and how sure it is, per channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -81,6 +83,13 @@ pub fn lamp_responses(
     check_range("target_error", params.target_error, 0.0, 1.0)?;
     if goals.is_empty() || goals.len() > MAX_GOALS {
         return Err(Error::argument(format!("there are {} goals; there must be 1 to {MAX_GOALS}", goals.len())));
+    }
+    if goals.len() * lamps.count() > MAX_PAIRS {
+        return Err(Error::argument(format!(
+            "there are {} lamps and {} goals; their product may be {MAX_PAIRS} at most",
+            lamps.count(),
+            goals.len()
+        )));
     }
     let scene = world.scene();
     let samplers: Vec<Sampler> =

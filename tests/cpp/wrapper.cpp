@@ -367,6 +367,21 @@ void layers_have_names() {
     CHECK(ok(illuminance.report()).points == 16 && ok(illuminance.report()).mean > 0);
 }
 
+void lights_have_names() {
+    const Context context = new_context();
+    const auto white = ok(luxfer::colour_temperature(context, 1, 1, 1));
+    CHECK(white.kelvin > 6480 && white.kelvin < 6530);
+    const auto rgb = ok(luxfer::colour_of_temperature(context, white));
+    CHECK(rgb[0] > 0.99 && rgb[0] < 1.01 && rgb[2] > 0.99 && rgb[2] < 1.01);
+    CHECK_ERROR(luxfer::colour_temperature(context, 0, 0, 0), LUXFER_DEGENERATE);
+    CHECK(ok(luxfer::glare(new_image(context), 1)).threshold >= 0);
+    const char *panel = "IESNA:LM-63-2002\n[LUMINAIRE] Panel\nTILT=NONE\n"
+                        "1 -1 1 3 1 1 2 0.6 0.6 0\n1 1 30\n0 45 90\n0\n1000 707 0\n";
+    const auto file = ok(luxfer::Distribution::load(context, panel, LUXFER_DISTRIBUTION_IES));
+    CHECK(ok(file.name()) == "Panel" && ok(file.report()).watts == 30 && ok(file.intensity(90, 0)) == 1000);
+    CHECK_ERROR(luxfer::Distribution::load(context, "no such.ies"), LUXFER_IO);
+}
+
 // Each stage is asked for results before it has any, so that each method is seen to reach the function of its own.
 void stages_say_what_they_lack() {
     const Context context = new_context();
@@ -375,6 +390,8 @@ void stages_say_what_they_lack() {
     const auto segment = ok(luxfer::Segment::create(context));
     const auto emission = ok(luxfer::Emission::create(context));
     const auto relight = ok(luxfer::Relight::create(context));
+    const auto lamps = ok(luxfer::Lamps::create(context));
+    const auto importance = ok(luxfer::Importance::create(context));
     const auto transfer = ok(luxfer::Transfer::create(context));
     const auto guides = ok(luxfer::Guides::create(context));
     const auto demo = ok(luxfer::DemoPhoto::create(context));
@@ -383,6 +400,9 @@ void stages_say_what_they_lack() {
     CHECK_ERROR(segment.start(), LUXFER_INVALID_OPERATION);
     CHECK_ERROR(emission.start(), LUXFER_INVALID_OPERATION);
     CHECK_ERROR(relight.start(), LUXFER_INVALID_OPERATION);
+    CHECK_ERROR(lamps.start(), LUXFER_INVALID_OPERATION);
+    CHECK_ERROR(lamps.add_mesh(0, LUXFER_QUANTITY_OUTGOING, {1, 1, 1}), LUXFER_INVALID_OPERATION);
+    CHECK_ERROR(importance.start(), LUXFER_INVALID_OPERATION);
     CHECK_ERROR(guides.start(), LUXFER_INVALID_OPERATION);
     CHECK_ERROR(rectify.report(), LUXFER_NOT_READY);
     CHECK_ERROR(rectify.warp(new_image(context)), LUXFER_NOT_READY);
@@ -390,6 +410,10 @@ void stages_say_what_they_lack() {
     CHECK_ERROR(segment.image(LUXFER_SEGMENT_MASK), LUXFER_NOT_READY);
     CHECK_ERROR(emission.corner(0, 0), LUXFER_NOT_READY);
     CHECK_ERROR(relight.report(), LUXFER_NOT_READY);
+    CHECK_ERROR(lamps.report(), LUXFER_NOT_READY);
+    CHECK_ERROR(lamps.texture(), LUXFER_NOT_READY);
+    CHECK_ERROR(lamps.reason(), LUXFER_NOT_READY);
+    CHECK_ERROR(importance.respond(new_image(context)), LUXFER_NOT_READY);
     CHECK_ERROR(transfer.scene(), LUXFER_NOT_READY);
     CHECK_ERROR(transfer.use(LUXFER_PHASE_PLANE, segment), LUXFER_NOT_READY);
     CHECK_ERROR(transfer.use(features), LUXFER_NOT_READY);
@@ -427,6 +451,7 @@ int main() {
     views_of_memory();
     scenes_come_back();
     layers_have_names();
+    lights_have_names();
     stages_say_what_they_lack();
     return check::summary("wrapper");
 }

@@ -158,6 +158,26 @@ class Rendering(Case):
         off = np.array(report.scale) * report.response - (12, 10, 8)
         self.assertTrue((np.abs(off) <= np.multiply(report.half_width, report.response)).all(), off)
 
+    def test_two_lamps_light_two_desks(self):
+        scene = luxfer.Scene.demo(context(), "target-room")
+        texture = np.zeros((8, 12, 3))
+        texture[3:5, 2:4] = texture[3:5, 8:10] = 1
+        _, material = scene.place_emission("Ceiling", texture, (1000, 1000, 1000))
+        lamps = luxfer.Lamps(context())
+        lamps.set_scene(scene, material)
+        for x, lux in ((1.0, 300), (4.0, 200)):
+            lamps.add_grid({"origin": (x, 2, 1.5), "across": (1, 0, 0), "down": (0, 0, 1)}, lux)
+        report = lamps.run(paths=1 << 14).report
+        self.assertEqual((report.lamps, report.groups, report.goals, report.met), (2, 2, 2, 1), lamps.reason)
+        for i, lux in enumerate((300, 200)):
+            self.assertAlmostEqual(lamps.goal(i).achieved[0] * np.pi, lux, delta=0.02 * lux)
+        scaled = lamps.texture.numpy()
+        np.testing.assert_allclose(scaled[3, 2], lamps.lamp(0).scale, rtol=1e-5)
+        # All lamps alike cannot light one desk more than the other.
+        report = lamps.run(paths=1 << 14, group="all", tolerance=0.001).report
+        self.assertEqual((report.groups, report.met), (1, 0))
+        self.assertIn("goal", lamps.reason)
+
 
 class Scenes(Case):
     def test_arrays_go_in_and_come_out(self):
