@@ -2153,6 +2153,11 @@ typedef struct luxfer_relight_report {
     uint32_t reserved;
     /** The widest relative half-width among the channels that met their target. */
     double error;
+    /**
+     * How far the target's colour may be off: 95 % of errors are below this CIEDE2000 difference, seen at the exposure
+     * that shows the target as a middle grey.
+     */
+    double delta_e;
 } luxfer_relight_report;
 
 /** The light the target surface sends back, its albedo included: what a photo shows of it. */
@@ -2169,6 +2174,9 @@ typedef struct luxfer_relight_report {
 
 /** No light of this channel reaches the target: the emission keeps the mean scale of the other channels. */
 #define LUXFER_REACH_DARK 2
+
+/** All lamps at their largest power do not suffice, or one goal asks for what another forbids. */
+#define LUXFER_REACH_TOO_DIM 3
 
 /**
  * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
@@ -2219,6 +2227,495 @@ luxfer_status luxfer_relight_retain(luxfer_relight *relight);
 
 /** Gives a reference back; a job that runs goes on. Any thread. */
 luxfer_status luxfer_relight_release(luxfer_relight *relight);
+
+/* ====================================================================================================================
+ * Lamps
+ *
+ * Powers of the lamps of an emission, within bounds, that come nearest to several goals: surfaces and calculation grids
+ * that should have a given light. One set of paths per goal measures its response to every lamp, thousands of them at
+ * once.
+ * ==================================================================================================================== */
+
+/** A calculation of lamps. See luxfer_lamps_create. */
+typedef struct luxfer_lamps luxfer_lamps;
+
+/**
+ * Which lamps share their power: a LUXFER_GROUP_ value. A lamp is a connected patch of the emission's texture, or, where it
+ * has none, a connected piece of its meshes.
+ */
+typedef int32_t luxfer_group;
+
+/** Settings of the calculation. Fill them with luxfer_lamps_params_init. */
+typedef struct luxfer_lamps_params {
+    /** sizeof(luxfer_lamps_params), set by luxfer_lamps_params_init. */
+    uint32_t struct_size;
+    /** LUXFER_GROUP_ value; default LUXFER_GROUP_EACH. */
+    luxfer_group group;
+    /** Centres agree whose neighbours along the coordinate are closer than this, >= 0; default 0.01. */
+    float row_tolerance;
+    /** 1: each channel of a group is solved for itself; 0: its power alone; default 0. */
+    uint32_t free_colour;
+    /** Largest multiplier of a group, >= 0; default infinity. */
+    double most;
+    /** How much lamps that differ weigh against missing the goals, in [1e-9, 1e3]; default 1e-6. */
+    double evenness;
+    /**
+     * A goal is met when it is missed by no more than this share of itself, in [1e-6, 1], or its noise; default 0.01.
+     */
+    double tolerance;
+    /** Most paths to trace for a goal, in [1024, 2^30]; default 2^20. */
+    uint32_t paths;
+    /** Stop when a goal's response to all lamps together is known to this share, in [0, 1]; default 0.01; 0 = never. */
+    float target_error;
+    /** Stop after this many milliseconds; default 0: never. */
+    uint32_t time_budget_ms;
+    /** Must be 0. */
+    uint32_t reserved;
+    /** Seed of the paths; default 1. */
+    uint64_t seed;
+} luxfer_lamps_params;
+
+/** The result on the whole. Set struct_size before the call. */
+typedef struct luxfer_lamps_report {
+    /** sizeof(luxfer_lamps_report), set by the caller. */
+    uint32_t struct_size;
+    /** Number of lamps. */
+    uint32_t lamps;
+    /** Number of groups. */
+    uint32_t groups;
+    /** Number of goals. */
+    uint32_t goals;
+    /** Paths traced for each goal. */
+    uint32_t paths;
+    /** 1 if all goals are met; 0 if not: luxfer_lamps_get_reason tells why. */
+    uint32_t met;
+} luxfer_lamps_report;
+
+/** One lamp. Set struct_size before the call. */
+typedef struct luxfer_lamp {
+    /** sizeof(luxfer_lamp), set by the caller. */
+    uint32_t struct_size;
+    /** The group it is in. */
+    uint32_t group;
+    /** Its centre: texture coordinates and 0, or metres. */
+    double centre[3];
+    /** What to multiply its emission with, per channel, >= 0. */
+    double scale[3];
+    /** Half-widths of the 95 % confidence intervals of scale. */
+    double half_width[3];
+} luxfer_lamp;
+
+/** What a goal gets. Set struct_size before the call. */
+typedef struct luxfer_lamps_goal {
+    /** sizeof(luxfer_lamps_goal), set by the caller. */
+    uint32_t struct_size;
+    /** LUXFER_REACH_ value of each channel. */
+    luxfer_reach reach[3];
+    /** Mean radiance asked for, in cd/m²; illuminance / pi for a grid. */
+    double target[3];
+    /** Mean radiance under the powers found. */
+    double achieved[3];
+    /** Half-widths of the 95 % confidence intervals of achieved. */
+    double half_width[3];
+    /** Mean radiance under all other light. */
+    double background[3];
+} luxfer_lamps_goal;
+
+/** What one lamp means to one goal. Set struct_size before the call. */
+typedef struct luxfer_lamps_response {
+    /** sizeof(luxfer_lamps_response), set by the caller. */
+    uint32_t struct_size;
+    /** 0. */
+    uint32_t reserved;
+    /** Mean radiance of the goal under the lamp as it is, in cd/m² per channel. */
+    double mean[3];
+    /** Half-widths of the 95 % confidence intervals of mean. */
+    double half_width[3];
+} luxfer_lamps_response;
+
+/** All lamps. */
+#define LUXFER_GROUP_ALL 0
+
+/** Every lamp for itself. */
+#define LUXFER_GROUP_EACH 1
+
+/** Those whose centres agree in their first coordinate: u of a texture, x of meshes. */
+#define LUXFER_GROUP_FIRST 2
+
+/** Those whose centres agree in their second coordinate: v of a texture, y of meshes. */
+#define LUXFER_GROUP_SECOND 3
+
+/** Those whose centres agree in their third coordinate: z of meshes. */
+#define LUXFER_GROUP_THIRD 4
+
+/**
+ * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+ */
+luxfer_status luxfer_lamps_params_init(luxfer_lamps_params *params,
+                                       size_t size);
+
+/** Creates the stage. The caller releases *lamps. Any thread. */
+luxfer_status luxfer_lamps_create(luxfer_context *context, luxfer_lamps **lamps);
+
+/**
+ * Sets the scene and the emitting material whose lamps are solved for, at the strength that the solution will multiply;
+ * forgets the goals. Any thread.
+ * LUXFER_NOT_FOUND if the scene has no such material.
+ */
+luxfer_status luxfer_lamps_set_scene(luxfer_lamps *lamps,
+                                     luxfer_scene *scene,
+                                     uint32_t material);
+
+/**
+ * Adds a goal: the mean radiance a mesh should have, in cd/m² per channel, each finite and >= 0; quantity is a
+ * LUXFER_QUANTITY_ value; weight, >= 0, is what missing it weighs beside the other goals. Any thread.
+ * LUXFER_NOT_FOUND if the scene has no such mesh, LUXFER_INVALID_OPERATION before luxfer_lamps_set_scene.
+ */
+luxfer_status luxfer_lamps_add_mesh(luxfer_lamps *lamps,
+                                    uint32_t mesh,
+                                    luxfer_quantity quantity,
+                                    float red,
+                                    float green,
+                                    float blue,
+                                    double weight);
+
+/**
+ * Adds a goal: the mean illuminance in lux that a calculation grid should have, of white light; weight as above. grid may
+ * be NULL for its default. Any thread.
+ * LUXFER_INVALID_ARGUMENT if lux is not finite or negative, LUXFER_INVALID_OPERATION before luxfer_lamps_set_scene.
+ */
+luxfer_status luxfer_lamps_add_grid(luxfer_lamps *lamps,
+                                    const luxfer_illuminance_grid *grid,
+                                    float lux,
+                                    double weight);
+
+/** Forgets the goals. Any thread. */
+luxfer_status luxfer_lamps_clear_goals(luxfer_lamps *lamps);
+
+/**
+ * Starts a job that measures and solves. params may be NULL for the defaults. The caller releases *job. Any thread.
+ * LUXFER_INVALID_OPERATION if the scene or a goal is missing or a job runs already. Goals that cannot be met are no
+ * error: the powers then are the nearest that the bounds allow. The job may end with LUXFER_UNREACHABLE if no goal gets
+ * light from any lamp, LUXFER_INVALID_ARGUMENT if the scene is not valid, the emission has no lamp, or a setting is out of
+ * range.
+ */
+luxfer_status luxfer_lamps_start(luxfer_lamps *lamps,
+                                 const luxfer_lamps_params *params,
+                                 luxfer_job **job);
+
+/**
+ * Tells the result on the whole. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded.
+ */
+luxfer_status luxfer_lamps_get_report(luxfer_lamps *lamps, luxfer_lamps_report *report);
+
+/**
+ * Tells the power of a lamp. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded, LUXFER_NOT_FOUND if there is no such lamp.
+ */
+luxfer_status luxfer_lamps_get_lamp(luxfer_lamps *lamps, uint32_t index, luxfer_lamp *lamp);
+
+/**
+ * Tells what a goal gets. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded, LUXFER_NOT_FOUND if there is no such goal.
+ */
+luxfer_status luxfer_lamps_get_goal(luxfer_lamps *lamps,
+                                    uint32_t index,
+                                    luxfer_lamps_goal *goal);
+
+/**
+ * Tells what a lamp means to a goal, for hosts that mix the light themselves. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded, LUXFER_NOT_FOUND if there is no such goal or lamp.
+ */
+luxfer_status luxfer_lamps_get_response(luxfer_lamps *lamps,
+                                        uint32_t goal,
+                                        uint32_t lamp,
+                                        luxfer_lamps_response *response);
+
+/**
+ * Copies the reason why the goals are not all met, zero-terminated, into buffer of capacity bytes, cut if it is longer;
+ * empty if they are. *needed, unless NULL, receives the capacity for all of it. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded.
+ */
+luxfer_status luxfer_lamps_get_reason(luxfer_lamps *lamps,
+                                      char *buffer,
+                                      size_t capacity,
+                                      size_t *needed);
+
+/**
+ * Gets the emission's texture with every lamp multiplied by its scale; linear RGB. The caller releases *texture. Any
+ * thread.
+ * LUXFER_NOT_READY before a job has succeeded, LUXFER_NOT_FOUND if the emission has no texture.
+ */
+luxfer_status luxfer_lamps_get_texture(luxfer_lamps *lamps,
+                                       luxfer_image **texture);
+
+/** Adds a reference. Any thread. */
+luxfer_status luxfer_lamps_retain(luxfer_lamps *lamps);
+
+/** Gives a reference back; a job that runs goes on. Any thread. */
+luxfer_status luxfer_lamps_release(luxfer_lamps *lamps);
+
+/* ====================================================================================================================
+ * Importance
+ *
+ * What each point of an emission's surface means to a target: traced once, after which the light of any texture there,
+ * however it is scaled, turned and shifted, is told at once, with a confidence interval.
+ * ==================================================================================================================== */
+
+/** A map of importance. See luxfer_importance_create. */
+typedef struct luxfer_importance luxfer_importance;
+
+/** Settings of the map. Fill them with luxfer_importance_params_init. */
+typedef struct luxfer_importance_params {
+    /** sizeof(luxfer_importance_params), set by luxfer_importance_params_init. */
+    uint32_t struct_size;
+    /** Cells along u of the surface, in [1, 512]; default 64. */
+    uint32_t width;
+    /** Cells along v, in [1, 512]; default 64. */
+    uint32_t height;
+    /** LUXFER_QUANTITY_ value; default LUXFER_QUANTITY_OUTGOING. */
+    luxfer_quantity quantity;
+    /** Most paths to trace, in [1024, 2^30]; default 2^20. */
+    uint32_t paths;
+    /** Stop when the response to an even emission is known to this share, in [0, 1]; default 0.01; 0 = never. */
+    float target_error;
+    /** Stop after this many milliseconds; default 0: never. */
+    uint32_t time_budget_ms;
+    /** Must be 0. */
+    uint32_t reserved;
+    /** Seed of the paths; default 1. */
+    uint64_t seed;
+} luxfer_importance_params;
+
+/** What a texture means to the target. Set struct_size before the call. */
+typedef struct luxfer_importance_report {
+    /** sizeof(luxfer_importance_report), set by the caller. */
+    uint32_t struct_size;
+    /** Paths behind the map. */
+    uint32_t paths;
+    /** Mean radiance of the target under the texture, in cd/m² per channel as the texture's values are. */
+    double response[3];
+    /** Half-widths of the 95 % confidence intervals of response. */
+    double half_width[3];
+    /** What cells of twice the side change, noise included; the cells themselves are off by about a third of it. */
+    double band_error[3];
+} luxfer_importance_report;
+
+/**
+ * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+ */
+luxfer_status luxfer_importance_params_init(luxfer_importance_params *params,
+                                            size_t size);
+
+/** Creates the stage. The caller releases *importance. Any thread. */
+luxfer_status luxfer_importance_create(luxfer_context *context, luxfer_importance **importance);
+
+/**
+ * Sets the scene, the material of the surfaces that will emit, which need texture coordinates, and the mesh that is the
+ * target; what of it emits in the scene as it is is left out. Any thread.
+ * LUXFER_NOT_FOUND if the scene has no such material or mesh.
+ */
+luxfer_status luxfer_importance_set_scene(luxfer_importance *importance,
+                                          luxfer_scene *scene,
+                                          uint32_t material,
+                                          uint32_t mesh);
+
+/**
+ * Starts a job that traces the map. params may be NULL for the defaults. The caller releases *job. Any thread.
+ * LUXFER_INVALID_OPERATION if the scene is missing or a job runs already. The job may end with LUXFER_INVALID_ARGUMENT if
+ * the scene is not valid, the surfaces have no texture coordinates, or a setting is out of range.
+ */
+luxfer_status luxfer_importance_start(luxfer_importance *importance,
+                                      const luxfer_importance_params *params,
+                                      luxfer_job **job);
+
+/**
+ * Gets the map: what the target's mean radiance would be, per channel, if a cell emitted 1 cd/m² and nothing else did. The
+ * caller releases *image. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded.
+ */
+luxfer_status luxfer_importance_get_image(luxfer_importance *importance,
+                                          luxfer_image **image);
+
+/**
+ * Tells what a texture (linear, in cd/m²; it repeats) means to the target. placement leads from the surface's texture
+ * coordinates to those of the texture: 3 x 3, row by row, the last row 0 0 1; NULL for where they are the same. Takes some
+ * milliseconds. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded, LUXFER_INVALID_ARGUMENT if placement is not finite.
+ */
+luxfer_status luxfer_importance_respond(luxfer_importance *importance,
+                                        luxfer_image *texture,
+                                        const double *placement,
+                                        luxfer_importance_report *report);
+
+/**
+ * Solves for what to multiply a texture with, so that the target has a mean radiance, in cd/m² per channel, each finite and
+ * >= 0, as luxfer_relight does it by tracing; texture and placement as above. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded, LUXFER_UNREACHABLE if no light of the texture can reach the target.
+ */
+luxfer_status luxfer_importance_solve(luxfer_importance *importance,
+                                      luxfer_image *texture,
+                                      const double *placement,
+                                      float red,
+                                      float green,
+                                      float blue,
+                                      luxfer_relight_report *report);
+
+/** Adds a reference. Any thread. */
+luxfer_status luxfer_importance_retain(luxfer_importance *importance);
+
+/** Gives a reference back; a job that runs goes on. Any thread. */
+luxfer_status luxfer_importance_release(luxfer_importance *importance);
+
+/* ====================================================================================================================
+ * Photometry
+ *
+ * What lighting design calls a light: its correlated colour temperature, and the glare of a view. These calls return when
+ * they are done.
+ * ==================================================================================================================== */
+
+/** The glare of a view. Set struct_size before the call. */
+typedef struct luxfer_glare_report {
+    /** sizeof(luxfer_glare_report), set by the caller. */
+    uint32_t struct_size;
+    /** Sources of glare. */
+    uint32_t sources;
+    /** Unified glare rating (CIE 117): below 10 means none, 19 is what offices may have; -infinity without sources. */
+    double ugr;
+    /** Luminance of the background in cd/m². */
+    double background;
+    /** Luminance from which on a pixel counted as glare, in cd/m². */
+    double threshold;
+    /** Solid angle of all sources in steradian. */
+    double solid_angle;
+} luxfer_glare_report;
+
+/**
+ * Names a linear colour by the blackbody nearest to it: *kelvin receives the correlated colour temperature, in [1000, 20000],
+ * *duv the distance from it in the CIE 1960 diagram, positive where it is greenish. Any thread.
+ * LUXFER_DEGENERATE if the colour is black or not finite.
+ */
+luxfer_status luxfer_colour_temperature(luxfer_context *context,
+                                        double red,
+                                        double green,
+                                        double blue,
+                                        double *kelvin,
+                                        double *duv);
+
+/**
+ * Fills rgb, three numbers, with the linear colour of luminance 1 of a temperature in [1000, 20000] kelvin, at a distance
+ * duv, in [-0.05, 0.05], from the blackbody; a channel is negative where the colour is out of gamut. Any thread.
+ * LUXFER_INVALID_ARGUMENT if a value is out of range.
+ */
+luxfer_status luxfer_colour_of_temperature(luxfer_context *context,
+                                           double kelvin,
+                                           double duv,
+                                           double *rgb);
+
+/**
+ * Rates the discomfort glare of a luminance image in cd/m² (1 channel, or linear RGB): what a level view sees whose vertical
+ * angle is fov_y, in radians. Sources are the connected patches from a luminance of threshold on; 0 = five times the mean.
+ * The wider the image, the truer its background. Any thread.
+ * LUXFER_INVALID_ARGUMENT if the image is not finite or a value is out of range.
+ */
+luxfer_status luxfer_image_glare(luxfer_image *image,
+                                 double fov_y,
+                                 double threshold,
+                                 luxfer_glare_report *report);
+
+/* ====================================================================================================================
+ * Luminous intensity distributions
+ *
+ * What a luminaire sends out in which direction, from and to IES (LM-63) and EULUMDAT files. These calls return when they
+ * are done.
+ * ==================================================================================================================== */
+
+/** A luminous intensity distribution. See luxfer_distribution_load. */
+typedef struct luxfer_distribution luxfer_distribution;
+
+/** A file format of distributions: a LUXFER_DISTRIBUTION_ value. */
+typedef int32_t luxfer_distribution_format;
+
+/** A distribution on the whole. Set struct_size before the call. */
+typedef struct luxfer_distribution_report {
+    /** sizeof(luxfer_distribution_report), set by the caller. */
+    uint32_t struct_size;
+    /** C planes. */
+    uint32_t planes;
+    /** Vertical angles of each plane. */
+    uint32_t angles;
+    /** 0. */
+    uint32_t reserved;
+    /** Luminous flux in lumens: the intensity over all directions. */
+    double flux;
+    /** Rated flux of its lamps in lumens; 0 if the file states none (absolute photometry). */
+    double lamp_flux;
+    /** Electric power in watts; 0 if not known. */
+    double watts;
+    /** Length, width and height of the luminous opening in metres; negative for round ones. */
+    double size[3];
+} luxfer_distribution_report;
+
+/** IES LM-63, type C. */
+#define LUXFER_DISTRIBUTION_IES 0
+
+/** EULUMDAT. */
+#define LUXFER_DISTRIBUTION_LDT 1
+
+/**
+ * Loads an .ies or .ldt file; path is UTF-8. The caller releases *distribution. Any thread.
+ * LUXFER_IO if the file cannot be read, LUXFER_FORMAT, with the line, if it is malformed, LUXFER_UNSUPPORTED for types A and
+ * B of IES, LUXFER_INVALID_ARGUMENT for another extension.
+ */
+luxfer_status luxfer_distribution_load(luxfer_context *context,
+                                       const char *path,
+                                       luxfer_distribution **distribution);
+
+/**
+ * Loads from the size bytes of a file held in memory; format is a LUXFER_DISTRIBUTION_ value. Otherwise as
+ * luxfer_distribution_load.
+ */
+luxfer_status luxfer_distribution_load_memory(luxfer_context *context,
+                                              const void *data,
+                                              size_t size,
+                                              luxfer_distribution_format format,
+                                              luxfer_distribution **distribution);
+
+/**
+ * Saves to an .ies or .ldt file; path is UTF-8. An existing file is replaced only by a complete one. Any thread.
+ * LUXFER_INVALID_ARGUMENT for another extension, LUXFER_IO if the file cannot be written.
+ */
+luxfer_status luxfer_distribution_save(luxfer_distribution *distribution,
+                                       const char *path);
+
+/** Tells the distribution on the whole. Any thread. */
+luxfer_status luxfer_distribution_get_report(luxfer_distribution *distribution,
+                                             luxfer_distribution_report *report);
+
+/**
+ * Copies the luminaire's name, zero-terminated, into buffer of capacity bytes, cut if it is longer. *needed, unless NULL,
+ * receives the capacity for all of it. Any thread.
+ */
+luxfer_status luxfer_distribution_get_name(luxfer_distribution *distribution,
+                                           char *buffer,
+                                           size_t capacity,
+                                           size_t *needed);
+
+/**
+ * Tells the luminous intensity in candela in a direction, in degrees: c around the axis, gamma from straight down at 0 to
+ * straight up at 180. Any thread.
+ */
+luxfer_status luxfer_distribution_get_intensity(luxfer_distribution *distribution,
+                                                double c,
+                                                double gamma,
+                                                double *candela);
+
+/** Adds a reference. Any thread. */
+luxfer_status luxfer_distribution_retain(luxfer_distribution *distribution);
+
+/** Gives a reference back. Any thread. */
+luxfer_status luxfer_distribution_release(luxfer_distribution *distribution);
 
 /* ====================================================================================================================
  * Transfer

@@ -109,6 +109,14 @@ LUXFER_QUANTITY_INCIDENT = 1
 LUXFER_REACH_MET = 0
 LUXFER_REACH_TOO_BRIGHT = 1
 LUXFER_REACH_DARK = 2
+LUXFER_REACH_TOO_DIM = 3
+LUXFER_GROUP_ALL = 0
+LUXFER_GROUP_EACH = 1
+LUXFER_GROUP_FIRST = 2
+LUXFER_GROUP_SECOND = 3
+LUXFER_GROUP_THIRD = 4
+LUXFER_DISTRIBUTION_IES = 0
+LUXFER_DISTRIBUTION_LDT = 1
 LUXFER_STAGE_VIEW = 0
 LUXFER_STAGE_FEATURES = 1
 LUXFER_STAGE_PLANE = 2
@@ -219,6 +227,18 @@ class luxfer_illuminance(Structure):
 
 class luxfer_relight(Structure):
     """A relighting of a scene. See luxfer_relight_create."""
+
+
+class luxfer_lamps(Structure):
+    """A calculation of lamps. See luxfer_lamps_create."""
+
+
+class luxfer_importance(Structure):
+    """A map of importance. See luxfer_importance_create."""
+
+
+class luxfer_distribution(Structure):
+    """A luminous intensity distribution. See luxfer_distribution_load."""
 
 
 class luxfer_transfer(Structure):
@@ -682,9 +702,144 @@ class luxfer_relight_report(Structure):
         ("reach", c_int32 * 3),
         ("reserved", c_uint32),
         ("error", c_double),
+        ("delta_e", c_double),
     ]
     enumerations: dict[str, type] = {"reach": types.Reach}
     result = types.RelightReport
+
+
+class luxfer_lamps_params(Structure):
+    """Settings of the calculation."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("group", c_int32),
+        ("row_tolerance", c_float),
+        ("free_colour", c_uint32),
+        ("most", c_double),
+        ("evenness", c_double),
+        ("tolerance", c_double),
+        ("paths", c_uint32),
+        ("target_error", c_float),
+        ("time_budget_ms", c_uint32),
+        ("reserved", c_uint32),
+        ("seed", c_uint64),
+    ]
+    enumerations: dict[str, type] = {"group": types.Group}
+
+
+class luxfer_lamps_report(Structure):
+    """The result on the whole."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("lamps", c_uint32),
+        ("groups", c_uint32),
+        ("goals", c_uint32),
+        ("paths", c_uint32),
+        ("met", c_uint32),
+    ]
+    result = types.LampsReport
+
+
+class luxfer_lamp(Structure):
+    """One lamp."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("group", c_uint32),
+        ("centre", c_double * 3),
+        ("scale", c_double * 3),
+        ("half_width", c_double * 3),
+    ]
+    result = types.Lamp
+
+
+class luxfer_lamps_goal(Structure):
+    """What a goal gets."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("reach", c_int32 * 3),
+        ("target", c_double * 3),
+        ("achieved", c_double * 3),
+        ("half_width", c_double * 3),
+        ("background", c_double * 3),
+    ]
+    enumerations: dict[str, type] = {"reach": types.Reach}
+    result = types.LampsGoal
+
+
+class luxfer_lamps_response(Structure):
+    """What one lamp means to one goal."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("reserved", c_uint32),
+        ("mean", c_double * 3),
+        ("half_width", c_double * 3),
+    ]
+    result = types.LampsResponse
+
+
+class luxfer_importance_params(Structure):
+    """Settings of the map."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("width", c_uint32),
+        ("height", c_uint32),
+        ("quantity", c_int32),
+        ("paths", c_uint32),
+        ("target_error", c_float),
+        ("time_budget_ms", c_uint32),
+        ("reserved", c_uint32),
+        ("seed", c_uint64),
+    ]
+    enumerations: dict[str, type] = {"quantity": types.Quantity}
+
+
+class luxfer_importance_report(Structure):
+    """What a texture means to the target."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("paths", c_uint32),
+        ("response", c_double * 3),
+        ("half_width", c_double * 3),
+        ("band_error", c_double * 3),
+    ]
+    result = types.ImportanceReport
+
+
+class luxfer_glare_report(Structure):
+    """The glare of a view."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("sources", c_uint32),
+        ("ugr", c_double),
+        ("background", c_double),
+        ("threshold", c_double),
+        ("solid_angle", c_double),
+    ]
+    result = types.GlareReport
+
+
+class luxfer_distribution_report(Structure):
+    """A distribution on the whole."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("planes", c_uint32),
+        ("angles", c_uint32),
+        ("reserved", c_uint32),
+        ("flux", c_double),
+        ("lamp_flux", c_double),
+        ("watts", c_double),
+        ("size", c_double * 3),
+    ]
+    result = types.DistributionReport
 
 
 class luxfer_transfer_params(Structure):
@@ -1015,6 +1170,41 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_relight_get_report": (c_int32, [("relight", POINTER(luxfer_relight)), ("report", POINTER(luxfer_relight_report))]),
     "luxfer_relight_retain": (c_int32, [("relight", POINTER(luxfer_relight))]),
     "luxfer_relight_release": (c_int32, [("relight", POINTER(luxfer_relight))]),
+    "luxfer_lamps_params_init": (c_int32, [("params", POINTER(luxfer_lamps_params)), ("size", c_size_t)]),
+    "luxfer_lamps_create": (c_int32, [("context", POINTER(luxfer_context)), ("lamps", POINTER(POINTER(luxfer_lamps)))]),
+    "luxfer_lamps_set_scene": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("scene", POINTER(luxfer_scene)), ("material", c_uint32)]),
+    "luxfer_lamps_add_mesh": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("mesh", c_uint32), ("quantity", c_int32), ("red", c_float), ("green", c_float), ("blue", c_float), ("weight", c_double)]),
+    "luxfer_lamps_add_grid": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("grid", POINTER(luxfer_illuminance_grid)), ("lux", c_float), ("weight", c_double)]),
+    "luxfer_lamps_clear_goals": (c_int32, [("lamps", POINTER(luxfer_lamps))]),
+    "luxfer_lamps_start": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("params", POINTER(luxfer_lamps_params)), ("job", POINTER(POINTER(luxfer_job)))]),
+    "luxfer_lamps_get_report": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("report", POINTER(luxfer_lamps_report))]),
+    "luxfer_lamps_get_lamp": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("index", c_uint32), ("lamp", POINTER(luxfer_lamp))]),
+    "luxfer_lamps_get_goal": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("index", c_uint32), ("goal", POINTER(luxfer_lamps_goal))]),
+    "luxfer_lamps_get_response": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("goal", c_uint32), ("lamp", c_uint32), ("response", POINTER(luxfer_lamps_response))]),
+    "luxfer_lamps_get_reason": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
+    "luxfer_lamps_get_texture": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("texture", POINTER(POINTER(luxfer_image)))]),
+    "luxfer_lamps_retain": (c_int32, [("lamps", POINTER(luxfer_lamps))]),
+    "luxfer_lamps_release": (c_int32, [("lamps", POINTER(luxfer_lamps))]),
+    "luxfer_importance_params_init": (c_int32, [("params", POINTER(luxfer_importance_params)), ("size", c_size_t)]),
+    "luxfer_importance_create": (c_int32, [("context", POINTER(luxfer_context)), ("importance", POINTER(POINTER(luxfer_importance)))]),
+    "luxfer_importance_set_scene": (c_int32, [("importance", POINTER(luxfer_importance)), ("scene", POINTER(luxfer_scene)), ("material", c_uint32), ("mesh", c_uint32)]),
+    "luxfer_importance_start": (c_int32, [("importance", POINTER(luxfer_importance)), ("params", POINTER(luxfer_importance_params)), ("job", POINTER(POINTER(luxfer_job)))]),
+    "luxfer_importance_get_image": (c_int32, [("importance", POINTER(luxfer_importance)), ("image", POINTER(POINTER(luxfer_image)))]),
+    "luxfer_importance_respond": (c_int32, [("importance", POINTER(luxfer_importance)), ("texture", POINTER(luxfer_image)), ("placement", POINTER(c_double)), ("report", POINTER(luxfer_importance_report))]),
+    "luxfer_importance_solve": (c_int32, [("importance", POINTER(luxfer_importance)), ("texture", POINTER(luxfer_image)), ("placement", POINTER(c_double)), ("red", c_float), ("green", c_float), ("blue", c_float), ("report", POINTER(luxfer_relight_report))]),
+    "luxfer_importance_retain": (c_int32, [("importance", POINTER(luxfer_importance))]),
+    "luxfer_importance_release": (c_int32, [("importance", POINTER(luxfer_importance))]),
+    "luxfer_colour_temperature": (c_int32, [("context", POINTER(luxfer_context)), ("red", c_double), ("green", c_double), ("blue", c_double), ("kelvin", POINTER(c_double)), ("duv", POINTER(c_double))]),
+    "luxfer_colour_of_temperature": (c_int32, [("context", POINTER(luxfer_context)), ("kelvin", c_double), ("duv", c_double), ("rgb", POINTER(c_double))]),
+    "luxfer_image_glare": (c_int32, [("image", POINTER(luxfer_image)), ("fov_y", c_double), ("threshold", c_double), ("report", POINTER(luxfer_glare_report))]),
+    "luxfer_distribution_load": (c_int32, [("context", POINTER(luxfer_context)), ("path", c_char_p), ("distribution", POINTER(POINTER(luxfer_distribution)))]),
+    "luxfer_distribution_load_memory": (c_int32, [("context", POINTER(luxfer_context)), ("data", c_void_p), ("size", c_size_t), ("format", c_int32), ("distribution", POINTER(POINTER(luxfer_distribution)))]),
+    "luxfer_distribution_save": (c_int32, [("distribution", POINTER(luxfer_distribution)), ("path", c_char_p)]),
+    "luxfer_distribution_get_report": (c_int32, [("distribution", POINTER(luxfer_distribution)), ("report", POINTER(luxfer_distribution_report))]),
+    "luxfer_distribution_get_name": (c_int32, [("distribution", POINTER(luxfer_distribution)), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
+    "luxfer_distribution_get_intensity": (c_int32, [("distribution", POINTER(luxfer_distribution)), ("c", c_double), ("gamma", c_double), ("candela", POINTER(c_double))]),
+    "luxfer_distribution_retain": (c_int32, [("distribution", POINTER(luxfer_distribution))]),
+    "luxfer_distribution_release": (c_int32, [("distribution", POINTER(luxfer_distribution))]),
     "luxfer_transfer_params_init": (c_int32, [("params", POINTER(luxfer_transfer_params)), ("size", c_size_t)]),
     "luxfer_transfer_create": (c_int32, [("context", POINTER(luxfer_context)), ("transfer", POINTER(POINTER(luxfer_transfer)))]),
     "luxfer_transfer_set_photo": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("photo", POINTER(luxfer_image))]),

@@ -279,6 +279,32 @@ class Reach(IntEnum):
     """Other lights alone exceed the target: the emission is off in this channel."""
     DARK = 2
     """No light of this channel reaches the target: the emission keeps the mean scale of the other channels."""
+    TOO_DIM = 3
+    """All lamps at their largest power do not suffice, or one goal asks for what another forbids."""
+
+
+class Group(IntEnum):
+    """Which lamps share their power."""
+
+    ALL = 0
+    """All lamps."""
+    EACH = 1
+    """Every lamp for itself."""
+    FIRST = 2
+    """Those whose centres agree in their first coordinate: u of a texture, x of meshes."""
+    SECOND = 3
+    """Those whose centres agree in their second coordinate: v of a texture, y of meshes."""
+    THIRD = 4
+    """Those whose centres agree in their third coordinate: z of meshes."""
+
+
+class DistributionFormat(IntEnum):
+    """A file format of distributions."""
+
+    IES = 0
+    """IES LM-63, type C."""
+    LDT = 1
+    """EULUMDAT."""
 
 
 class Target(IntEnum):
@@ -1096,6 +1122,161 @@ class RelightReport:
     """Reach of each channel."""
     error: float
     """The widest relative half-width among the channels that met their target."""
+    delta_e: float
+    """How far the target's colour may be off: 95 % of errors are below this CIEDE2000 difference, seen at the
+    exposure that shows the target as a middle grey."""
+
+
+class LampsParams(TypedDict, total=False):
+    """Settings of the calculation."""
+
+    group: Group | str | int
+    """Group; default Group.EACH."""
+    row_tolerance: float
+    """Centres agree whose neighbours along the coordinate are closer than this, >= 0; default 0.01."""
+    free_colour: int
+    """1: each channel of a group is solved for itself; 0: its power alone; default 0."""
+    most: float
+    """Largest multiplier of a group, >= 0; default infinity."""
+    evenness: float
+    """How much lamps that differ weigh against missing the goals, in [1e-9, 1e3]; default 1e-6."""
+    tolerance: float
+    """A goal is met when it is missed by no more than this share of itself, in [1e-6, 1], or its noise; default
+    0.01."""
+    paths: int
+    """Most paths to trace for a goal, in [1024, 2^30]; default 2^20."""
+    target_error: float
+    """Stop when a goal's response to all lamps together is known to this share, in [0, 1]; default 0.01; 0 =
+    never."""
+    time_budget_ms: int
+    """Stop after this many milliseconds; default 0: never."""
+    seed: int
+    """Seed of the paths; default 1."""
+
+
+@dataclass(frozen=True)
+class LampsReport:
+    """The result on the whole."""
+
+    lamps: int
+    """Number of lamps."""
+    groups: int
+    """Number of groups."""
+    goals: int
+    """Number of goals."""
+    paths: int
+    """Paths traced for each goal."""
+    met: int
+    """1 if all goals are met; 0 if not: luxfer_lamps_get_reason tells why."""
+
+
+@dataclass(frozen=True)
+class Lamp:
+    """One lamp."""
+
+    group: int
+    """The group it is in."""
+    centre: tuple[float, float, float]
+    """Its centre: texture coordinates and 0, or metres."""
+    scale: tuple[float, float, float]
+    """What to multiply its emission with, per channel, >= 0."""
+    half_width: tuple[float, float, float]
+    """Half-widths of the 95 % confidence intervals of scale."""
+
+
+@dataclass(frozen=True)
+class LampsGoal:
+    """What a goal gets."""
+
+    reach: tuple[Reach, Reach, Reach]
+    """Reach of each channel."""
+    target: tuple[float, float, float]
+    """Mean radiance asked for, in cd/m²; illuminance / pi for a grid."""
+    achieved: tuple[float, float, float]
+    """Mean radiance under the powers found."""
+    half_width: tuple[float, float, float]
+    """Half-widths of the 95 % confidence intervals of achieved."""
+    background: tuple[float, float, float]
+    """Mean radiance under all other light."""
+
+
+@dataclass(frozen=True)
+class LampsResponse:
+    """What one lamp means to one goal."""
+
+    mean: tuple[float, float, float]
+    """Mean radiance of the goal under the lamp as it is, in cd/m² per channel."""
+    half_width: tuple[float, float, float]
+    """Half-widths of the 95 % confidence intervals of mean."""
+
+
+class ImportanceParams(TypedDict, total=False):
+    """Settings of the map."""
+
+    width: int
+    """Cells along u of the surface, in [1, 512]; default 64."""
+    height: int
+    """Cells along v, in [1, 512]; default 64."""
+    quantity: Quantity | str | int
+    """Quantity; default Quantity.OUTGOING."""
+    paths: int
+    """Most paths to trace, in [1024, 2^30]; default 2^20."""
+    target_error: float
+    """Stop when the response to an even emission is known to this share, in [0, 1]; default 0.01; 0 = never."""
+    time_budget_ms: int
+    """Stop after this many milliseconds; default 0: never."""
+    seed: int
+    """Seed of the paths; default 1."""
+
+
+@dataclass(frozen=True)
+class ImportanceReport:
+    """What a texture means to the target."""
+
+    paths: int
+    """Paths behind the map."""
+    response: tuple[float, float, float]
+    """Mean radiance of the target under the texture, in cd/m² per channel as the texture's values are."""
+    half_width: tuple[float, float, float]
+    """Half-widths of the 95 % confidence intervals of response."""
+    band_error: tuple[float, float, float]
+    """What cells of twice the side change, noise included; the cells themselves are off by about a third of
+    it."""
+
+
+@dataclass(frozen=True)
+class GlareReport:
+    """The glare of a view."""
+
+    sources: int
+    """Sources of glare."""
+    ugr: float
+    """Unified glare rating (CIE 117): below 10 means none, 19 is what offices may have; -infinity without
+    sources."""
+    background: float
+    """Luminance of the background in cd/m²."""
+    threshold: float
+    """Luminance from which on a pixel counted as glare, in cd/m²."""
+    solid_angle: float
+    """Solid angle of all sources in steradian."""
+
+
+@dataclass(frozen=True)
+class DistributionReport:
+    """A distribution on the whole."""
+
+    planes: int
+    """C planes."""
+    angles: int
+    """Vertical angles of each plane."""
+    flux: float
+    """Luminous flux in lumens: the intensity over all directions."""
+    lamp_flux: float
+    """Rated flux of its lamps in lumens; 0 if the file states none (absolute photometry)."""
+    watts: float
+    """Electric power in watts; 0 if not known."""
+    size: tuple[float, float, float]
+    """Length, width and height of the luminous opening in metres; negative for round ones."""
 
 
 class TransferParams(TypedDict, total=False):
