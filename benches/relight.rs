@@ -10,8 +10,8 @@ use luxfer::exec::Pool;
 use luxfer::image::Image;
 use luxfer::job::Monitor;
 use luxfer::relight::{
-    Goal, GroupParams, Importance, Input, Lamps, MapParams, Params, Place, Quantity, Solution, lamp_responses, run,
-    solve_groups,
+    Aspect, Goal, GroupParams, Importance, Input, Lamps, MapParams, Params, Place, Quantity, Solution, lamp_responses,
+    run, solve_groups,
 };
 use luxfer::render::World;
 use luxfer::scene::{Material, Mesh, Scene, Texture, TextureRef, surface};
@@ -203,8 +203,13 @@ fn map(case: &Case) {
     }
     let scene = Arc::new(scene);
     let monitor = Monitor::default();
-    let goal =
-        Goal { place: Place::Surface(&case.target), quantity: Quantity::Outgoing, target: Vec3::ONE, weight: 1.0 };
+    let goal = Goal {
+        place: Place::Surface(&case.target),
+        quantity: Quantity::Outgoing,
+        target: Vec3::ONE,
+        aspect: Aspect::Colour,
+        weight: 1.0,
+    };
     let (seconds, map) = time(Clock::Wall, || {
         Importance::trace(&scene, case.emitter, &goal, &MapParams::default(), monitor.job()).expect("a map")
     });
@@ -232,8 +237,13 @@ const LIT: f32 = 0.01;
 fn lamps() {
     let halls = [1usize, 100, 10_000].map(|count| (count, Arc::new(hall(count))));
     let floor = [(0, 0), (0, 1)];
-    let goals =
-        [Goal { place: Place::Surface(&floor), quantity: Quantity::Incident, target: Vec3::splat(100.0), weight: 1.0 }];
+    let goals = [Goal {
+        place: Place::Surface(&floor),
+        quantity: Quantity::Incident,
+        target: Vec3::splat(100.0),
+        aspect: Aspect::Colour,
+        weight: 1.0,
+    }];
     let solve = |scene: &Arc<Scene>| {
         let monitor = Monitor::default();
         let world = World::build(scene.clone(), monitor.job()).expect("a valid scene");

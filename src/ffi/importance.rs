@@ -183,7 +183,13 @@ pub unsafe extern "C" fn luxfer_importance_start(
         stage.start(job, move |_, _, job| {
             let count = scene.meshes.get(mesh as usize).map_or(0, |m| m.triangles.len());
             let triangles: Vec<_> = (0..count).map(|t| (mesh as usize, t)).collect();
-            let goal = Goal { place: Place::Surface(&triangles), quantity, target: Vec3::ONE, weight: 1.0 };
+            let goal = Goal {
+                place: Place::Surface(&triangles),
+                quantity,
+                target: Vec3::ONE,
+                aspect: relight::Aspect::Colour,
+                weight: 1.0,
+            };
             Importance::trace(&scene, material as usize, &goal, &params, job)
         })
     })

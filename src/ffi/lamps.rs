@@ -18,8 +18,8 @@ use super::stage::{Stage, need};
 use super::status::luxfer_status;
 use crate::error::{Error, ErrorKind, Result};
 use crate::relight::{
-    self, Colour, Estimate, Goal, GroupParams, GroupSolution, Lamps, Place, Quantity, Responses, lamp_responses,
-    solve_groups,
+    self, Aspect, Colour, Estimate, Goal, GroupParams, GroupSolution, Lamps, Place, Quantity, Responses,
+    lamp_responses, solve_groups,
 };
 use crate::scene::Scene;
 use glam::{DVec3, Vec3};
@@ -55,7 +55,7 @@ pub struct luxfer_lamps_params {
     pub group: luxfer_group,
     /// Centres agree whose neighbours along the coordinate are closer than this, >= 0; default 0.01.
     pub row_tolerance: f32,
-    /// 1: each channel of a group is solved for itself; 0: its power alone; default 0.
+    /// 1: each channel of a group is solved for itself, for goals of colour only; 0: its power alone; default 0.
     pub free_colour: u32,
     /// Largest multiplier of a group, >= 0; default infinity.
     pub most: f64,
@@ -213,6 +213,7 @@ struct Aim {
     place: Where,
     quantity: Quantity,
     target: Vec3,
+    aspect: Aspect,
     weight: f64,
 }
 
@@ -293,11 +294,11 @@ pub unsafe extern "C" fn luxfer_lamps_add_mesh(
 ) -> luxfer_status {
     enter(lamps, |stage| {
         let (quantity, target) = (self::quantity(quantity)?, colour("target", red, green, blue)?);
-        add(stage, Aim { place: Where::Mesh(mesh), quantity, target, weight })
+        add(stage, Aim { place: Where::Mesh(mesh), quantity, target, aspect: Aspect::Colour, weight })
     })
 }
 
-/// Adds a goal: the mean illuminance in lux that a calculation grid should have, of white light; weight as above. grid may
+/// Adds a goal: the mean illuminance in lux that a calculation grid should have, of whatever colour; weight as above. grid may
 /// be NULL for its default. Any thread.
 /// LUXFER_INVALID_ARGUMENT if lux is not finite or negative, LUXFER_INVALID_OPERATION before luxfer_lamps_set_scene.
 #[unsafe(no_mangle)]
@@ -311,7 +312,7 @@ pub unsafe extern "C" fn luxfer_lamps_add_grid(
         let [origin, across, down, normal] = params::read(grid)?.vectors()?;
         let target = colour("lux", lux, lux, lux)? / std::f32::consts::PI;
         let place = Where::Grid { origin, across, down, normal };
-        add(stage, Aim { place, quantity: Quantity::Incident, target, weight })
+        add(stage, Aim { place, quantity: Quantity::Incident, target, aspect: Aspect::Luminance, weight })
     })
 }
 
@@ -447,7 +448,7 @@ impl Aim {
             Where::Mesh(_) => Place::Surface(triangles),
             Where::Grid { origin, across, down, normal } => Place::Grid { origin, across, down, normal },
         };
-        Goal { place, quantity: self.quantity, target: self.target, weight: self.weight }
+        Goal { place, quantity: self.quantity, target: self.target, aspect: self.aspect, weight: self.weight }
     }
 }
 

@@ -11,9 +11,12 @@
 use super::Reach;
 use super::bounded::Problem;
 use super::estimate::{BATCHES, STUDENT_T, mean, pseudo_values, standard_error};
-use super::responses::{Goal, Responses};
+use super::responses::{Aspect, Estimate, Goal, Responses};
 use crate::error::{Error, ErrorKind, Result, check_range};
 use glam::DVec3;
+
+/// Luminance of linear RGB ([`crate::image::colour::luminance`]).
+const LUMINANCE: DVec3 = DVec3::new(0.212_639, 0.715_168_7, 0.072_192_3);
 
 /// What may change of a group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -110,6 +113,11 @@ fn check(responses: &Responses, goals: &[Goal], params: &GroupParams) -> Result<
         }
         check_range("weight", goal.weight, 0.0, 1e12)?;
     }
+    if params.colour == Colour::Free && goals.iter().any(|g| g.aspect == Aspect::Luminance) {
+        return Err(Error::argument(
+            "a goal asks for luminance alone, which says nothing about channels that are free: keep the groups' colours",
+        ));
+    }
     check_range("evenness", params.evenness, 1e-9, 1e3)?;
     check_range("tolerance", params.tolerance, 1e-6, 1.0)?;
     if !params.most.is_empty() && params.most.len() != responses.lamps() {
@@ -191,13 +199,18 @@ impl System<'_> {
         let groups = self.responses.lamps();
         let (mut matrix, mut right) = (Vec::new(), Vec::new());
         for ((goal, row), background) in self.goals.iter().zip(&measured.rows).zip(&measured.background) {
+            let target = goal.target.as_dvec3();
+            let senses: Vec<DVec3> = match goal.aspect {
+                Aspect::Colour => channels.iter().map(|c| DVec3::AXES[*c]).collect(),
+                Aspect::Luminance => vec![LUMINANCE],
+            };
             // A goal of darkness is measured by what all lamps would bring.
-            let bright = f64::from(goal.target.max_element());
+            let bright = target.max_element();
             let size = if bright > 0.0 { bright } else { row.iter().sum::<DVec3>().max_element() };
             let weight = if size > 0.0 { goal.weight / size } else { 0.0 };
-            for &c in channels {
-                matrix.extend(row.iter().map(|r| r[c] * weight));
-                right.push((f64::from(goal.target[c]) - background[c]) * weight);
+            for sense in senses {
+                matrix.extend(row.iter().map(|r| r.dot(sense) * weight));
+                right.push((target - background).dot(sense) * weight);
             }
         }
         // Equal lamps that come nearest: the least squares of one unknown.
@@ -218,24 +231,28 @@ impl System<'_> {
                 lamps + self.responses.background_of_batch(goal, b)
             })
             .collect();
-        let (mut achieved, mut half_width, mut reach) = (DVec3::ZERO, DVec3::ZERO, [Reach::Met; 3]);
-        for c in 0..3 {
-            let batches: [f64; BATCHES] = std::array::from_fn(|b| light[b][c]);
-            achieved[c] = mean(&batches);
-            half_width[c] = STUDENT_T * standard_error(&batches);
-            let target = f64::from(self.goals[goal].target[c]);
-            let miss = achieved[c] - target;
-            let brightest = f64::from(self.goals[goal].target.max_element());
-            let allowed = self.params.tolerance * brightest + half_width[c];
-            let dark = (0..BATCHES).all(|b| self.responses.batch(goal, b).iter().all(|r| r[c] == 0.0));
-            reach[c] = match () {
+        let light = |b: usize| light[b];
+        let all = Estimate::of(light);
+        let goal_of = &self.goals[goal];
+        let target = goal_of.target.as_dvec3();
+        let brightest = target.max_element();
+        let judge = |sense: DVec3| {
+            let batches: [f64; BATCHES] = std::array::from_fn(|b| light(b).dot(sense));
+            let miss = mean(&batches) - target.dot(sense);
+            let allowed = self.params.tolerance * brightest + STUDENT_T * standard_error(&batches);
+            let dark = (0..BATCHES).all(|b| self.responses.batch(goal, b).iter().all(|r| r.dot(sense) == 0.0));
+            match () {
                 () if miss.abs() <= allowed => Reach::Met,
                 () if miss > 0.0 => Reach::TooBright,
                 () if dark => Reach::Dark,
                 () => Reach::TooDim,
-            };
-        }
-        Outcome { achieved, half_width, reach }
+            }
+        };
+        let reach = match goal_of.aspect {
+            Aspect::Colour => DVec3::AXES.map(judge),
+            Aspect::Luminance => [judge(LUMINANCE); 3],
+        };
+        Outcome { achieved: all.mean, half_width: all.half_width(), reach }
     }
 
     /// The reason why goals are missed.
@@ -246,14 +263,20 @@ impl System<'_> {
         let &first = missed.first()?;
         let outcome = &outcomes[first];
         let channel = outcome.reach.iter().position(|r| *r != Reach::Met)?;
-        let name = ["red", "green", "blue"][channel];
+        let (name, sense) = match self.goals[first].aspect {
+            Aspect::Colour => (["red", "green", "blue"][channel], DVec3::AXES[channel]),
+            Aspect::Luminance => ("luminance", LUMINANCE),
+        };
         let off = scale.iter().all(|x| x[channel] == 0.0);
         let full =
             !self.params.most.is_empty() && scale.iter().zip(&self.params.most).all(|(x, most)| x[channel] >= *most);
         let why = match outcome.reach[channel] {
-            Reach::Dark => "no light of this channel finds its way there",
+            Reach::Dark => "no light of these lamps finds its way there",
             Reach::TooBright if off => "the other lights alone are brighter: dim or remove them, or raise the target",
             Reach::TooDim if full => "all groups are at their largest power: allow more, or lower the target",
+            _ if self.goals.iter().all(|g| g.aspect == Aspect::Luminance) => {
+                "the goals ask for different things of the same groups: divide them further, or weigh the goals"
+            }
             _ => match self.params.colour {
                 Colour::Kept => {
                     "the goals ask for different things of the same groups, or for a colour that the groups do not have: \
@@ -266,8 +289,8 @@ impl System<'_> {
         };
         Some(format!(
             "goal {first} asks for {:.4} cd/m² in {name} and gets {:.4}: {why} ({} of {} goals are missed)",
-            self.goals[first].target[channel],
-            outcome.achieved[channel],
+            self.goals[first].target.as_dvec3().dot(sense),
+            outcome.achieved.dot(sense),
             missed.len(),
             outcomes.len()
         ))

@@ -27,7 +27,7 @@ pub use estimate::BATCHES;
 pub use groups::{Colour, GroupParams, GroupSolution, Outcome, solve_groups};
 pub use importance::{Importance, MapParams, Response};
 pub use lamps::Lamps;
-pub use responses::{Estimate, Goal, Responses, lamp_responses};
+pub use responses::{Aspect, Estimate, Goal, Responses, lamp_responses};
 
 #[cfg(test)]
 mod tests;

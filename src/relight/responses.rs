@@ -11,6 +11,15 @@ use crate::job::Job;
 use crate::render::World;
 use glam::{DVec3, Vec3};
 
+/// What of a goal's light counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Aspect {
+    /// Every channel.
+    Colour,
+    /// The luminance alone: what a goal in lux asks for.
+    Luminance,
+}
+
 /// One of several things to be lit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Goal<'a> {
@@ -18,6 +27,7 @@ pub struct Goal<'a> {
     pub quantity: Quantity,
     /// Mean radiance it should have in cd/m² per channel, ≥ 0; in incident light illuminance / π.
     pub target: Vec3,
+    pub aspect: Aspect,
     /// What missing it by a share of itself weighs beside other goals, ≥ 0.
     pub weight: f64,
 }

@@ -68,8 +68,13 @@ fn a_white_closed_room_and_rooms_of_any_size() {
         scene.meshes.iter_mut().for_each(|m| m.material = 1);
         let world = World::build(Arc::new(scene), Monitor::default().job()).unwrap();
         let triangles = [(0, 0), (0, 1)];
-        let goal =
-            Goal { place: Place::Surface(&triangles), quantity: Quantity::Incident, target: Vec3::ONE, weight: 1.0 };
+        let goal = Goal {
+            place: Place::Surface(&triangles),
+            quantity: Quantity::Incident,
+            target: Vec3::ONE,
+            aspect: Aspect::Colour,
+            weight: 1.0,
+        };
         let grid = Goal {
             place: Place::Grid {
                 origin: Vec3::splat(0.2 * size),
@@ -117,6 +122,7 @@ fn a_lamp_seen_edge_on_is_dark() {
         place: Place::Surface(input.target_triangles),
         quantity: Quantity::Incident,
         target: Vec3::ONE,
+        aspect: Aspect::Colour,
         weight: 1.0,
     };
     let lamps = Lamps::of_meshes(world.scene(), 1).unwrap();

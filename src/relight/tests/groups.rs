@@ -23,7 +23,7 @@ fn lamp_room(lamps: &[[usize; 2]], values: &[f32]) -> (World, Lamps) {
 const FLOOR: &[(usize, usize)] = &[(0, 0), (0, 1)];
 
 fn goal(place: Place<'_>, target: Vec3) -> Goal<'_> {
-    Goal { place, quantity: Quantity::Incident, target, weight: 1.0 }
+    Goal { place, quantity: Quantity::Incident, target, aspect: Aspect::Colour, weight: 1.0 }
 }
 
 /// A horizontal square of side 1 m below the ceiling's point (x, z).
@@ -139,6 +139,24 @@ fn other_light_that_is_too_bright_is_named() {
     ] {
         assert_eq!(solve_groups(&responses, &goals, &bad).unwrap_err().kind, ErrorKind::InvalidArgument);
     }
+}
+
+/// A goal in lux is met by its luminance, whatever the colour that the room gives the light.
+#[test]
+fn lux_are_luminance() {
+    let (world, lamps) = lamp_room(&[[3, 3], [12, 12]], &[1.0; 2]);
+    let mut scene = (**world.scene()).clone();
+    scene.materials[0].base_color = Vec3::new(0.7, 0.4, 0.2);
+    let world = World::build(Arc::new(scene), Monitor::default().job()).unwrap();
+    let lux = Goal { aspect: Aspect::Luminance, ..goal(desk(2.0, 2.0), Vec3::splat(500.0 / std::f32::consts::PI)) };
+    let responses = respond(&world, &lamps, &[lux]);
+    let solution = solve_groups(&responses, &[lux], &GroupParams::default()).unwrap();
+    let outcome = &solution.outcomes[0];
+    assert_eq!((outcome.reach, &solution.unreachable), ([Reach::Met; 3], &None));
+    let illuminance = std::f32::consts::PI * crate::image::colour::luminance(outcome.achieved.as_vec3());
+    assert!((illuminance - 500.0).abs() < 0.1 && outcome.achieved.x > 1.05 * outcome.achieved.z, "{outcome:?}");
+    let free = GroupParams { colour: Colour::Free, ..GroupParams::default() };
+    assert_eq!(solve_groups(&responses, &[lux], &free).unwrap_err().kind, ErrorKind::InvalidArgument);
 }
 
 /// Colours that are free are solved channel by channel, as the closed form does.
