@@ -8,22 +8,20 @@ use super::context::luxfer_context;
 use super::guard::{enter, guard};
 use super::handle::{self, Handle, Owned, tag};
 use super::illuminance::luxfer_illuminance_grid;
-use super::image::{Pixels, luxfer_image};
 use super::job::luxfer_job;
-use super::params::{self, Report, Versioned};
-use super::pointer::{Out, copy_text};
-use super::relight::{luxfer_quantity, luxfer_reach, quantity, reach_value};
+use super::params::{self, Versioned};
+use super::pointer::Out;
+use super::relight::{luxfer_quantity, quantity};
 use super::scene::{SceneObject, colour, luxfer_scene, missing};
 use super::stage::{Stage, need};
 use super::status::luxfer_status;
 use crate::error::{Error, ErrorKind, Result};
 use crate::relight::{
-    self, Aspect, Colour, Estimate, Goal, GroupParams, GroupSolution, Lamps, Place, Quantity, Responses,
-    lamp_responses, solve_groups,
+    self, Aspect, Colour, Goal, GroupParams, GroupSolution, Lamps, Place, Quantity, Responses, lamp_responses,
+    solve_groups,
 };
 use crate::scene::Scene;
-use glam::{DVec3, Vec3};
-use std::ffi::c_char;
+use glam::Vec3;
 use std::sync::Arc;
 
 /// A calculation of lamps. See luxfer_lamps_create.
@@ -98,109 +96,6 @@ unsafe impl Versioned for luxfer_lamps_params {
     }
 }
 
-/// The result on the whole. Set struct_size before the call.
-#[repr(C)]
-#[derive(Clone, Copy)]
-pub struct luxfer_lamps_report {
-    /// sizeof(luxfer_lamps_report), set by the caller.
-    pub struct_size: u32,
-    /// Number of lamps.
-    pub lamps: u32,
-    /// Number of groups.
-    pub groups: u32,
-    /// Number of goals.
-    pub goals: u32,
-    /// Paths traced for each goal.
-    pub paths: u32,
-    /// 1 if all goals are met; 0 if not: luxfer_lamps_get_reason tells why.
-    pub met: u32,
-}
-
-// SAFETY: plain integers.
-unsafe impl Versioned for luxfer_lamps_report {
-    const NAME: &'static str = "luxfer_lamps_report";
-    const SIZES: &'static [usize] = &[24];
-    fn defaults() -> Self {
-        Self { struct_size: 24, lamps: 0, groups: 0, goals: 0, paths: 0, met: 0 }
-    }
-}
-
-/// One lamp. Set struct_size before the call.
-#[repr(C)]
-#[derive(Clone, Copy)]
-pub struct luxfer_lamp {
-    /// sizeof(luxfer_lamp), set by the caller.
-    pub struct_size: u32,
-    /// The group it is in.
-    pub group: u32,
-    /// Its centre: texture coordinates and 0, or metres.
-    pub centre: [f64; 3],
-    /// What to multiply its emission with, per channel, >= 0.
-    pub scale: [f64; 3],
-    /// Half-widths of the 95 % confidence intervals of scale.
-    pub half_width: [f64; 3],
-}
-
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_lamp {
-    const NAME: &'static str = "luxfer_lamp";
-    const SIZES: &'static [usize] = &[80];
-    fn defaults() -> Self {
-        Self { struct_size: 80, group: 0, centre: [0.0; 3], scale: [0.0; 3], half_width: [0.0; 3] }
-    }
-}
-
-/// What a goal gets. Set struct_size before the call.
-#[repr(C)]
-#[derive(Clone, Copy)]
-pub struct luxfer_lamps_goal {
-    /// sizeof(luxfer_lamps_goal), set by the caller.
-    pub struct_size: u32,
-    /// LUXFER_REACH_ value of each channel.
-    pub reach: [luxfer_reach; 3],
-    /// Mean radiance asked for, in cd/m²; illuminance / pi for a grid.
-    pub target: [f64; 3],
-    /// Mean radiance under the powers found.
-    pub achieved: [f64; 3],
-    /// Half-widths of the 95 % confidence intervals of achieved.
-    pub half_width: [f64; 3],
-    /// Mean radiance under all other light.
-    pub background: [f64; 3],
-}
-
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_lamps_goal {
-    const NAME: &'static str = "luxfer_lamps_goal";
-    const SIZES: &'static [usize] = &[112];
-    fn defaults() -> Self {
-        let zero = [0.0; 3];
-        Self { struct_size: 112, reach: [0; 3], target: zero, achieved: zero, half_width: zero, background: zero }
-    }
-}
-
-/// What one lamp means to one goal. Set struct_size before the call.
-#[repr(C)]
-#[derive(Clone, Copy)]
-pub struct luxfer_lamps_response {
-    /// sizeof(luxfer_lamps_response), set by the caller.
-    pub struct_size: u32,
-    /// 0.
-    pub reserved: u32,
-    /// Mean radiance of the goal under the lamp as it is, in cd/m² per channel.
-    pub mean: [f64; 3],
-    /// Half-widths of the 95 % confidence intervals of mean.
-    pub half_width: [f64; 3],
-}
-
-// SAFETY: plain numbers.
-unsafe impl Versioned for luxfer_lamps_response {
-    const NAME: &'static str = "luxfer_lamps_response";
-    const SIZES: &'static [usize] = &[56];
-    fn defaults() -> Self {
-        Self { struct_size: 56, reserved: 0, mean: [0.0; 3], half_width: [0.0; 3] }
-    }
-}
-
 #[derive(Clone, Default)]
 pub(super) struct Inputs {
     emission: Option<(Arc<SceneObject>, u32)>,
@@ -224,13 +119,13 @@ enum Where {
 }
 
 pub(super) struct Output {
-    scene: Arc<Scene>,
-    material: usize,
-    lamps: Lamps,
-    group_of: Vec<u32>,
-    responses: Responses,
-    targets: Vec<Vec3>,
-    solution: GroupSolution,
+    pub scene: Arc<Scene>,
+    pub material: usize,
+    pub lamps: Lamps,
+    pub group_of: Vec<u32>,
+    pub responses: Responses,
+    pub targets: Vec<Vec3>,
+    pub solution: GroupSolution,
 }
 
 impl Handle for luxfer_lamps {
@@ -450,142 +345,6 @@ impl Aim {
         };
         Goal { place, quantity: self.quantity, target: self.target, aspect: self.aspect, weight: self.weight }
     }
-}
-
-/// Tells the result on the whole. Any thread.
-/// LUXFER_NOT_READY before a job has succeeded.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_lamps_get_report(
-    lamps: *mut luxfer_lamps,
-    report: *mut luxfer_lamps_report,
-) -> luxfer_status {
-    enter(lamps, |stage| {
-        let out = Report::new(report)?;
-        let o = stage.output()?;
-        out.set(luxfer_lamps_report {
-            lamps: o.lamps.count() as u32,
-            groups: o.solution.scale.len() as u32,
-            goals: o.targets.len() as u32,
-            paths: o.responses.paths,
-            met: u32::from(o.solution.unreachable.is_none()),
-            ..luxfer_lamps_report::defaults()
-        });
-        Ok(())
-    })
-}
-
-/// Tells the power of a lamp. Any thread.
-/// LUXFER_NOT_READY before a job has succeeded, LUXFER_NOT_FOUND if there is no such lamp.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_lamps_get_lamp(
-    lamps: *mut luxfer_lamps,
-    index: u32,
-    lamp: *mut luxfer_lamp,
-) -> luxfer_status {
-    enter(lamps, |stage| {
-        let out = Report::new(lamp)?;
-        let o = stage.output()?;
-        let &group = o.group_of.get(index as usize).ok_or_else(|| missing("lamp", index, o.group_of.len()))?;
-        out.set(luxfer_lamp {
-            group,
-            centre: o.lamps.centres()[index as usize].as_dvec3().to_array(),
-            scale: o.solution.scale[group as usize].to_array(),
-            half_width: o.solution.half_width[group as usize].to_array(),
-            ..luxfer_lamp::defaults()
-        });
-        Ok(())
-    })
-}
-
-/// Tells what a goal gets. Any thread.
-/// LUXFER_NOT_READY before a job has succeeded, LUXFER_NOT_FOUND if there is no such goal.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_lamps_get_goal(
-    lamps: *mut luxfer_lamps,
-    index: u32,
-    goal: *mut luxfer_lamps_goal,
-) -> luxfer_status {
-    enter(lamps, |stage| {
-        let out = Report::new(goal)?;
-        let o = stage.output()?;
-        let i = index as usize;
-        let outcome = o.solution.outcomes.get(i).ok_or_else(|| missing("goal", index, o.targets.len()))?;
-        out.set(luxfer_lamps_goal {
-            reach: outcome.reach.map(reach_value),
-            target: o.targets[i].as_dvec3().to_array(),
-            achieved: outcome.achieved.to_array(),
-            half_width: outcome.half_width.to_array(),
-            background: o.responses.background(i).mean.to_array(),
-            ..luxfer_lamps_goal::defaults()
-        });
-        Ok(())
-    })
-}
-
-/// Tells what a lamp means to a goal, for hosts that mix the light themselves. Any thread.
-/// LUXFER_NOT_READY before a job has succeeded, LUXFER_NOT_FOUND if there is no such goal or lamp.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_lamps_get_response(
-    lamps: *mut luxfer_lamps,
-    goal: u32,
-    lamp: u32,
-    response: *mut luxfer_lamps_response,
-) -> luxfer_status {
-    enter(lamps, |stage| {
-        let out = Report::new(response)?;
-        let o = stage.output()?;
-        if goal as usize >= o.responses.goals() {
-            return Err(missing("goal", goal, o.responses.goals()));
-        }
-        if lamp as usize >= o.responses.lamps() {
-            return Err(missing("lamp", lamp, o.responses.lamps()));
-        }
-        let estimate: Estimate = o.responses.lamp(goal as usize, lamp as usize);
-        out.set(luxfer_lamps_response {
-            mean: estimate.mean.to_array(),
-            half_width: estimate.half_width().to_array(),
-            ..luxfer_lamps_response::defaults()
-        });
-        Ok(())
-    })
-}
-
-/// Copies the reason why the goals are not all met, zero-terminated, into buffer of capacity bytes, cut if it is longer;
-/// empty if they are. *needed, unless NULL, receives the capacity for all of it. Any thread.
-/// LUXFER_NOT_READY before a job has succeeded.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_lamps_get_reason(
-    lamps: *mut luxfer_lamps,
-    buffer: *mut c_char,
-    capacity: usize,
-    needed: *mut usize,
-) -> luxfer_status {
-    enter(lamps, |stage| {
-        let output = stage.output()?;
-        copy_text(output.solution.unreachable.as_deref().unwrap_or(""), buffer, capacity, needed)
-    })
-}
-
-/// Gets the emission's texture with every lamp multiplied by its scale; linear RGB. The caller releases *texture. Any
-/// thread.
-/// LUXFER_NOT_READY before a job has succeeded, LUXFER_NOT_FOUND if the emission has no texture.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_lamps_get_texture(
-    lamps: *mut luxfer_lamps,
-    texture: *mut *mut luxfer_image,
-) -> luxfer_status {
-    enter(lamps, |stage| {
-        let out = Out::new(texture, "texture")?;
-        let o = stage.output()?;
-        let map = o.scene.materials[o.material].emission_texture;
-        let map =
-            map.ok_or_else(|| Error::new(ErrorKind::NotFound, "the emission has no texture: scale its meshes"))?;
-        let image = &o.scene.textures[map.texture].image;
-        let scale: Vec<DVec3> = o.group_of.iter().map(|&g| o.solution.scale[g as usize]).collect();
-        let scaled = Pixels::counted(stage.context(), image.width, image.height, 3, || o.lamps.scaled(image, &scale))?;
-        out.set(handle::give(scaled));
-        Ok(())
-    })
 }
 
 /// Adds a reference. Any thread.

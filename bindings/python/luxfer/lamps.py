@@ -26,8 +26,8 @@ class Lamps(StageBase):
     >>> lamps.set_scene(room, material)
     >>> lamps.add_grid({"origin": (1, 0.8, 1), "across": (2, 0, 0), "down": (0, 0, 1)}, 500)
     >>> report = lamps.run(paths=4096).report
-    >>> report.lamps, lamps.goal(0).reach, lamps.reason
-    (1, (0, 0, 0), '')
+    >>> report.lamps, report.met, lamps.reason
+    (1, 1, '')
     """
 
     kind = "lamps"
