@@ -54,7 +54,9 @@ def solve(scene, sensor, keys, start, target, spp):
         loss = dr.sum(dr.square(light / goal - 1))
         dr.backward(loss)
         if iteration < 0:
-            continue  # the kernels are compiled
+            # The kernels are compiled; their gradient does not count.
+            optimiser["colour"] = mi.Color3f(1, 1, 1)
+            continue
         optimiser.set_learning_rate(RATE * DECAY**iteration)
         optimiser.step()
         colour = np.array(optimiser["colour"]).ravel()
