@@ -2253,7 +2253,7 @@ typedef struct luxfer_lamps_params {
     luxfer_group group;
     /** Centres agree whose neighbours along the coordinate are closer than this, >= 0; default 0.01. */
     float row_tolerance;
-    /** 1: each channel of a group is solved for itself; 0: its power alone; default 0. */
+    /** 1: each channel of a group is solved for itself, for goals of colour only; 0: its power alone; default 0. */
     uint32_t free_colour;
     /** Largest multiplier of a group, >= 0; default infinity. */
     double most;
@@ -2274,6 +2274,88 @@ typedef struct luxfer_lamps_params {
     /** Seed of the paths; default 1. */
     uint64_t seed;
 } luxfer_lamps_params;
+
+/** All lamps. */
+#define LUXFER_GROUP_ALL 0
+
+/** Every lamp for itself. */
+#define LUXFER_GROUP_EACH 1
+
+/** Those whose centres agree in their first coordinate: u of a texture, x of meshes. */
+#define LUXFER_GROUP_FIRST 2
+
+/** Those whose centres agree in their second coordinate: v of a texture, y of meshes. */
+#define LUXFER_GROUP_SECOND 3
+
+/** Those whose centres agree in their third coordinate: z of meshes. */
+#define LUXFER_GROUP_THIRD 4
+
+/**
+ * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+ */
+luxfer_status luxfer_lamps_params_init(luxfer_lamps_params *params,
+                                       size_t size);
+
+/** Creates the stage. The caller releases *lamps. Any thread. */
+luxfer_status luxfer_lamps_create(luxfer_context *context, luxfer_lamps **lamps);
+
+/**
+ * Sets the scene and the emitting material whose lamps are solved for, at the strength that the solution will multiply;
+ * forgets the goals. Any thread.
+ * LUXFER_NOT_FOUND if the scene has no such material.
+ */
+luxfer_status luxfer_lamps_set_scene(luxfer_lamps *lamps,
+                                     luxfer_scene *scene,
+                                     uint32_t material);
+
+/**
+ * Adds a goal: the mean radiance a mesh should have, in cd/m² per channel, each finite and >= 0; quantity is a
+ * LUXFER_QUANTITY_ value; weight, >= 0, is what missing it weighs beside the other goals. Any thread.
+ * LUXFER_NOT_FOUND if the scene has no such mesh, LUXFER_INVALID_OPERATION before luxfer_lamps_set_scene.
+ */
+luxfer_status luxfer_lamps_add_mesh(luxfer_lamps *lamps,
+                                    uint32_t mesh,
+                                    luxfer_quantity quantity,
+                                    float red,
+                                    float green,
+                                    float blue,
+                                    double weight);
+
+/**
+ * Adds a goal: the mean illuminance in lux that a calculation grid should have, of whatever colour; weight as above. grid may
+ * be NULL for its default. Any thread.
+ * LUXFER_INVALID_ARGUMENT if lux is not finite or negative, LUXFER_INVALID_OPERATION before luxfer_lamps_set_scene.
+ */
+luxfer_status luxfer_lamps_add_grid(luxfer_lamps *lamps,
+                                    const luxfer_illuminance_grid *grid,
+                                    float lux,
+                                    double weight);
+
+/** Forgets the goals. Any thread. */
+luxfer_status luxfer_lamps_clear_goals(luxfer_lamps *lamps);
+
+/**
+ * Starts a job that measures and solves. params may be NULL for the defaults. The caller releases *job. Any thread.
+ * LUXFER_INVALID_OPERATION if the scene or a goal is missing or a job runs already. Goals that cannot be met are no
+ * error: the powers then are the nearest that the bounds allow. The job may end with LUXFER_UNREACHABLE if no goal gets
+ * light from any lamp, LUXFER_INVALID_ARGUMENT if the scene is not valid, the emission has no lamp, or a setting is out of
+ * range.
+ */
+luxfer_status luxfer_lamps_start(luxfer_lamps *lamps,
+                                 const luxfer_lamps_params *params,
+                                 luxfer_job **job);
+
+/** Adds a reference. Any thread. */
+luxfer_status luxfer_lamps_retain(luxfer_lamps *lamps);
+
+/** Gives a reference back; a job that runs goes on. Any thread. */
+luxfer_status luxfer_lamps_release(luxfer_lamps *lamps);
+
+/* ====================================================================================================================
+ * Results of lamps
+ *
+ * The powers found, what each goal gets, and what each lamp means to it.
+ * ==================================================================================================================== */
 
 /** The result on the whole. Set struct_size before the call. */
 typedef struct luxfer_lamps_report {
@@ -2333,76 +2415,6 @@ typedef struct luxfer_lamps_response {
     double half_width[3];
 } luxfer_lamps_response;
 
-/** All lamps. */
-#define LUXFER_GROUP_ALL 0
-
-/** Every lamp for itself. */
-#define LUXFER_GROUP_EACH 1
-
-/** Those whose centres agree in their first coordinate: u of a texture, x of meshes. */
-#define LUXFER_GROUP_FIRST 2
-
-/** Those whose centres agree in their second coordinate: v of a texture, y of meshes. */
-#define LUXFER_GROUP_SECOND 3
-
-/** Those whose centres agree in their third coordinate: z of meshes. */
-#define LUXFER_GROUP_THIRD 4
-
-/**
- * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
- */
-luxfer_status luxfer_lamps_params_init(luxfer_lamps_params *params,
-                                       size_t size);
-
-/** Creates the stage. The caller releases *lamps. Any thread. */
-luxfer_status luxfer_lamps_create(luxfer_context *context, luxfer_lamps **lamps);
-
-/**
- * Sets the scene and the emitting material whose lamps are solved for, at the strength that the solution will multiply;
- * forgets the goals. Any thread.
- * LUXFER_NOT_FOUND if the scene has no such material.
- */
-luxfer_status luxfer_lamps_set_scene(luxfer_lamps *lamps,
-                                     luxfer_scene *scene,
-                                     uint32_t material);
-
-/**
- * Adds a goal: the mean radiance a mesh should have, in cd/m² per channel, each finite and >= 0; quantity is a
- * LUXFER_QUANTITY_ value; weight, >= 0, is what missing it weighs beside the other goals. Any thread.
- * LUXFER_NOT_FOUND if the scene has no such mesh, LUXFER_INVALID_OPERATION before luxfer_lamps_set_scene.
- */
-luxfer_status luxfer_lamps_add_mesh(luxfer_lamps *lamps,
-                                    uint32_t mesh,
-                                    luxfer_quantity quantity,
-                                    float red,
-                                    float green,
-                                    float blue,
-                                    double weight);
-
-/**
- * Adds a goal: the mean illuminance in lux that a calculation grid should have, of white light; weight as above. grid may
- * be NULL for its default. Any thread.
- * LUXFER_INVALID_ARGUMENT if lux is not finite or negative, LUXFER_INVALID_OPERATION before luxfer_lamps_set_scene.
- */
-luxfer_status luxfer_lamps_add_grid(luxfer_lamps *lamps,
-                                    const luxfer_illuminance_grid *grid,
-                                    float lux,
-                                    double weight);
-
-/** Forgets the goals. Any thread. */
-luxfer_status luxfer_lamps_clear_goals(luxfer_lamps *lamps);
-
-/**
- * Starts a job that measures and solves. params may be NULL for the defaults. The caller releases *job. Any thread.
- * LUXFER_INVALID_OPERATION if the scene or a goal is missing or a job runs already. Goals that cannot be met are no
- * error: the powers then are the nearest that the bounds allow. The job may end with LUXFER_UNREACHABLE if no goal gets
- * light from any lamp, LUXFER_INVALID_ARGUMENT if the scene is not valid, the emission has no lamp, or a setting is out of
- * range.
- */
-luxfer_status luxfer_lamps_start(luxfer_lamps *lamps,
-                                 const luxfer_lamps_params *params,
-                                 luxfer_job **job);
-
 /**
  * Tells the result on the whole. Any thread.
  * LUXFER_NOT_READY before a job has succeeded.
@@ -2419,9 +2431,7 @@ luxfer_status luxfer_lamps_get_lamp(luxfer_lamps *lamps, uint32_t index, luxfer_
  * Tells what a goal gets. Any thread.
  * LUXFER_NOT_READY before a job has succeeded, LUXFER_NOT_FOUND if there is no such goal.
  */
-luxfer_status luxfer_lamps_get_goal(luxfer_lamps *lamps,
-                                    uint32_t index,
-                                    luxfer_lamps_goal *goal);
+luxfer_status luxfer_lamps_get_goal(luxfer_lamps *lamps, uint32_t index, luxfer_lamps_goal *goal);
 
 /**
  * Tells what a lamp means to a goal, for hosts that mix the light themselves. Any thread.
@@ -2449,12 +2459,6 @@ luxfer_status luxfer_lamps_get_reason(luxfer_lamps *lamps,
  */
 luxfer_status luxfer_lamps_get_texture(luxfer_lamps *lamps,
                                        luxfer_image **texture);
-
-/** Adds a reference. Any thread. */
-luxfer_status luxfer_lamps_retain(luxfer_lamps *lamps);
-
-/** Gives a reference back; a job that runs goes on. Any thread. */
-luxfer_status luxfer_lamps_release(luxfer_lamps *lamps);
 
 /* ====================================================================================================================
  * Importance

@@ -1135,7 +1135,8 @@ class LampsParams(TypedDict, total=False):
     row_tolerance: float
     """Centres agree whose neighbours along the coordinate are closer than this, >= 0; default 0.01."""
     free_colour: int
-    """1: each channel of a group is solved for itself; 0: its power alone; default 0."""
+    """1: each channel of a group is solved for itself, for goals of colour only; 0: its power alone; default
+    0."""
     most: float
     """Largest multiplier of a group, >= 0; default infinity."""
     evenness: float
