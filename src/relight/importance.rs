@@ -78,8 +78,7 @@ impl Importance {
         check_range("width", params.width, 1, MAX_CELLS)?;
         check_range("height", params.height, 1, MAX_CELLS)?;
         let tracing = &params.tracing;
-        check_range("paths", tracing.paths, 1024, 1 << 30)?;
-        check_range("target_error", tracing.target_error, 0.0, 1.0)?;
+        tracing.check()?;
         let even = evenly_lit(scene, emitter, params)?;
         let world = World::build(Arc::new(even), job.part(0.0, 0.1))?;
         let points = Sampler::new(scene, goal.place, goal.quantity)?;

@@ -6,7 +6,7 @@ use super::lamps::Lamps;
 use super::target::Sampler;
 use super::transport::{self, Batches};
 use super::{Params, Place, Quantity, time_left};
-use crate::error::{Error, Result, check_range};
+use crate::error::{Error, Result};
 use crate::job::Job;
 use crate::render::World;
 use glam::{DVec3, Vec3};
@@ -89,8 +89,7 @@ pub fn lamp_responses(
     params: &Params,
     job: Job,
 ) -> Result<Responses> {
-    check_range("paths", params.paths, 1024, 1 << 30)?;
-    check_range("target_error", params.target_error, 0.0, 1.0)?;
+    params.check()?;
     if goals.is_empty() || goals.len() > MAX_GOALS {
         return Err(Error::argument(format!("there are {} goals; there must be 1 to {MAX_GOALS}", goals.len())));
     }

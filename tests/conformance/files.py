@@ -1,4 +1,4 @@
-"""Damaged files: the library's own PNG, EXR and GLB files, and a Radiance HDR, with bytes and numbers changed by chance, loaded
+"""Damaged files: the library's own PNG, EXR, GLB and EULUMDAT files, an IES file and a Radiance HDR, with bytes and numbers changed by chance, loaded
 from memory, and texts made of the symbols that light path expressions and strokes are written in. Whatever loads is used.
 
     python3 files.py FIRST COUNT JOURNAL   loads the files of these seeds in this process
@@ -138,12 +138,22 @@ class Loader:
         self.scenes.append(lit.to_bytes())
         empty = luxfer.Scene(self.context)
         photo = luxfer.Image(self.context, numpy.zeros((9, 9, 3), numpy.float32))
+        shape = "1 1000 1 3 2 1 2 0.5 0.5 0\n1 1 50\n0 45 90\n0 180\n100 80 0\n100 90 10\n"
+        ies = f"IESNA:LM-63-2002\n[LUMINAIRE] Lamp\nTILT=NONE\n{shape}".encode()
+        self.distributions = [(ies, 0)]
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder, "a.ldt")
+            luxfer.Distribution.load_memory(self.context, ies, "ies").save(path)
+            self.distributions.append((path.read_bytes(), 1))
         self.stages = [luxfer.Render(self.context, empty), luxfer.Transfer(self.context, photo, empty, "Ceiling")]
 
     def load(self, seed: int) -> None:
         rng = random.Random(seed)
         if rng.random() < 0.3:
             self.say(seed, rng)
+            return
+        if rng.random() < 0.2:
+            self.shine(seed, rng)
             return
         is_scene = rng.random() < 0.6
         data = damaged_glb(rng.choice(self.scenes), rng) if is_scene else damaged_bytes(rng.choice(self.images), rng)
@@ -156,6 +166,21 @@ class Loader:
         check(seed, status, start)
         if status == abi.LUXFER_OK:
             self.use(out, is_scene, seed)
+
+    def shine(self, seed: int, rng: random.Random) -> None:
+        """A file of a luminaire with bytes or numbers changed."""
+        data, kind = rng.choice(self.distributions)
+        if rng.random() < 0.5:
+            words = data.split(b" ")
+            words[rng.randrange(len(words))] = rng.choice([b"-1", b"0", b"1e400", b"nan", b"99999999999", b"7", b"x", b"1\n2", b""])
+            data = b" ".join(words)
+        else:
+            data = damaged_bytes(data, rng)
+        out, start = ctypes.POINTER(abi.luxfer_distribution)(), time.monotonic()
+        status = self.library.luxfer_distribution_load_memory(self.context.handle, data, len(data), kind, ctypes.byref(out))
+        check(seed, status, start)
+        if status == abi.LUXFER_OK:
+            self.library.luxfer_distribution_release(out)
 
     def say(self, seed: int, rng: random.Random) -> None:
         which = rng.randrange(2)

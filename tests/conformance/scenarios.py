@@ -223,6 +223,49 @@ def light() -> Scenario:
     return s
 
 
+def lamps() -> Scenario:
+    """Powers of lamps for goals, and what a surface means to one."""
+    s = Scenario()
+    scene, stage = s.room(), s.make("lamps_create", s.context)
+    s.references("lamps", stage)
+    s.call("lamps_set_scene", stage, scene, 1)
+    s.call("lamps_add_grid", stage, struct("illuminance_grid", across=array("float", 1, 0, 0), down=array("float", 0, 0, 1)), 500.0, 1.0)
+    s.call("lamps_clear_goals", stage)
+    s.call("lamps_add_mesh", stage, 0, 0, 2.0, 2.0, 2.0, 1.0)
+    s.run("lamps_start", stage, struct("lamps_params", paths=2048))
+    s.call("lamps_get_report", stage, struct("lamps_report", "size"))
+    s.call("lamps_get_lamp", stage, 0, struct("lamp", "size"))
+    s.call("lamps_get_goal", stage, 0, struct("lamps_goal", "size"))
+    s.call("lamps_get_response", stage, 0, 0, struct("lamps_response", "size"))
+    s.call("lamps_get_reason", stage, ROOM, 300, ROOM)
+    s.make("lamps_get_texture", stage)
+    importance = s.make("importance_create", s.context)
+    s.references("importance", importance)
+    s.call("importance_set_scene", importance, scene, 1, 0)
+    s.run("importance_start", importance, struct("importance_params", width=6, height=4, paths=2048))
+    s.make("importance_get_image", importance)
+    texture, placement = s.image(), array("double", 1, 0, 0, 0, 1, 0, 0, 0, 1)
+    s.call("importance_respond", importance, texture, placement, struct("importance_report", "size"))
+    s.call("importance_solve", importance, texture, placement, 1.0, 1.0, 1.0, struct("relight_report", "size"))
+    return s
+
+
+def photometry() -> Scenario:
+    s = Scenario()
+    s.call("colour_temperature", s.context, 1.0, 0.9, 0.7, ROOM, ROOM)
+    s.call("colour_of_temperature", s.context, 3000.0, 0.0, ROOM)
+    s.call("image_glare", s.image(32, 24), 1.0, 0.0, struct("glare_report", "size"))
+    file = b"IESNA:LM-63-2002\nTILT=NONE\n1 1000 1 3 1 1 2 0.5 0.5 0\n1 1 50\n0 45 90\n0\n100 80 0\n"
+    lamp = s.make("distribution_load_memory", s.context, file, len(file), 0)
+    s.references("distribution", lamp)
+    s.call("distribution_save", lamp, "a.ldt")
+    s.make("distribution_load", s.context, "a.ldt")
+    s.call("distribution_get_report", lamp, struct("distribution_report", "size"))
+    s.call("distribution_get_name", lamp, ROOM, 50, ROOM)
+    s.call("distribution_get_intensity", lamp, 0.0, 30.0, ROOM)
+    return s
+
+
 def transfer() -> Scenario:
     s = Scenario()
     scene, (photo, strokes) = s.room(), s.photograph()
@@ -312,7 +355,7 @@ def sheets() -> Scenario:
     return s
 
 
-ALL = [library, images, scenes, jobs, photo, emission, rendering, light, transfer, stylisation, sheets]
+ALL = [library, images, scenes, jobs, photo, emission, rendering, light, lamps, photometry, transfer, stylisation, sheets]
 
 
 def programs() -> dict[str, list[Call]]:
