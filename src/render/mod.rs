@@ -121,7 +121,8 @@ pub struct Params {
     /// Stop when every part of the image (tiles of 8 × 8 pixels, root mean square) is known to this: half the width of the
     /// interval that holds the luminance of a pixel with a probability of 95 %, relative to that luminance. 0.1 means
     /// "within 10 % of its value, 19 times out of 20". Pixels darker than a tenth of the image's mean luminance need not
-    /// be known better than that tenth. 0 = never. With both targets both are reached.
+    /// be known better than that tenth. A part gets at most 64 times `samples`, though it may miss the target. 0 = never.
+    /// With both targets both are reached.
     pub pixel_error: f32,
     /// Stop after this many milliseconds; 0 = never.
     pub time_budget_ms: u32,

@@ -25,6 +25,9 @@ const COARSE: usize = 1024;
 const FIRST: u32 = 4;
 /// Paths of every pixel before anything is decided from them.
 const EVEN: u32 = 16;
+/// Paths that a pixel of a tile gets at most, relative to what pixels are allowed on the average. Light that few paths find
+/// would take all there are: a caustic, the image of a small lamp in polish.
+const SHARE: u32 = 64;
 /// Pixels darker than this share of the mean luminance count as if they were as bright.
 const DARK: f64 = 0.1;
 
@@ -193,8 +196,9 @@ impl<'p> Plan<'p> {
         let whole = whole(&tallies);
 
         // What they need, as far as there are paths and time for it.
+        let most = self.params.samples.saturating_mul(SHARE);
         let lack =
-            |tile: usize| (wanted[tile] - f64::from(tallies[tile].most)).max(0.0) * f64::from(tallies[tile].pixels);
+            |tile: usize| (wanted[tile].min(f64::from(most)) - f64::from(tallies[tile].most)).max(0.0) * f64::from(tallies[tile].pixels);
         let mut budget: f64 = (0..tallies.len()).map(lack).sum();
         if let Some(times) = clock.affordable() {
             budget = budget.min(whole.paths as f64 * times);
@@ -202,7 +206,7 @@ impl<'p> Plan<'p> {
         let allowed = f64::from(self.params.samples) * f64::from(whole.pixels) - whole.paths as f64;
         let mut needy: Vec<(f64, usize)> = (0..tallies.len())
             .map(|tile| (wanted[tile] / f64::from(tallies[tile].most.max(1)), tile))
-            .filter(|&(need, _)| need > 1.0)
+            .filter(|&(need, tile)| need > 1.0 && tallies[tile].most < most)
             .collect();
         // Equal needs in order of the tiles.
         needy.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
@@ -214,7 +218,7 @@ impl<'p> Plan<'p> {
             if spent > 0.0 && spent >= budget || spent + cost > allowed {
                 break;
             }
-            counts[tile] = counts[tile].saturating_mul(2);
+            counts[tile] = counts[tile].saturating_mul(2).min(most);
             spent += cost;
         }
         Ok((spent > 0.0).then_some(Pass { counts, stride: 1 }))
