@@ -28,17 +28,23 @@ install bpy 'bpy==5.0.*' 'numpy<2'
 # What `stylit_judge.py` beside the test data runs on.
 install judge numpy scipy pillow
 
-[ -z "$wanted" ] || exit 0
-
-# ebsynth, CPU back end: in no package registry, so only where its source can be reached.
-if [ ! -x target/peers/ebsynth/bin/ebsynth ] && command -v git >/dev/null && command -v g++ >/dev/null; then
+# ebsynth, CPU back end: in no package registry, so only where its source can be reached; EBSYNTH_SOURCE may name a copy of
+# its repository.
+install_ebsynth() {
+  case " ${wanted:-ebsynth} " in *" ebsynth "*) ;; *) return ;; esac
+  [ -x target/peers/ebsynth/bin/ebsynth ] && return
   rm -rf target/peers/ebsynth
-  if GIT_TERMINAL_PROMPT=0 timeout 60 git clone --quiet --depth 1 https://github.com/jamriska/ebsynth target/peers/ebsynth; then
-    (cd target/peers/ebsynth && sh build-linux-cpu_only.sh) || rm -rf target/peers/ebsynth
+  source=${EBSYNTH_SOURCE:-https://github.com/jamriska/ebsynth}
+  if GIT_TERMINAL_PROMPT=0 timeout 60 git clone --quiet --depth 1 "$source" target/peers/ebsynth; then
+    (cd target/peers/ebsynth && sh build-linux-cpu_only.sh) ||
+      { echo "ebsynth could not be built" >&2; rm -rf target/peers/ebsynth; }
   else
     echo "ebsynth could not be fetched" >&2
   fi
-fi
+}
+install_ebsynth
+
+[ -z "$wanted" ] || exit 0
 
 # Mitsuba's vectorised back end needs a shared LLVM that knows this processor.
 if ! ls /usr/lib/*/libLLVM*19* >/dev/null 2>&1 && [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null; then
