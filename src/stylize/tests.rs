@@ -209,6 +209,15 @@ fn extremes_have_an_answer() {
             finite(stylise(&input(&art, &[guide(&a, &a)]), &Params { guide_weight, ..params.clone() }).unwrap());
         }
     }
+    // Exemplar and target of very different sizes, and guides that say nothing.
+    let (small, large) = (scene(9, 12, 4.0, 5.0, 3.0), scene(310, 260, 150.0, 120.0, 90.0));
+    let flat = |w, h, v| Image::from_fn(w, h, |_, _| [v]).unwrap();
+    let fast = Params::fast();
+    finite(stylise(&input(&artwork(&small), &[guide(&small, &large)]), &fast).unwrap());
+    finite(stylise(&input(&artwork(&large), &[guide(&large, &small)]), &fast).unwrap());
+    for value in [0.0, 0.3, 0.7] {
+        finite(stylise(&input(&art, &[guide(&flat(33, 21, 0.3), &flat(50, 64, value))]), &fast).unwrap());
+    }
     let table = Params { finder: Finder::Table, ..Params::default() };
     for (w, h) in [(1, 1), (3, 2), (150, 4)] {
         let b = scene(w, h, 2.0, 2.0, 3.0);
@@ -235,6 +244,10 @@ fn values_that_are_no_numbers_are_left_out_and_counted() {
     let output = stylise(&input(&art, &[guide(&a, &b)]), &Params::default()).unwrap();
     assert_eq!((output.report.broken_source, output.report.broken_target), (2, 1));
     assert_eq!(output.image.count_non_finite(), 0);
+    // A target that says nothing is painted; an exemplar that says nothing cannot be painted from.
+    let lost = Image::from_fn(40, 30, |_, _| [f32::NAN; 3]).unwrap();
+    let output = stylise(&input(&art, &[guide(&a, &lost)]), &Params::default()).unwrap();
+    assert_eq!((output.report.broken_target, output.image.count_non_finite()), (40 * 30, 0));
     a.data.fill(f32::NAN);
     assert_eq!(stylise(&input(&art, &[guide(&a, &b)]), &Params::default()).unwrap_err().kind, ErrorKind::Degenerate);
 }
@@ -262,6 +275,7 @@ fn contradictions_are_named() {
     );
     fails(&input(&art, &[Guide { weight: f32::NAN, ..guide(&a, &b) }]), &default, "weight");
     fails(&Input { source_mask: Some(&empty), ..good }, &default, "source_mask");
+    fails(&Input { target_mask: Some(&Image::new(50, 30, 1).unwrap()), ..good }, &default, "target_mask is empty");
     fails(&Input { source_mask: Some(&two), ..good }, &default, "source_mask");
     fails(&Input { known: Some(&two), ..good }, &default, "known");
     for params in [
