@@ -3231,9 +3231,14 @@ typedef struct luxfer_stylize_params {
     uint32_t levels;
     /** Rounds of matching and painting on each level but the finest, in [1, 100]; default 6. */
     uint32_t iterations;
-    /** Rounds on the finest level, in [1, 100]; default 2. */
+    /** Rounds on the finest level, in [1, 100]; default 1. */
     uint32_t finest_iterations;
-    /** Sweeps of a search, in [1, 100]; default 2. */
+    /**
+     * Rounds after those, without the budget, in which each place takes its nearest match, in [0, 100]; default 3; 0 is the
+     * paper's. Modes without a budget do as many more of their own.
+     */
+    uint32_t polish;
+    /** Sweeps of a search, in [1, 100]; default 1. */
     uint32_t sweeps;
     /**
      * Share of the target that is matched under the budget before the rest is matched without, in [0, 1]; default 0.9.
@@ -3246,9 +3251,11 @@ typedef struct luxfer_stylize_params {
      * paper's.
      */
     uint32_t settle;
+    /** What a seam between neighbours costs in those sweeps, as a share of the mean error, in [0, 100]; default 0.2. */
+    float seam;
     /** LUXFER_STYLIZE_VOTE_ value; default LUXFER_STYLIZE_VOTE_WEIGHTED. */
     luxfer_stylize_vote vote;
-    /** LUXFER_STYLIZE_VOTE_ value for the final picture; default LUXFER_STYLIZE_VOTE_NEAREST. */
+    /** LUXFER_STYLIZE_VOTE_ value for the final picture; default LUXFER_STYLIZE_VOTE_MOST. */
     luxfer_stylize_vote final_vote;
     /** 1: work at half resolution with compressed guides, so the picture is half as wide and high; default 0. */
     uint32_t preview;
@@ -3311,6 +3318,9 @@ typedef int32_t luxfer_stylize_preset;
 
 /** The one nearest to their mean, so that no colour is made that is not in the artwork. */
 #define LUXFER_STYLIZE_VOTE_NEAREST 2
+
+/** The one that most of them put there, so that pieces of the artwork stay whole up to their seams. */
+#define LUXFER_STYLIZE_VOTE_MOST 3
 
 /**
  * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.

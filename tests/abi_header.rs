@@ -374,8 +374,8 @@ layouts! {
     luxfer_sheet_params: struct_size even_light paper_width paper_height dpi margin contrast;
     luxfer_sheet_report: struct_size marks residual error to_photo;
     luxfer_guides_params: struct_size width height samples camera smooth seed;
-    luxfer_stylize_params: struct_size mode search patch guide_weight levels iterations finest_iterations sweeps coverage
-        passes settle vote final_vote preview keep_for_update coherence match_appearance
+    luxfer_stylize_params: struct_size mode search patch guide_weight levels iterations finest_iterations polish sweeps
+        coverage passes settle seam vote final_vote preview keep_for_update coherence match_appearance
         seed;
     luxfer_stylize_report: struct_size finished levels halvings patch most_used energy used entropy guide_error
         broken_source broken_target;

@@ -48,6 +48,8 @@ pub const LUXFER_STYLIZE_VOTE_PLAIN: luxfer_stylize_vote = 0;
 pub const LUXFER_STYLIZE_VOTE_WEIGHTED: luxfer_stylize_vote = 1;
 /// The one nearest to their mean, so that no colour is made that is not in the artwork.
 pub const LUXFER_STYLIZE_VOTE_NEAREST: luxfer_stylize_vote = 2;
+/// The one that most of them put there, so that pieces of the artwork stay whole up to their seams.
+pub const LUXFER_STYLIZE_VOTE_MOST: luxfer_stylize_vote = 3;
 
 /// Settings of a stylisation. Fill them with luxfer_stylize_params_init or luxfer_stylize_params_preset; the defaults given
 /// here are those of LUXFER_STYLIZE_FULL.
@@ -68,9 +70,12 @@ pub struct luxfer_stylize_params {
     pub levels: u32,
     /// Rounds of matching and painting on each level but the finest, in [1, 100]; default 6.
     pub iterations: u32,
-    /// Rounds on the finest level, in [1, 100]; default 2.
+    /// Rounds on the finest level, in [1, 100]; default 1.
     pub finest_iterations: u32,
-    /// Sweeps of a search, in [1, 100]; default 2.
+    /// Rounds after those, without the budget, in which each place takes its nearest match, in [0, 100]; default 3; 0 is the
+    /// paper's. Modes without a budget do as many more of their own.
+    pub polish: u32,
+    /// Sweeps of a search, in [1, 100]; default 1.
     pub sweeps: u32,
     /// Share of the target that is matched under the budget before the rest is matched without, in [0, 1]; default 0.9.
     pub coverage: f32,
@@ -79,9 +84,11 @@ pub struct luxfer_stylize_params {
     /// Sweeps in which places may continue their neighbours' matches, for fewer seams, in [0, 100]; default 2; 0 is the
     /// paper's.
     pub settle: u32,
+    /// What a seam between neighbours costs in those sweeps, as a share of the mean error, in [0, 100]; default 0.2.
+    pub seam: f32,
     /// LUXFER_STYLIZE_VOTE_ value; default LUXFER_STYLIZE_VOTE_WEIGHTED.
     pub vote: luxfer_stylize_vote,
-    /// LUXFER_STYLIZE_VOTE_ value for the final picture; default LUXFER_STYLIZE_VOTE_NEAREST.
+    /// LUXFER_STYLIZE_VOTE_ value for the final picture; default LUXFER_STYLIZE_VOTE_MOST.
     pub final_vote: luxfer_stylize_vote,
     /// 1: work at half resolution with compressed guides, so the picture is half as wide and high; default 0.
     pub preview: u32,
@@ -99,7 +106,7 @@ pub struct luxfer_stylize_params {
 // SAFETY: plain numbers.
 unsafe impl Versioned for luxfer_stylize_params {
     const NAME: &'static str = "luxfer_stylize_params";
-    const SIZES: &'static [usize] = &[80];
+    const SIZES: &'static [usize] = &[88];
     fn defaults() -> Self {
         Self::of(&stylize::Params::default())
     }
@@ -107,7 +114,7 @@ unsafe impl Versioned for luxfer_stylize_params {
 
 const MODES: [Mode; 5] = [Mode::Budget, Mode::Uniform, Mode::Nearest, Mode::Greedy, Mode::LitSphere];
 const SEARCHES: [Finder; 2] = [Finder::PatchMatch, Finder::Table];
-const VOTES: [Vote; 3] = [Vote::Plain, Vote::Weighted, Vote::Nearest];
+const VOTES: [Vote; 4] = [Vote::Plain, Vote::Weighted, Vote::Nearest, Vote::Most];
 
 /// The value that an integer from outside stands for.
 pub(super) fn choice<T: Copy>(values: &[T], index: i32, name: &str, prefix: &str) -> Result<T> {
@@ -125,7 +132,7 @@ pub(super) fn flag(value: u32, name: &str) -> Result<bool> {
 impl luxfer_stylize_params {
     fn of(p: &stylize::Params) -> Self {
         Self {
-            struct_size: 80,
+            struct_size: 88,
             mode: p.mode as i32,
             search: p.finder as i32,
             patch: p.patch as u32,
@@ -133,10 +140,12 @@ impl luxfer_stylize_params {
             levels: p.levels as u32,
             iterations: p.iterations as u32,
             finest_iterations: p.finest_iterations as u32,
+            polish: p.polish as u32,
             sweeps: p.sweeps as u32,
             coverage: p.coverage,
             passes: p.passes as u32,
             settle: p.settle as u32,
+            seam: p.seam,
             vote: p.vote as i32,
             final_vote: p.final_vote as i32,
             preview: u32::from(p.preview),
@@ -156,10 +165,12 @@ impl luxfer_stylize_params {
             levels: self.levels as usize,
             iterations: self.iterations as usize,
             finest_iterations: self.finest_iterations as usize,
+            polish: self.polish as usize,
             sweeps: self.sweeps as usize,
             coverage: self.coverage,
             passes: self.passes as usize,
             settle: self.settle as usize,
+            seam: self.seam,
             vote: choice(&VOTES, self.vote, "vote", "LUXFER_STYLIZE_VOTE_")?,
             final_vote: choice(&VOTES, self.final_vote, "final_vote", "LUXFER_STYLIZE_VOTE_")?,
             preview: flag(self.preview, "preview")?,

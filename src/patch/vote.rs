@@ -16,6 +16,9 @@ pub enum Vote {
     Weighted,
     /// The one that is closest to their mean: no new colours, so texture keeps its contrast.
     Nearest,
+    /// The one that most of them put there, among equals the closest to their mean: where two pieces of the exemplar meet,
+    /// each stays whole up to the seam.
+    Most,
 }
 
 /// Writes into each pixel of `out` what the matches in `style` say; a pixel that no match covers keeps its value.
@@ -61,12 +64,17 @@ pub fn vote(
                 let sum: f64 = votes.iter().map(|&(start, weight)| weight * f64::from(style.data[start + c])).sum();
                 *value = (sum / total) as f32;
             }
-            if how == Vote::Nearest {
+            if matches!(how, Vote::Nearest | Vote::Most) {
+                let count = |start: usize| match how {
+                    Vote::Most => votes.iter().filter(|v| v.0 == start).count(),
+                    _ => 0,
+                };
                 let distance = |start: usize| -> f32 {
                     style.data[start..start + channels].iter().zip(&*pixel).map(|(s, m)| (s - m) * (s - m)).sum()
                 };
-                let nearest = votes.iter().map(|v| v.0).min_by(|&a, &b| distance(a).total_cmp(&distance(b)));
-                let start = nearest.unwrap_or(first);
+                let candidates = votes.iter().map(|v| (count(v.0), distance(v.0), v.0));
+                let best = candidates.min_by(|a, b| b.0.cmp(&a.0).then(a.1.total_cmp(&b.1)));
+                let start = best.map_or(first, |b| b.2);
                 pixel.copy_from_slice(&style.data[start..start + channels]);
             }
         }
@@ -97,4 +105,26 @@ pub fn origins(width: usize, height: usize, field: &Field, patch: usize, job: Jo
 /// The patches along one axis that cover a pixel.
 fn fields_over(pixel: usize, patch: usize, count: usize) -> std::ops::Range<usize> {
     (pixel + 1).saturating_sub(patch)..(pixel + 1).min(count)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::job::Monitor;
+
+    /// Five patches over one pixel: two put 0 there, the others 0.5, 1 and 1 from different places.
+    #[test]
+    fn votes_are_averaged_or_chosen_from() {
+        let style = Image::from_fn(40, 5, |x, _| [[0.0, 0.5, 1.0, 1.0][(x.clamp(10, 39) - 10) / 8]]).unwrap();
+        let base = Domain::new(40, 5, 5, None, false).unwrap();
+        let mut field = Field::new(5, 1).unwrap();
+        field.at = [6, 7, 18, 27, 33].map(|x| pack(x, 0)).to_vec();
+        field.error = vec![1; 5];
+        let middle = |how| {
+            let mut out = Image::new(9, 5, 1).unwrap();
+            vote(&mut out, &field, &style, &base, 5, how, Monitor::default().job()).unwrap();
+            out.pixel(4, 2)[0]
+        };
+        assert_eq!([Vote::Plain, Vote::Weighted, Vote::Nearest, Vote::Most].map(middle), [0.5, 0.5, 0.5, 0.0]);
+    }
 }

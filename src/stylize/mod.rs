@@ -16,10 +16,13 @@
 //!
 //! Where the defaults leave the paper, it is because measuring said so (`benches/stylit.rs` draws the curves; `Params::paper`
 //! has the paper's own). On the golem at 600 × 456 letting patches settle after a retrieval brings Eq. 3 from 6.3e-3 to
-//! 2.4e-3, near the 2.0e-3 of plain EM, and choosing the nearest vote at the end brings texture power from 0.85 to 0.93 of
-//! the exemplar's (plain EM: 0.78). At 1200 × 912 a second sweep brings Eq. 3 from 1.67e-3 to 1.56e-3 for half as much time
-//! again (plain EM: 1.46e-3), and so is worth it at full quality; leaving the last tenth of the target to ordinary retrieval
-//! saves a tenth of the time, and costs nothing. Twice the iterations or sweeps change neither by a tenth.
+//! 2.4e-3, near the 2.0e-3 of plain EM, and choosing one vote at the end instead of the mean brings texture power from 0.85
+//! to 0.93 of the exemplar's (plain EM: 0.78). At 1200 × 912 one iteration under the budget and three of ordinary matching
+//! after it (`Params::polish`), all with one sweep, bring Eq. 3 to 1.58e-3 in half the time in which two iterations under the
+//! budget with two sweeps bring it to 1.56e-3 (plain EM: 1.48e-3), and follow the guides more closely. More of either brings
+//! Eq. 3 further down and washes out: it prefers smooth patches. A greater weight of the guides makes smaller pieces, and
+//! with them more seams, for little. Leaving the last tenth of the target to ordinary retrieval saves a tenth of the time,
+//! and costs nothing.
 //!
 //! Memory: with four guides of three channels about 150 MiB for each megapixel of the target, and as much for the exemplar,
 //! beside the input (`benches/stylit.rs`, section `sizes`, up to 17.5 megapixels).
@@ -120,6 +123,9 @@ pub struct Params {
     pub iterations: usize,
     /// EM iterations on the finest level, in `[1, 100]`.
     pub finest_iterations: usize,
+    /// EM iterations after those in which each patch takes its nearest match (Wexler et al. 2007), starting from what the
+    /// budget made, in `[0, 100]`; 0 is the paper's. In other modes as many more of their own.
+    pub polish: usize,
     /// PatchMatch sweeps in a retrieval, in `[1, 100]`.
     pub sweeps: usize,
     /// Share of the target to cover under the budget before the rest is matched without, in `[0, 1]`.
@@ -129,6 +135,8 @@ pub struct Params {
     /// Sweeps of propagation after a retrieval, in `[0, 100]`: a target patch may continue its neighbour's match where that
     /// is closer. 0 is the paper's assignment as it is.
     pub settle: usize,
+    /// What a seam between two neighbouring patches costs while they settle, as a share of the mean error, in `[0, 100]`.
+    pub seam: f32,
     pub vote: Vote,
     /// How the last picture is made from the last field.
     pub final_vote: Vote,
@@ -152,13 +160,15 @@ impl Default for Params {
             guide_weight: 2.0,
             levels: 6,
             iterations: 6,
-            finest_iterations: 2,
-            sweeps: 2,
+            finest_iterations: 1,
+            polish: 3,
+            sweeps: 1,
             coverage: 0.9,
             passes: 6,
             settle: 2,
+            seam: 0.2,
             vote: Vote::Weighted,
-            final_vote: Vote::Nearest,
+            final_vote: Vote::Most,
             coherence: 1.0,
             match_appearance: 0.0,
             preview: false,
@@ -172,6 +182,7 @@ impl Params {
     pub fn paper() -> Self {
         Self {
             finest_iterations: 6,
+            polish: 0,
             sweeps: 6,
             coverage: 0.95,
             passes: 64,
@@ -184,7 +195,7 @@ impl Params {
 
     /// Half the time of the default.
     pub fn fast() -> Self {
-        Self { iterations: 3, finest_iterations: 1, sweeps: 1, ..Self::default() }
+        Self { iterations: 3, polish: 0, ..Self::default() }
     }
 
     /// For watching while painting.
@@ -202,9 +213,11 @@ impl Params {
         check_range("levels", self.levels, 1, 16)?;
         check_range("iterations", self.iterations, 1, 100)?;
         check_range("finest_iterations", self.finest_iterations, 1, 100)?;
+        check_range("polish", self.polish, 0, 100)?;
         check_range("sweeps", self.sweeps, 1, 100)?;
         check_range("coverage", self.coverage, 0.0, 1.0)?;
         check_range("settle", self.settle, 0, 100)?;
+        check_range("seam", self.seam, 0.0, 100.0)?;
         check_range("coherence", self.coherence, 0.0, 1.0)?;
         check_range("match_appearance", self.match_appearance, 0.0, 1.0)?;
         check_range("passes", self.passes, 1, 1000)?;

@@ -7,7 +7,7 @@
 //!
 //! A field made this way is rich but frayed: neighbouring places are painted from patches that were never neighbours. So
 //! in the end a target patch may continue a neighbour's match where that is closer than its own, or so nearly as close that
-//! it is worth a seam less (`Params::settle`, not in the paper). Nothing is searched for anew, so what is used stays as varied as the budget made it, in larger pieces;
+//! it is worth a seam less (`Params::settle`, `Params::seam`; not in the paper). Nothing is searched for anew, so what is used stays as varied as the budget made it, in larger pieces;
 //! on the pair in `tests/real_stylize.rs` it brings Eq. 3 down threefold and keeps more of the texture.
 //!
 //! A pass starts from the last one: an exemplar patch whose target was taken looks around it; the others stay.
@@ -31,12 +31,6 @@ pub struct Pass {
     /// Share of the wanted target patches with a match after it.
     pub coverage: f64,
 }
-
-/// What a seam between two neighbouring patches costs while they settle, as a share of the mean error.
-///
-/// On the pair of `benches/stylit.rs` 0, 0.1, 0.3 and 1 make 72.8, 76.5, 77.5 and 77.7 % of the picture's patches verbatim
-/// copies and raise Eq. 3 from 1.62e-3 by 2, 10 and 19 %; texture power kept is 0.955, 0.975, 0.997 and 0.994.
-const SEAM: f64 = 0.2;
 
 /// A pass that covers less than this share of the target is the last.
 const LEAST_GAIN: f64 = 0.005;
@@ -88,7 +82,7 @@ pub(super) fn retrieve(
     }
     nearest.forward(&mut matched, 2000 * round + 1500, job.part(0.8, 0.9), |i| free.contains_index(i))?;
     // Let patches continue their neighbours' matches where those fit better, seams counted.
-    let seam = (SEAM * matched.energy() / wanted.max(1) as f64).min(1e9) as u32;
+    let seam = (f64::from(params.seam) * matched.energy() / wanted.max(1) as f64).min(1e9) as u32;
     for _ in 0..params.settle {
         search.join(&mut matched, seam, job.part(0.9, 1.0), |i| level.wanted.contains_index(i) && !is_kept(i))?;
     }

@@ -86,7 +86,7 @@ pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Pu
         let iterations = match (params.mode, l) {
             (Mode::LitSphere, _) => 0,
             (Mode::Greedy, _) => 1,
-            (_, 0) => params.finest_iterations,
+            (_, 0) => params.finest_iterations + params.polish,
             _ => params.iterations,
         };
         let mut report = LevelReport {
@@ -100,10 +100,17 @@ pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Pu
                 let n = iterations as f64;
                 job.part(0.12 + 0.88 * (k as f64 + from) / n, 0.12 + 0.88 * (k as f64 + to) / n)
             };
-            // Only where the picture changed since the last iteration can a distance have changed.
-            let changed = if k == 0 { level.wanted.clone() } else { level.changed_by(&picture, part(0.0, 0.01))? };
+            // Only where the picture changed since the last iteration can a distance have changed; but the first polish
+            // looks for matches where the budget gave them.
+            let polishes = params.mode == Mode::Budget && l == 0 && k >= params.finest_iterations;
+            let anew = k == 0 || polishes && k == params.finest_iterations;
+            let changed = if anew { level.wanted.clone() } else { level.changed_by(&picture, part(0.0, 0.01))? };
             level.set_picture(&picture, part(0.0, 0.01))?;
             match params.mode {
+                Mode::Budget if polishes => {
+                    let changed = changed.filtered(|i| kept.get(i) != Some(&true));
+                    nearest(&level, &mut current, &changed, params, k, part(0.0, 0.9))?;
+                }
                 Mode::Budget | Mode::Uniform => {
                     report.passes.push(retrieve(
                         &level,

@@ -165,6 +165,7 @@ LUXFER_STYLIZE_SEARCH_TABLE = 1
 LUXFER_STYLIZE_VOTE_PLAIN = 0
 LUXFER_STYLIZE_VOTE_WEIGHTED = 1
 LUXFER_STYLIZE_VOTE_NEAREST = 2
+LUXFER_STYLIZE_VOTE_MOST = 3
 LUXFER_GUIDES_WITH_NORMALS = 1
 LUXFER_GUIDES_WITH_EDGES = 2
 LUXFER_GUIDES_WITH_MATERIALS = 4
@@ -928,10 +929,12 @@ class luxfer_stylize_params(Structure):
         ("levels", c_uint32),
         ("iterations", c_uint32),
         ("finest_iterations", c_uint32),
+        ("polish", c_uint32),
         ("sweeps", c_uint32),
         ("coverage", c_float),
         ("passes", c_uint32),
         ("settle", c_uint32),
+        ("seam", c_float),
         ("vote", c_int32),
         ("final_vote", c_int32),
         ("preview", c_uint32),

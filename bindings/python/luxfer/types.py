@@ -435,6 +435,8 @@ class StylizeVote(IntEnum):
     """Their mean, closer matches counting more."""
     NEAREST = 2
     """The one nearest to their mean, so that no colour is made that is not in the artwork."""
+    MOST = 3
+    """The one that most of them put there, so that pieces of the artwork stay whole up to their seams."""
 
 
 class StylizePreset(IntEnum):
@@ -1394,9 +1396,12 @@ class StylizeParams(TypedDict, total=False):
     iterations: int
     """Rounds of matching and painting on each level but the finest, in [1, 100]; default 6."""
     finest_iterations: int
-    """Rounds on the finest level, in [1, 100]; default 2."""
+    """Rounds on the finest level, in [1, 100]; default 1."""
+    polish: int
+    """Rounds after those, without the budget, in which each place takes its nearest match, in [0, 100]; default
+    3; 0 is the paper's. Modes without a budget do as many more of their own."""
     sweeps: int
-    """Sweeps of a search, in [1, 100]; default 2."""
+    """Sweeps of a search, in [1, 100]; default 1."""
     coverage: float
     """Share of the target that is matched under the budget before the rest is matched without, in [0, 1];
     default 0.9."""
@@ -1405,10 +1410,13 @@ class StylizeParams(TypedDict, total=False):
     settle: int
     """Sweeps in which places may continue their neighbours' matches, for fewer seams, in [0, 100]; default 2; 0
     is the paper's."""
+    seam: float
+    """What a seam between neighbours costs in those sweeps, as a share of the mean error, in [0, 100]; default
+    0.2."""
     vote: StylizeVote | str | int
     """StylizeVote; default StylizeVote.WEIGHTED."""
     final_vote: StylizeVote | str | int
-    """StylizeVote for the final picture; default StylizeVote.NEAREST."""
+    """StylizeVote for the final picture; default StylizeVote.MOST."""
     preview: int
     """1: work at half resolution with compressed guides, so the picture is half as wide and high; default 0."""
     keep_for_update: int
