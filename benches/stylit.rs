@@ -15,7 +15,7 @@ use harness::plot::Plot;
 use harness::{Clock, Table, absent, figure, interleaved, scenes, time};
 use luxfer::exec::Pool;
 use luxfer::image::Image;
-use luxfer::image::colour::linear_to_srgb;
+use luxfer::image::colour::{linear_to_srgb, srgb_to_linear};
 use luxfer::image::io::{Encoding, encode_png, load};
 use luxfer::image::pyramid::resize;
 use luxfer::job::Monitor;
@@ -23,6 +23,7 @@ use luxfer::patch::Vote;
 use luxfer::stylize::{Finder, Guide, Input, Mode, Output, Params, Range, Study, run};
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::time::{Duration, Instant};
 
 const GUIDES: [&str; 4] = ["fullgi", "dirdif", "dirspc", "indirb"];
 const ROUNDS: usize = 3;
@@ -79,6 +80,18 @@ impl Pair {
         let guide = |g: &&str| Ok((read(format!("source_{g}.png"))?, read(format!("target_{g}.png"))?));
         let guides = GUIDES.iter().map(guide).collect::<Result<_, String>>()?;
         Ok(Self { artwork: read("source_style.png".into())?, guides, folder: folder.clone() })
+    }
+
+    /// The pair with guides of so many bits for each channel, as they are displayed.
+    fn coarsened(&self, bits: u32) -> Self {
+        let steps = ((1 << bits) - 1) as f32;
+        let coarse = |image: &Image| {
+            let mut image = image.clone();
+            image.data.iter_mut().for_each(|v| *v = srgb_to_linear((linear_to_srgb(*v) * steps).round() / steps));
+            image
+        };
+        let guides = self.guides.iter().map(|(source, target)| (coarse(source), coarse(target))).collect();
+        Self { folder: self.folder.clone(), artwork: self.artwork.clone(), guides }
     }
 
     fn guides(&self) -> Vec<Guide<'_>> {
@@ -248,7 +261,15 @@ fn update(pair: &Pair, pool: &Pool) {
 
 /// Time and memory as the target grows, at fast quality; the exemplar stays.
 fn sizes(pair: &Pair, pool: &Pool) {
-    let mut table = Table::new(["target", "megapixels", "seconds", "seconds per megapixel", "peak MiB", "of it input"]);
+    let mut table = Table::new([
+        "target",
+        "megapixels",
+        "seconds",
+        "seconds per megapixel",
+        "peak MiB",
+        "of it input",
+        "ms to cancel",
+    ]);
     for scale in [1, 2, 4] {
         harness::forget_peak_memory();
         let job = Monitor::default();
@@ -262,6 +283,7 @@ fn sizes(pair: &Pair, pool: &Pool) {
         let megapixels = (output.image.width * output.image.height) as f64 * 1e-6;
         let input: usize = larger.guides.iter().map(|(a, b)| 4 * (a.data.len() + b.data.len())).sum();
         let mib = |bytes: u64| format!("{:.0}", bytes as f64 / f64::from(1 << 20));
+        let waits = cancel_waits(&larger, pool);
         table.row([
             format!("{} x {}", output.image.width, output.image.height),
             format!("{megapixels:.1}"),
@@ -269,28 +291,77 @@ fn sizes(pair: &Pair, pool: &Pool) {
             format!("{:.2}", seconds / megapixels),
             harness::peak_memory().map_or("unknown".to_string(), mib),
             mib(input as u64),
+            format!("{:.0}", 1e3 * waits),
         ]);
     }
     table.print("fast quality, 2 threads");
 }
 
-/// Ours beside plain EM and ebsynth, by the judge, by Eq. 3, and to look at.
+/// The longest that a run goes on after it was told to stop, in seconds, asked while it reads the input, on the coarse levels
+/// and early and late on the finest.
+fn cancel_waits(pair: &Pair, pool: &Pool) -> f64 {
+    let guides = pair.guides();
+    let wait = |after: f64| {
+        let monitor = Monitor::default();
+        std::thread::scope(|scope| {
+            let (guides, job) = (&guides, monitor.job());
+            let stylised = move || run(&input(&pair.artwork, guides), &Params::fast(), job);
+            let stopped = scope.spawn(move || pool.run(stylised).is_err());
+            while monitor.progress() < after {
+                std::thread::sleep(Duration::from_millis(1));
+            }
+            let asked = Instant::now();
+            monitor.cancel();
+            assert!(stopped.join().expect("it does not panic"), "it ended before it was told to stop");
+            asked.elapsed().as_secs_f64()
+        })
+    };
+    [0.0, 0.02, 0.15, 0.3, 0.45].into_iter().map(wait).fold(0.0, f64::max)
+}
+
+/// Ours beside plain EM and ebsynth, by the judge, by Eq. 3, and to look at. Ours runs before and after the others, so that
+/// what else the machine does weighs on all.
 fn rivals(pair: &Pair, pool: &Pool) {
+    let mut made: Vec<(&str, Option<f64>, PathBuf)> = Vec::new();
+    let stylise = |file: &str, params: &Params| {
+        let (seconds, output) = time(Clock::Wall, || pair.stylise(params, pool));
+        save(file, &output.image);
+        (seconds, folder().join(file).with_extension("png"))
+    };
+    let (before, ours) = stylise("stylit_full", &Params::default());
+
+    // Plain EM with our iterations, and with as many more as fit into our time.
     let plain =
         Params { mode: Mode::Nearest, sweeps: 3, vote: Vote::Plain, final_vote: Vote::Plain, ..Params::default() };
-    let mut made: Vec<(&str, Option<f64>, PathBuf)> = Vec::new();
-    for (name, file, params) in
-        [("ours, full", "stylit_full", Params::default()), ("plain EM", "stylit_plain_em", plain)]
-    {
-        let (seconds, output) = time(Clock::Wall, || pair.stylise(&params, pool));
-        save(file, &output.image);
-        made.push((name, Some(seconds), folder().join(file).with_extension("png")));
-    }
-    match ebsynth(pair) {
-        Ok((seconds, file)) => made.push(("ebsynth", Some(seconds), file)),
-        Err(reason) => absent("stylit.ebsynth.seconds", &reason),
-    }
+    let (seconds, file) = stylise("stylit_plain_em", &plain);
+    made.push(("plain EM", Some(seconds), file));
+    let more = |count: usize| ((count as f64 * before / seconds).round() as usize).clamp(1, 100);
+    let longer = Params {
+        iterations: more(plain.iterations),
+        finest_iterations: more(plain.finest_iterations),
+        ..plain.clone()
+    };
+    let name = format!("plain EM, {} + {} iterations", longer.iterations, longer.finest_iterations);
+    let (seconds, file) = stylise("stylit_plain_em_long", &longer);
+    made.push((&name, Some(seconds), file));
+
+    let theirs = match ebsynth(pair) {
+        Ok((seconds, file)) => {
+            made.push(("ebsynth", Some(seconds), file));
+            Some(seconds)
+        }
+        Err(reason) => {
+            absent("stylit.ebsynth.seconds", &reason);
+            None
+        }
+    };
+    let (after, _) = time(Clock::Wall, || pair.stylise(&Params::default(), pool));
+    made.insert(0, ("ours, full", Some(0.5 * (before + after)), ours));
     made.push(("the artwork itself", None, pair.folder.join("source_style.png")));
+    if let Some(theirs) = theirs {
+        figure("stylit.ebsynth.seconds", theirs, "s");
+        figure("stylit.ebsynth.speedup", 2.0 * theirs / (before + after), "x");
+    }
 
     let head =
         ["", "seconds", "coherence", "guide", "used %", "hf", "hf worst", "Eq. 3", "verbatim %", "at all offsets"];
@@ -307,9 +378,6 @@ fn rivals(pair: &Pair, pool: &Pool) {
                 format!("{:.1}", j.verbatim),
                 format!("{:.1}", j.coherence),
             ]);
-            if *name == "ebsynth" {
-                figure("stylit.ebsynth.seconds", seconds.unwrap_or(0.0), "s");
-            }
         }
         table.row(row);
     }
@@ -358,13 +426,13 @@ fn methods(pair: &Pair, pool: &Pool) {
     table.print("methods, 600 x 456");
 }
 
-/// Energy against time, one knob at a time.
+/// Energy against time, one knob at a time. The energy is that of the picture, measured alike for all, so that it can be
+/// compared where a knob changes what the run itself adds up.
 fn knobs(pair: &Pair, pool: &Pool) {
-    let base = Params::default;
     let mut knobs: Vec<(&str, Vec<(String, Params)>)> = Vec::new();
     let mut knob = |name: &'static str, values: &[usize], set: fn(&mut Params, usize)| {
         let with = |v: &usize| {
-            let mut params = base();
+            let mut params = Params::default();
             set(&mut params, *v);
             (v.to_string(), params)
         };
@@ -379,19 +447,28 @@ fn knobs(pair: &Pair, pool: &Pool) {
     knob("settle", &[0, 1, 2, 4], |p, v| p.settle = v);
     knob("coverage %", &[50, 70, 90, 95, 99], |p, v| p.coverage = v as f32 / 100.0);
     knob("patch", &[3, 5, 7], |p, v| p.patch = v);
-    let mut table = Table::new(["knob", "seconds", "energy", "used %", "entropy", "guide error", "texture"]);
+    let votes = [Vote::Plain, Vote::Weighted, Vote::Nearest, Vote::Most];
+    let last = |&final_vote: &Vote| (format!("{final_vote:?}"), Params { final_vote, ..Params::default() });
+    knobs.push(("last vote", votes.iter().map(last).collect()));
+
+    let mut table = Table::new(["knob", "seconds", "Eq. 3", "energy", "used %", "entropy", "guide error", "texture"]);
     let mut plot = Plot::new("Stylisation, one knob at a time (600 x 456)", "seconds", "energy (Eq. 3)");
+    let mut measure = |title: String, of: &Pair, params: &Params| {
+        let (seconds, output) = time(Clock::Wall, || of.stylise(params, pool));
+        let energy = pool.run(|| harness::judge::energy(&output.image, &pair.artwork, &pair.guides));
+        let head = vec![title, format!("{seconds:.2}"), format!("{:.3}e-3", 1e3 * energy)];
+        table.row([head, numbers(&output, &pair.artwork)].concat());
+        [seconds, energy]
+    };
     for (name, values) in knobs {
-        let mut curve = Vec::new();
-        for (value, params) in values {
-            let (seconds, output) = time(Clock::Wall, || pair.stylise(&params, pool));
-            let mark = if params == base() { " (default)" } else { "" };
-            let title = format!("{name} {value}{mark}");
-            table.row([vec![title, format!("{seconds:.2}")], numbers(&output, &pair.artwork)].concat());
-            curve.push([seconds, output.report.levels.last().and_then(|l| l.energy.last().copied()).unwrap_or(0.0)]);
-        }
-        plot.add(name, curve);
+        let curve = values.into_iter().map(|(value, params)| {
+            let mark = if params == Params::default() { " (default)" } else { "" };
+            measure(format!("{name} {value}{mark}"), pair, &params)
+        });
+        plot.add(name, curve.collect::<Vec<_>>());
     }
+    let curve = [2, 4, 6].map(|bits| measure(format!("guide bits {bits}"), &pair.coarsened(bits), &Params::default()));
+    plot.add("guide bits", curve);
     table.print("knobs, 600 x 456");
     plot.write("stylit_knobs").expect("out/bench can be written");
 }

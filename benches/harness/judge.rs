@@ -44,7 +44,8 @@ fn everywhere(of: &Features) -> Domain {
     Domain::new(of.width, of.height, PATCH, None, false).expect("an image as large as a patch")
 }
 
-fn energy(picture: &Image, artwork: &Image, guides: &[(Image, Image)]) -> f64 {
+/// [`Judged::energy`] alone.
+pub fn energy(picture: &Image, artwork: &Image, guides: &[(Image, Image)]) -> f64 {
     let monitor = Monitor::default();
     let each = 2.0 / (3 * guides.len()) as f64;
     let mut weights = vec![1.0 / 3.0; 3];
