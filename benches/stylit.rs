@@ -7,7 +7,9 @@
 //! The first runs where `LUXFER_PYTHON`, `target/peers/judge` or `python3` has numpy, scipy and pillow. It looks for nearest
 //! patches at even offsets of the exemplar only: three of four patches of a perfect copy lie between them, so the artwork
 //! itself, judged as a result, is the floor of its `coherence` and near that of its `guide`; and its 40,000 samples fall
-//! into 44.3 % of its cells at most when they are drawn evenly. Pictures go to `out/bench/`.
+//! into 44.3 % of its cells at most when they are drawn evenly. Its `guide` has a standard error of 13: most of it is that
+//! patches which look alike lie in different light. Patches copied to the bit from where ours come from have 770 against their
+//! own guides, 809 against the target's, and a `coherence` of 116; lower ones tell of smoother paint. Pictures go to `out/bench/`.
 
 mod harness;
 
