@@ -6,6 +6,7 @@ use luxfer::image::Image;
 use luxfer::image::io::{Encoding, load};
 use luxfer::image::pyramid::resize;
 use luxfer::job::Monitor;
+use luxfer::patch::Vote;
 use luxfer::stylize::{Guide, Input, Mode, Output, Params, Range, run};
 use std::path::PathBuf;
 
@@ -61,7 +62,10 @@ fn texture(image: &Image) -> f64 {
 fn the_budget_beats_plain_em_on_usage_and_texture_at_like_energy() {
     let Some(pair) = pair() else { return };
     let budget = stylise(&pair, &Params::default());
-    let nearest = stylise(&pair, &Params { mode: Mode::Nearest, sweeps: 3, ..Params::default() });
+    let nearest = stylise(
+        &pair,
+        &Params { mode: Mode::Nearest, sweeps: 3, vote: Vote::Plain, final_vote: Vote::Plain, ..Params::default() },
+    );
     let energy = |o: &Output| *o.report.levels.last().unwrap().energy.last().unwrap();
     let (rich, poor) = (budget.report.usage, nearest.report.usage);
     assert!(rich.used > poor.used + 0.05 && rich.entropy > poor.entropy, "{rich:?} {poor:?}");
