@@ -1725,7 +1725,8 @@ typedef struct luxfer_render_params {
     /**
      * Stop when every part of the image (8 x 8 pixels, root mean square) is known to this, >= 0: half the width of the 95 %
      * interval of a pixel's luminance, relative to that luminance or to a tenth of the image's mean, whichever is more.
-     * 0.1 means within 10 % of its value, 19 times out of 20. Default 0: never.
+     * 0.1 means within 10 % of its value, 19 times out of 20. A part gets at most 64 times samples, though it may miss the
+     * target. Default 0: never.
      */
     float pixel_error;
     /**

@@ -1022,7 +1022,8 @@ class RenderParams(TypedDict, total=False):
     pixel_error: float
     """Stop when every part of the image (8 x 8 pixels, root mean square) is known to this, >= 0: half the width
     of the 95 % interval of a pixel's luminance, relative to that luminance or to a tenth of the image's mean,
-    whichever is more. 0.1 means within 10 % of its value, 19 times out of 20. Default 0: never."""
+    whichever is more. 0.1 means within 10 % of its value, 19 times out of 20. A part gets at most 64 times
+    samples, though it may miss the target. Default 0: never."""
     bounce_error: float
     """End every path where what is left is at most this share of all light that surfaces scatter, in [0, 1):
     the image is too dark by up to that share. After how many bounces, luxfer_scene_requirements tells. Default
