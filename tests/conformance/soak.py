@@ -80,8 +80,8 @@ class Soak:
 
 
 def growth(seen: list[tuple[float, int, int]]) -> str | None:
-    """What has grown since the first part, in which everything is set up that stays."""
-    (memory, threads, files), last = seen[0], seen[-1]
+    """What has grown in the second half; in the first everything is set up that stays."""
+    (memory, threads, files), last = seen[len(seen) // 2], seen[-1]
     if last[0] > memory + SLACK_MIB:
         return f"memory grew from {memory:.0f} to {last[0]:.0f} MiB"
     if last[1] > threads or last[2] > files:

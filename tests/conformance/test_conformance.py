@@ -39,7 +39,7 @@ class Conformance(unittest.TestCase):
 
     def test_long_use_leaves_nothing_behind(self):
         use = soak.Soak()
-        for what, cycles in ((use.cancel, 1000), (use.transfer, 40)):
+        for what, cycles in ((use.cancel, 1000), (use.transfer, 60)):
             with self.subTest(what.__name__):
                 self.assertIsNone(soak.growth(use.repeat(what, cycles)))
 
