@@ -284,16 +284,18 @@ fn block_difference(a: &[Vec3], b: &[Vec3], [width, height]: [usize; 2]) -> f64 
     harness::median(&differences)
 }
 
-/// When a curve comes down to an error, and whether it was seen to: on straight lines of the logarithms, the last one
-/// prolonged.
+/// When a curve comes down to an error, and whether it was seen to: paths against error on straight lines of the logarithms,
+/// the last one prolonged, times what a path takes as a rule. (Errors scatter less than single times do.)
 fn time_to(points: &[Point], error: f64) -> (f64, bool) {
-    let logs: Vec<[f64; 2]> = points.iter().map(|p| [p.seconds.ln(), p.error.ln()]).collect();
+    let logs: Vec<[f64; 2]> = points.iter().map(|p| [f64::from(p.spp).ln(), p.error.ln()]).collect();
     let target = error.ln();
     let end = logs.iter().position(|p| p[1] <= target);
     let measured = end.is_some();
     let end = end.unwrap_or(logs.len() - 1).max(1);
-    let Some(&[[t0, e0], [t1, e1]]) = logs.get(end - 1..=end).and_then(|p| <&[[f64; 2]; 2]>::try_from(p).ok()) else {
+    let Some(&[[n0, e0], [n1, e1]]) = logs.get(end - 1..=end).and_then(|p| <&[[f64; 2]; 2]>::try_from(p).ok()) else {
         return (f64::NAN, false);
     };
-    ((t0 + (target - e0) * (t1 - t0) / (e1 - e0)).exp(), measured)
+    let paths = (n0 + (target - e0) * (n1 - n0) / (e1 - e0)).exp();
+    let per_path: Vec<f64> = points.iter().map(|p| p.seconds / f64::from(p.spp)).collect();
+    (paths * harness::median(&per_path), measured)
 }
