@@ -56,7 +56,7 @@ test: setup lib
 	$(CARGO) test
 	cmake -S . -B build -DCMAKE_BUILD_TYPE=Release
 	cmake --build build -j 2
-	ctest --test-dir build --output-on-failure
+	ctest --test-dir build -j 2 --output-on-failure
 
 # One after the other: they would measure each other. The figures printed go into the table of README.md.
 bench: SHELL := /bin/bash -o pipefail
