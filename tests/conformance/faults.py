@@ -6,10 +6,9 @@ What only a caller could know is never a fault here: an array shorter than its c
 from __future__ import annotations
 
 import copy
-import ctypes
 import random
 
-from script import CALLBACKS, FUNCTIONS, INTEGERS, STRUCTS, Argument, Call, array, is_handle, is_release, makes, plain
+from script import CALLBACKS, FUNCTIONS, STRUCTS, Argument, Call, array, is_handle, is_release, makes, plain
 
 NAN, INFINITY = float("nan"), float("inf")
 REALS = [0.0, -0.0, 1.0, -1.0, 0.5, 1e-45, 1e-30, 1e30, 3.4e38, NAN, INFINITY, -INFINITY]

@@ -48,7 +48,8 @@ MEMORY = 6 << 30
 
 for name, (result, arguments) in abi.FUNCTIONS.items():
     # Pointers go in as they are.
-    getattr(library, name).argtypes = [ctypes.c_void_p if "POINTER" in str(t) or hasattr(t, "contents") or t is ctypes.c_char_p else t for _, t in arguments]
+    is_pointer = [hasattr(t, "contents") or t is ctypes.c_char_p for _, t in arguments]
+    getattr(library, name).argtypes = [ctypes.c_void_p if p else t for p, (_, t) in zip(is_pointer, arguments)]
 
 
 class Broken(Exception):
@@ -115,7 +116,7 @@ class Player:
             if member.stars:
                 # Written as the address it is, whatever ctypes calls the member.
                 at = getattr(kind, field).offset
-                ctypes.c_void_p.from_buffer(room, at).value = self.value(argument, None)
+                ctypes.c_void_p.from_buffer(room, at).value = self.value(argument)
             elif member.dims:
                 place = getattr(value, field)
                 for i, number in enumerate(argument[2]):
@@ -124,7 +125,7 @@ class Player:
                 setattr(value, field, argument[1])
         return address(value)
 
-    def value(self, argument, field):
+    def value(self, argument):
         """The argument as it is handed over."""
         kind, *rest = argument
         if kind == "number":
@@ -165,7 +166,7 @@ class Player:
         releases = is_release(function)
         if releases and not may_release:
             return
-        values = [self.value(a, f) for a, f in zip(arguments, fields)]
+        values = [self.value(a) for a in arguments]
         # NULL is what ctypes has for a callback that is none.
         handed = [
             getattr(abi, f.type)() if f.type in ("luxfer_progress_fn", "luxfer_write_fn") and v is None else v

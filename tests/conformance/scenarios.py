@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from script import FUNCTIONS, KINDS, Argument, Call, Script, array, plain, struct, view
+from script import FUNCTIONS, Argument, Call, Script, array, struct, view
 
 ROOM = ["room", 0x5A]
 

@@ -29,7 +29,6 @@ KINDS = set(HEADER.opaque)
 STRUCTS = HEADER.structs
 FUNCTIONS = {name: arguments for name, (_, arguments) in HEADER.functions.items()}
 CALLBACKS = set(HEADER.callbacks)
-INTEGERS = set(HEADER.integers)
 
 #: Bytes of memory behind every pointer to results, of arrays and of pixels: more than any call that is not a lie needs.
 ROOM = 65536
