@@ -224,7 +224,7 @@ impl Observer for Recorder<'_> {
     fn add(&mut self, source: LightSource, importance: Vec3, emission: Vec3, found: Found) {
         let contribution = importance * emission;
         self.beauty += contribution;
-        self.trail.add(self.layers.world, contribution, source, found);
+        self.trail.add(self.layers.world, contribution.into(), source, found);
     }
 
     #[inline]

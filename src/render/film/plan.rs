@@ -197,8 +197,10 @@ impl<'p> Plan<'p> {
 
         // What they need, as far as there are paths and time for it.
         let most = self.params.samples.saturating_mul(SHARE);
-        let lack =
-            |tile: usize| (wanted[tile].min(f64::from(most)) - f64::from(tallies[tile].most)).max(0.0) * f64::from(tallies[tile].pixels);
+        let lack = |tile: usize| {
+            (wanted[tile].min(f64::from(most)) - f64::from(tallies[tile].most)).max(0.0)
+                * f64::from(tallies[tile].pixels)
+        };
         let mut budget: f64 = (0..tallies.len()).map(lack).sum();
         if let Some(times) = clock.affordable() {
             budget = budget.min(whole.paths as f64 * times);

@@ -21,9 +21,8 @@ pub struct Alphabet {
     pub scatters: Vec<Event>,
     /// Events at a light's end of a path.
     pub lights: Vec<Event>,
-    /// Number of a mesh's first event of scattering, and of its light.
-    first_scatter: Vec<u32>,
-    mesh_light: Vec<u32>,
+    /// Number of a mesh's class, which is that of its light too.
+    class_of_mesh: Vec<u32>,
     punctual: Vec<u32>,
     environment: u32,
 }
@@ -71,19 +70,24 @@ impl Alphabet {
         }
         let punctual = (0..scene.lights.len()).map(|i| light(kind::LIGHT, told(&[punctual_label(i)]))).collect();
         let environment = light(environment_kinds(emitter_as), told(&[ENVIRONMENT.to_string()]));
-        let first_scatter = class_of_mesh.iter().map(|c| c * SCATTERS.len() as u32).collect();
-        Ok(Self { scatters, lights, first_scatter, mesh_light: class_of_mesh, punctual, environment })
+        Ok(Self { scatters, lights, class_of_mesh, punctual, environment })
+    }
+
+    /// How many classes of meshes there are.
+    #[inline]
+    pub fn classes(&self) -> usize {
+        self.scatters.len() / SCATTERS.len()
     }
 
     #[inline]
-    pub fn scatter(&self, mesh: u32, scatter: Scatter) -> usize {
-        self.first_scatter[mesh as usize] as usize + scatter as usize
+    pub fn class(&self, mesh: u32) -> usize {
+        self.class_of_mesh[mesh as usize] as usize
     }
 
     #[inline]
     pub fn light(&self, source: LightSource) -> usize {
         (match source {
-            LightSource::Surface { mesh, .. } => self.mesh_light[mesh as usize],
+            LightSource::Surface { mesh, .. } => self.class_of_mesh[mesh as usize],
             LightSource::Punctual(index) => self.punctual[index as usize],
             LightSource::Environment => self.environment,
         }) as usize
@@ -97,7 +101,7 @@ fn punctual_label(index: usize) -> String {
 }
 
 /// Types and modes in the order of [`Scatter`].
-const SCATTERS: [(u8, u8); 4] = [
+pub const SCATTERS: [(u8, u8); 4] = [
     (kind::REFLECT, mode::DIFFUSE),
     (kind::REFLECT, mode::GLOSSY),
     (kind::REFLECT, mode::SINGULAR),

@@ -5,7 +5,7 @@
 //! complete any expression are one, [`DEAD`]: what a path carries there is dropped. States that no future event tells
 //! apart are one as well, so a path has as few parts as the expressions allow.
 
-use super::alphabet::{Alphabet, Scatter};
+use super::alphabet::{Alphabet, SCATTERS};
 use super::parse::{Event, EventSet, Node, kind};
 use super::{EmitterAs, Expression};
 use crate::error::{Error, Result};
@@ -25,8 +25,8 @@ const MOST_MOVES: usize = 20_000_000;
 pub struct Table {
     alphabet: Alphabet,
     start: u16,
-    /// State by state, where each event of scattering leads.
-    next: Vec<u16>,
+    /// State by state and class of meshes by class, where each way of scattering leads.
+    next: Vec<[u16; SCATTERS.len()]>,
     /// State by state, which of `lists` holds when a path ends at each light.
     ends: Vec<u16>,
     /// Expressions that accept the same paths; the first list is empty.
@@ -58,7 +58,8 @@ impl Table {
                 )));
             }
         }
-        Ok(Self { start: first, next, ends, lists, alphabet, settled: Vec::new() }.minimised())
+        let (next, _) = next.as_chunks();
+        Ok(Self { start: first, next: next.to_vec(), ends, lists, alphabet, settled: Vec::new() }.minimised())
     }
 
     /// The state of a path that has left the camera.
@@ -66,16 +67,16 @@ impl Table {
         self.start
     }
 
-    /// Number of a way of scattering off a mesh.
+    /// Number of the class of a mesh: expressions do not tell those of a class apart.
     #[inline]
-    pub fn event(&self, mesh: u32, scatter: Scatter) -> usize {
-        self.alphabet.scatter(mesh, scatter)
+    pub fn class(&self, mesh: u32) -> usize {
+        self.alphabet.class(mesh)
     }
 
-    /// The state after such an event.
+    /// The states after scattering off a mesh of a class, in the order of [`Scatter`].
     #[inline]
-    pub fn next(&self, state: u16, event: usize) -> u16 {
-        self.next[usize::from(state) * self.alphabet.scatters.len() + event]
+    pub fn next(&self, state: u16, class: usize) -> &[u16; SCATTERS.len()] {
+        &self.next[usize::from(state) * self.alphabet.classes() + class]
     }
 
     /// Number of a light.
@@ -108,18 +109,19 @@ impl Table {
 
     /// The same with states merged that no path tells apart.
     fn minimised(self) -> Self {
-        let (events, lights) = (self.alphabet.scatters.len(), self.alphabet.lights.len());
+        let (classes, lights) = (self.alphabet.classes(), self.alphabet.lights.len());
         let count = self.ends.len() / lights;
         // Tell apart by what is accepted now, then again and again by where events lead.
-        let mut group = vec![0usize; count];
+        let mut group = vec![0u16; count];
         let mut groups = 0;
         loop {
             let mut seen = BTreeMap::new();
-            let refined: Vec<usize> = (0..count)
+            let refined: Vec<u16> = (0..count)
                 .map(|state| {
-                    let ahead = self.next[state * events..][..events].iter().map(|&n| group[usize::from(n)]);
+                    let ahead =
+                        self.next[state * classes..][..classes].iter().map(|n| n.map(|n| group[usize::from(n)]));
                     let signature = (&self.ends[state * lights..][..lights], ahead.collect::<Vec<_>>());
-                    let number = seen.len();
+                    let number = seen.len() as u16;
                     *seen.entry(signature).or_insert(number)
                 })
                 .collect();
@@ -131,18 +133,19 @@ impl Table {
             groups = found;
         }
         // Groups are numbered by their first state, so the dead one, state 0, stays 0.
-        let mut next = vec![0; groups * events];
+        let mut next = vec![[0; SCATTERS.len()]; groups * classes];
         let mut ends = vec![0; groups * lights];
         for state in 0..count {
-            let to = group[state];
-            for event in 0..events {
-                next[to * events + event] = group[usize::from(self.next[state * events + event])] as u16;
+            let to = usize::from(group[state]);
+            for class in 0..classes {
+                next[to * classes + class] = self.next[state * classes + class].map(|n| group[usize::from(n)]);
             }
             ends[to * lights..][..lights].copy_from_slice(&self.ends[state * lights..][..lights]);
         }
-        let stays = |state: usize| next[state * events..][..events].iter().all(|&n| usize::from(n) == state);
+        let stays =
+            |state: usize| next[state * classes..][..classes].as_flattened().iter().all(|&n| usize::from(n) == state);
         let settled = (0..groups).map(stays).collect();
-        Self { start: group[usize::from(self.start)] as u16, next, ends, settled, ..self }
+        Self { start: group[usize::from(self.start)], next, ends, settled, ..self }
     }
 }
 
