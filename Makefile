@@ -1,6 +1,7 @@
 # make demo   builds the library and two C programs, and runs a lighting transfer and a stylisation, into out/
 # make test   sets up what is missing (Debian packages; Mitsuba, numpy and mkdocs from PyPI) and runs every test
 # make bench  runs the benches and prints the headline figures; make bench ONLY=rays runs one; plots go to out/bench/
+# make trade  measures every stage's error against its time, over its knobs, and writes the plots and fronts into the guide
 # make blender  builds the Blender extension, with the library inside, into out/blender/
 # make docs   builds the guide, with its pictures and the reference, into out/docs/
 # make clean  removes what was built
@@ -21,7 +22,9 @@ BENCHES  := $(patsubst benches/%.rs,%,$(wildcard benches/*.rs))
 ONLY     ?= $(BENCHES)
 GUIDE    := $(filter-out lighting_transfer stylize,$(patsubst examples_c/%.c,%,$(wildcard examples_c/*.c)))
 
-.PHONY: all lib demo test bench blender docs peers setup clean
+TRADE    := error_control render relight emission stylit
+
+.PHONY: all lib demo test bench trade blender docs peers setup clean
 
 all: lib $(PROFILE)/THIRD-PARTY.txt
 
@@ -65,6 +68,10 @@ bench: peers
 	@for bench in $(ONLY); do $(CARGO) bench --quiet --bench $$bench | tee out/bench/$$bench.log || exit 1; done
 	@grep -h '^figure ' out/bench/*.log >out/bench/figures.txt
 	@python3 benches/table.py
+
+trade:
+	@$(MAKE) bench ONLY="$(TRADE)"
+	@$(MAKE) docs
 
 blender: lib
 	@benches/peers/install.sh python

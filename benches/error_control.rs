@@ -362,24 +362,22 @@ fn empty() {
 
 /// A box with a metal block and a polished floor under a small lamp: light comes over mirrors, too.
 fn glossy() -> Setting {
-    let quad =
-        |corner: Vec3, u: Vec3, v: Vec3, material: usize| scenes::sheet("", material, 1, |s, t| corner + u * s + v * t);
     let (x, y, z) = (Vec3::X, Vec3::Y, Vec3::Z);
     let mut meshes: Vec<Mesh> = vec![
-        quad(Vec3::ZERO, z, x, 3),
-        quad(y, x, z, 0),
-        quad(Vec3::ZERO, x, y, 0),
-        quad(Vec3::ZERO, y, z, 1),
-        quad(x, z, y, 2),
+        Mesh::parallelogram(Vec3::ZERO, z, x, 3),
+        Mesh::parallelogram(y, x, z, 0),
+        Mesh::parallelogram(Vec3::ZERO, x, y, 0),
+        Mesh::parallelogram(Vec3::ZERO, y, z, 1),
+        Mesh::parallelogram(x, z, y, 2),
     ];
     let (base, a, b, up) =
         (Vec3::new(0.15, 0.0, 0.25), Vec3::new(0.29, 0.0, 0.08), Vec3::new(-0.08, 0.0, 0.29), y * 0.6);
     meshes.extend([
-        quad(base + up, a, b, 4),
-        quad(base, up, a, 4),
-        quad(base + a, up, b, 4),
-        quad(base + a + b, up, -a, 4),
-        quad(base + b, up, -b, 4),
+        Mesh::parallelogram(base + up, a, b, 4),
+        Mesh::parallelogram(base, up, a, 4),
+        Mesh::parallelogram(base + a, up, b, 4),
+        Mesh::parallelogram(base + a + b, up, -a, 4),
+        Mesh::parallelogram(base + b, up, -b, 4),
     ]);
     let matt = |colour: Vec3| Material { ior: 1.0, ..Material::diffuse("Wall", colour) };
     let mut scene = Scene {

@@ -131,23 +131,13 @@ fn measure(world: &World, round: u64) -> Measured {
     Measured { seconds_per_path: seconds / f64::from(POINTS * PATHS), variance: relative }
 }
 
-fn quad(corner: Vec3, u: Vec3, v: Vec3, material: usize) -> Mesh {
-    Mesh {
-        material,
-        positions: vec![corner, corner + u, corner + u + v, corner + v],
-        uvs: [vec![Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y], Vec::new()],
-        triangles: vec![[0, 1, 2], [0, 2, 3]],
-        ..Mesh::default()
-    }
-}
-
 /// The floor comes first, the ceiling last; material 1 shines.
 fn room() -> Scene {
     let (x, y, z) = (Vec3::X * SIDE, Vec3::Y * HEIGHT, Vec3::Z * SIDE);
     let sides = [(Vec3::ZERO, z, x), (Vec3::ZERO, x, y), (z, y, x), (Vec3::ZERO, y, z), (x, z, y), (y, x, z)];
     let shining = Material { emission: Vec3::splat(1e4), double_sided: false, ..Material::diffuse("lamp", Vec3::ZERO) };
     Scene {
-        meshes: sides.into_iter().map(|(corner, u, v)| quad(corner, u, v, 0)).collect(),
+        meshes: sides.into_iter().map(|(corner, u, v)| Mesh::parallelogram(corner, u, v, 0)).collect(),
         materials: vec![Material::diffuse("grey", Vec3::splat(0.5)), shining],
         ..Scene::default()
     }
@@ -170,7 +160,7 @@ fn mesh_lamps(count: usize) -> Scene {
     let mut lamps = Mesh { material: 1, ..Mesh::default() };
     for place in places(count) {
         let corner = place * SIDE - side / 2.0;
-        let lamp = quad(Vec3::new(corner.x, HEIGHT - 0.01, corner.y), Vec3::X * side, Vec3::Z * side, 1);
+        let lamp = Mesh::parallelogram(Vec3::new(corner.x, HEIGHT - 0.01, corner.y), Vec3::X * side, Vec3::Z * side, 1);
         let first = lamps.positions.len() as u32;
         lamps.positions.extend(lamp.positions);
         lamps.triangles.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);

@@ -272,16 +272,6 @@ fn lamps() {
     figure("relight.lamps_10000_over_1", timings.ratio(2, 0), "ratio of time");
 }
 
-fn quad(corner: Vec3, u: Vec3, v: Vec3, material: usize) -> Mesh {
-    Mesh {
-        material,
-        positions: vec![corner, corner + u, corner + u + v, corner + v],
-        uvs: [vec![Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y], Vec::new()],
-        triangles: vec![[0, 1, 2], [0, 2, 3]],
-        ..Mesh::default()
-    }
-}
-
 /// A grey hall of 30 × 30 × 4 m whose ceiling has `count` square lamps in its texture.
 fn hall(count: usize) -> Scene {
     let (x, y, z) = (Vec3::X * SIDE, Vec3::Y * 4.0, Vec3::Z * SIDE);
@@ -303,7 +293,7 @@ fn hall(count: usize) -> Scene {
         double_sided: false,
         ..Material::diffuse("lamp", Vec3::ZERO)
     };
-    let mut meshes: Vec<Mesh> = sides.into_iter().map(|(corner, u, v)| quad(corner, u, v, 0)).collect();
+    let mut meshes: Vec<Mesh> = sides.into_iter().map(|(corner, u, v)| Mesh::parallelogram(corner, u, v, 0)).collect();
     meshes[5].material = 1;
     Scene {
         meshes,

@@ -2,12 +2,13 @@
 
 On a page `{{ settings luxfer_x_params }}` and `{{ fields luxfer_x_report }}` are the fields of a struct with their comments,
 `{{ limits stage }}` is what the source of a stage says it leaves out, `{{ figure name }}` is a figure of `make bench`,
-`{{ figures prefix ... }}` a table of them, and `{{ plot name }}` a plot that it has drawn. Names of the C interface in code
-spans become links; one that does not exist is an error.
+`{{ figures prefix ... }}` a table of them, `{{ plot name }}` a plot that it has drawn, and `{{ front name }}` the settings of a plot of error
+against time that no other beats in both. Names of the C interface in code spans become links; one that does not exist is an error.
 """
 
 from __future__ import annotations
 
+import csv
 import os
 import re
 import sys
@@ -93,12 +94,31 @@ def value(kind: str, words: list[str], path: str, files) -> str:
     if kind == "figures":
         rows = "".join(f"| `{name}` | {number} | {unit} |\n" for name, number, unit in found(words, path))
         return f"| figure | value | unit |\n|---|---|---|\n{rows}"
+    if kind == "front":
+        return front(words[0], path)
     if kind == "plot":
         name, bench = words
         if files.get_file_from_path(f"plots/{name}.svg") is None:
             return f"*(`make bench ONLY={bench}` draws the plot that belongs here.)*"
         return f"![{name}]({reference.relative(f'plots/{name}.svg', path)})"
     raise PluginError(f"{path}: what is {{{{ {kind} }}}}?")
+
+
+def front(name: str, path: str) -> str:
+    """The Pareto front of a plot whose first axis is time and whose second is to be small."""
+    if not (BENCH / f"{name}.csv").exists():
+        return ""
+    with open(BENCH / f"{name}.csv", newline="") as file:
+        (_, seconds, error), *rows = csv.reader(file)
+    if seconds != "seconds":
+        raise PluginError(f"{path}: {name} is no plot against time")
+    points = sorted((float(x), float(y), series) for series, x, y in rows)
+    best, table = float("inf"), f"| {seconds} | {error} | of |\n|---|---|---|\n"
+    for x, y, series in points:
+        if y < best:
+            best = y
+            table += f"| {x:.3g} | {y:.3g} | {series} |\n"
+    return table
 
 
 def limits(stage: str, path: str) -> str:

@@ -1565,6 +1565,13 @@ typedef struct luxfer_emission_params {
     float metadata_weight;
     /** Seed of the synthesis; default 1. */
     uint64_t seed;
+    /**
+     * Correlation of the lights with themselves from which they are taken for regular, in [0, 1]; default 0.6. At 0 any
+     * repetition is held to exactly, at 1 none is, and patches go anywhere.
+     */
+    float regularity;
+    /** 1, the default, shows every lamp as one piece; with 0 seams may cut lamps. */
+    uint32_t whole_lamps;
 } luxfer_emission_params;
 
 /** An image of the emission: a LUXFER_EMISSION_ value. */
@@ -1576,7 +1583,10 @@ typedef struct luxfer_emission_report {
     uint32_t struct_size;
     /** Number of luminaires; see luxfer_emission_get_luminaire. */
     uint32_t luminaires;
-    /** Relative difference between texture and exemplar in the share of lit area. */
+    /**
+     * The largest relative difference between texture and exemplar: in the share that is lit, in the luminance of what is, and in the
+     * area of whole lamps and the distance from each to the nearest other. Lamps count the less the nearer a border they are.
+     */
     double error;
     /**
      * How regular the lights are, in [0, 1]: correlation with themselves shifted by the lattice that was found, 0 without.

@@ -344,7 +344,8 @@ layouts! {
         max_magnification seed;
     luxfer_rectify_report: struct_size segments vanishing_points vanishing_errors vanishing_support focal_source
         focal principal axes is_unwarped reserved to_photo corners corner_errors pixel_size aspect_confidence;
-    luxfer_emission_params: struct_size width height block scale working_side metadata_weight seed;
+    luxfer_emission_params: struct_size width height block scale working_side metadata_weight seed regularity
+        whole_lamps;
     luxfer_emission_report: struct_size luminaires error regularity;
     luxfer_luminaire: struct_size corners centre size orientation area flux_share colour reserved;
     luxfer_requirements: struct_size scattering lights textures bounces brightest_material albedo

@@ -24,28 +24,17 @@ const IMAGES: u32 = 16;
 const OUR_PATHS: u32 = 256;
 const THEIR_PATHS: u32 = 256;
 
-/// A parallelogram that faces `u × v`.
-fn quad(corner: Vec3, u: Vec3, v: Vec3, material: usize) -> Mesh {
-    Mesh {
-        material,
-        positions: vec![corner, corner + u, corner + u + v, corner + v],
-        uvs: [vec![Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y], Vec::new()],
-        triangles: vec![[0, 1, 2], [0, 2, 3]],
-        ..Mesh::default()
-    }
-}
-
 /// A block that stands on the floor, turned about the vertical.
 fn block(centre: Vec3, size: Vec3, angle: f32, material: usize) -> Vec<Mesh> {
     let turn = Quat::from_rotation_y(angle);
     let [x, y, z] = [Vec3::X * size.x, Vec3::Y * size.y, Vec3::Z * size.z].map(|v| turn * v);
     let low = centre - (x + z) / 2.0;
     vec![
-        quad(low + y, z, x, material),
-        quad(low, x, y, material),
-        quad(low, y, z, material),
-        quad(low + x + z, -x, y, material),
-        quad(low + x + z, y, -z, material),
+        Mesh::parallelogram(low + y, z, x, material),
+        Mesh::parallelogram(low, x, y, material),
+        Mesh::parallelogram(low, y, z, material),
+        Mesh::parallelogram(low + x + z, -x, y, material),
+        Mesh::parallelogram(low + x + z, y, -z, material),
     ]
 }
 
@@ -54,12 +43,12 @@ fn cornell() -> Scene {
     let matt = |name: &str, colour: [f32; 3]| Material::diffuse(name, Vec3::from_array(colour));
     let (x, y, z) = (Vec3::X * 0.556, Vec3::Y * 0.549, Vec3::Z * 0.559);
     let mut meshes = vec![
-        quad(Vec3::ZERO, z, x, 0),
-        quad(y, x, z, 0),
-        quad(Vec3::ZERO, x, y, 0),
-        quad(Vec3::ZERO, y, z, 1),
-        quad(x, z, y, 2),
-        quad(Vec3::new(0.213, 0.548, 0.227), Vec3::X * 0.13, Vec3::Z * 0.105, 3),
+        Mesh::parallelogram(Vec3::ZERO, z, x, 0),
+        Mesh::parallelogram(y, x, z, 0),
+        Mesh::parallelogram(Vec3::ZERO, x, y, 0),
+        Mesh::parallelogram(Vec3::ZERO, y, z, 1),
+        Mesh::parallelogram(x, z, y, 2),
+        Mesh::parallelogram(Vec3::new(0.213, 0.548, 0.227), Vec3::X * 0.13, Vec3::Z * 0.105, 3),
     ];
     meshes.extend(block(Vec3::new(0.37, 0.0, 0.39), Vec3::new(0.165, 0.165, 0.165), -0.29, 0));
     meshes.extend(block(Vec3::new(0.185, 0.0, 0.2), Vec3::new(0.165, 0.33, 0.165), 0.31, 0));

@@ -28,6 +28,15 @@ install bpy 'bpy==5.0.*' 'numpy<2'
 # What `stylit_judge.py` beside the test data runs on.
 install judge numpy scipy pillow
 
+# Embark's example-based synthesis of textures.
+case " ${wanted:-texture_synthesis} " in
+  *" texture_synthesis "*)
+    [ -x target/peers/texture_synthesis/bin/texture-synthesis ] ||
+      cargo install --quiet --locked --root target/peers/texture_synthesis texture-synthesis-cli ||
+      echo "texture-synthesis could not be installed" >&2
+    ;;
+esac
+
 # ebsynth, CPU back end: in no package registry, so only where its source can be reached; EBSYNTH_SOURCE may name a copy of
 # its repository.
 install_ebsynth() {

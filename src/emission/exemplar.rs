@@ -2,6 +2,7 @@
 
 use super::Input;
 use super::components::{self, Component, Components};
+use super::statistics::{Pattern, Statistics};
 use crate::error::{Error, Result};
 use crate::geometry::Homography;
 use crate::image::{Image, pyramid, try_vec};
@@ -19,6 +20,8 @@ const CUT_LAMP_SLACK: f64 = 1.1;
 
 pub struct Exemplar<'a> {
     pub image: &'a Image,
+    /// Confidence that a pixel is light.
+    pub light: &'a Image,
     pub width: usize,
     pub height: usize,
     /// Finite and on the plane.
@@ -26,6 +29,8 @@ pub struct Exemplar<'a> {
     pub components: Components,
     /// Which components are lamps that end inside the shown region: these move as one piece.
     pub whole: Vec<bool>,
+    /// Which components are parts of such lamps that the border cuts off: these are not shown.
+    pub cut: Vec<bool>,
     /// Pixels of the photo that show each component.
     pub photo_area: Vec<f64>,
     /// Share of the shown pixels that is lit.
@@ -87,11 +92,20 @@ impl<'a> Exemplar<'a> {
         let lit = components.list.iter().map(|c| c.area).sum::<usize>();
 
         let whole = find_whole(&components, &shown, width, height);
-        let usable = find_usable(&components, &whole, &shown);
+        let cut = find_cut(&components, &whole);
+        let is_usable = |(&s, &l): (&bool, &u32)| s && (l == 0 || !cut[l as usize - 1]);
+        let usable: Vec<bool> = shown.iter().zip(&components.labels).map(is_usable).collect();
         let sources = Sources { image, light, components: &components, usable: &usable, shown: &shown };
         let working = Working::new(&sources, working_side, job)?;
         let lit_share = lit as f64 / total as f64;
-        Ok(Self { image, width, height, shown, components, whole, photo_area, lit_share, working })
+        Ok(Self { image, light, width, height, shown, components, whole, cut, photo_area, lit_share, working })
+    }
+
+    /// The statistics of its pattern, in unwarped pixels; `fades` as in [`Pattern`].
+    pub fn statistics(&self, fades: [bool; 2]) -> Statistics {
+        let Self { image, width, height, components, whole, .. } = self;
+        let colour = |i: usize| self.shown[i].then(|| image.rgb(i % width, i / width));
+        Statistics::of(&Pattern { width: *width, height: *height, components, whole, fades, colour })
     }
 
     pub fn lamps(&self) -> impl Iterator<Item = &Component> {
@@ -123,14 +137,12 @@ fn find_whole(components: &Components, shown: &[bool], width: usize, height: usi
     whole
 }
 
-/// The shown pixels without the lamps that are cut off.
-fn find_usable(components: &Components, whole: &[bool], shown: &[bool]) -> Vec<bool> {
+/// A component is part of a cut lamp if it is not whole, yet not much longer than those that are.
+fn find_cut(components: &Components, whole: &[bool]) -> Vec<bool> {
     let side = |c: &Component| c.size()[0].max(c.size()[1]) as f64;
     let lamps = components.list.iter().zip(whole);
     let longest = lamps.clone().filter(|(_, w)| **w).map(|(c, _)| side(c)).fold(0.0, f64::max);
-    let cut: Vec<bool> = lamps.map(|(c, &w)| !w && side(c) <= longest * CUT_LAMP_SLACK).collect();
-    let keep = |(&s, &l): (&bool, &u32)| s && (l == 0 || !cut[l as usize - 1]);
-    shown.iter().zip(&components.labels).map(keep).collect()
+    lamps.map(|(c, &w)| !w && side(c) <= longest * CUT_LAMP_SLACK).collect()
 }
 
 /// What the working size is made from.

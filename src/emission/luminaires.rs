@@ -1,7 +1,7 @@
 //! The lamps of the texture as a list: what lighting software wants besides pixels.
 
 use super::Luminaire;
-use super::components::{self, Component};
+use super::components::{self, Component, Components};
 use crate::error::Result;
 use crate::image::Image;
 use crate::image::colour::luminance;
@@ -13,7 +13,7 @@ const OUTLINE_TOLERANCE: f64 = 1.0;
 
 /// Takes out every connected piece of light smaller than `least` texels.
 pub fn sweep(texture: &mut Image, mask: &mut Image, least: f64) -> Result<()> {
-    let found = components::find(mask.width, mask.height, |i| mask.data[i] > 0.5)?;
+    let found = components(mask)?;
     if found.list.iter().all(|piece| piece.area as f64 >= least) {
         return Ok(());
     }
@@ -26,10 +26,14 @@ pub fn sweep(texture: &mut Image, mask: &mut Image, least: f64) -> Result<()> {
     Ok(())
 }
 
-/// One luminaire for each connected component of the mask, in the order of their first texel.
-pub fn find(texture: &Image, mask: &Image, job: Job) -> Result<Vec<Luminaire>> {
-    let (width, height) = (mask.width, mask.height);
-    let found = components::find(width, height, |i| mask.data[i] > 0.5)?;
+/// The connected components of a mask.
+pub fn components(mask: &Image) -> Result<Components> {
+    components::find(mask.width, mask.height, |i| mask.data[i] > 0.5)
+}
+
+/// One luminaire for each connected component of the lights, in the order of their first texel.
+pub fn find(texture: &Image, found: &Components, job: Job) -> Result<Vec<Luminaire>> {
+    let (width, height) = (texture.width, texture.height);
     let total = texture.data.chunks_exact(3).map(|p| f64::from(luminance(Vec3::from_slice(p)))).sum::<f64>();
     found
         .list
@@ -163,7 +167,7 @@ mod tests {
         let on = |x: usize, y: usize| inside(x as f64 + 0.5, y as f64 + 0.5);
         let mask = Image::from_fn(width, height, |x, y| [f32::from(on(x, y))]).unwrap();
         let texture = Image::from_fn(width, height, |x, y| [2.0, 1.0, 0.5].map(|v| v * f32::from(on(x, y)))).unwrap();
-        find(&texture, &mask, Monitor::default().job()).unwrap()
+        find(&texture, &components(&mask).unwrap(), Monitor::default().job()).unwrap()
     }
 
     #[test]

@@ -8,7 +8,8 @@
 //! 3. [`metadata`]: confidence and signed x and y distance to the nearest light.
 //! 4. [`patches`]: quilting over colour and metadata with minimum-error [`seam`]s, held to the lattice.
 //! 5. [`lamps`]: every lamp that patches show becomes one piece again; no seam cuts it.
-//! 6. [`recover`]: full detail from the photo. 7. [`luminaires`]: the lamps as a list.
+//! 6. [`recover`]: full detail from the photo. 7. [`luminaires`]: the lamps as a list. 8. [`statistics`]: how far the
+//!    texture's are from the exemplar's.
 //!
 //! A texture that fits inside the exemplar is a part of it, copied.
 //!
@@ -25,6 +26,7 @@ mod patches;
 mod period;
 mod recover;
 mod seam;
+pub mod statistics;
 #[cfg(test)]
 mod tests;
 
@@ -34,9 +36,11 @@ use crate::error::{Error, Result, check_range};
 use crate::geometry::Homography;
 use crate::image::Image;
 use crate::job::Job;
+use components::Components;
 use exemplar::{AreaSums, Exemplar};
 use glam::{DVec2, Vec3};
 use patches::{Guide, Layout, Shift};
+use statistics::{Pattern, Statistics};
 
 /// Most working pixels of a result; larger ones are synthesised at a coarser size.
 const MOST_WORKING_PIXELS: f64 = (1 << 26) as f64;
@@ -70,12 +74,27 @@ pub struct Params {
     pub working_side: usize,
     /// Weight of the metadata channels against colour, in `[0, 1e3]`; 0 is plain quilting.
     pub metadata_weight: f32,
+    /// Correlation of the lights with themselves from which they are taken for regular, in `[0, 1]`: at 0 any repetition is
+    /// held to exactly, at 1 none is, and patches go anywhere.
+    pub regularity: f32,
+    /// Shows every lamp as one piece; without, seams may cut lamps, as in the paper.
+    pub whole_lamps: bool,
     pub seed: u64,
 }
 
 impl Default for Params {
     fn default() -> Self {
-        Self { width: 1024, height: 1024, scale: 1.0, block: 0, working_side: 256, metadata_weight: 1.0, seed: 1 }
+        Self {
+            width: 1024,
+            height: 1024,
+            scale: 1.0,
+            block: 0,
+            working_side: 256,
+            metadata_weight: 1.0,
+            regularity: 0.6,
+            whole_lamps: true,
+            seed: 1,
+        }
     }
 }
 
@@ -114,7 +133,9 @@ pub struct Emission {
     /// Correlation of the lights with themselves shifted by the lattice, the lower of both periods, in `[0, 1]`; 0 where no
     /// period was found.
     pub regularity: f64,
-    /// Relative difference between texture and exemplar in share of lit area.
+    /// Of the exemplar, in texels, and of the texture.
+    pub statistics: [Statistics; 2],
+    /// Largest relative difference between the two.
     pub error: f64,
 }
 
@@ -127,6 +148,7 @@ impl Params {
         check_range("emission.block", self.block, 0, 65_536)?;
         check_range("emission.working_side", self.working_side, 16, 2048)?;
         check_range("emission.metadata_weight", self.metadata_weight, 0.0, 1e3)?;
+        check_range("emission.regularity", self.regularity, 0.0, 1.0)?;
         Ok(())
     }
 }
@@ -144,7 +166,9 @@ pub fn given(texture: &Image, job: Job) -> Result<Emission> {
     if !mask.data.contains(&1.0) {
         return Err(Error::degenerate("the emissive texture is black everywhere: nothing in it gives light"));
     }
-    let luminaires = luminaires::find(&texture, &mask, job)?;
+    let components = luminaires::components(&mask)?;
+    let luminaires = luminaires::find(&texture, &components, job)?;
+    let statistics = statistics_of(&texture, &components, [false; 2]);
     Ok(Emission {
         texture,
         mask,
@@ -153,6 +177,7 @@ pub fn given(texture: &Image, job: Job) -> Result<Emission> {
         luminaires,
         continuation: Continuation::Copy,
         regularity: 0.0,
+        statistics: [statistics; 2],
         error: 0.0,
     })
 }
@@ -186,7 +211,7 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Emission> {
     let inside = window(&exemplar, params)?;
     let (continuation, regularity) = match inside {
         Some(_) => (Continuation::Copy, 0.0),
-        None => period::find(&exemplar, job.part(0.1, 0.2))?,
+        None => period::find(&exemplar, params.regularity, job.part(0.1, 0.2))?,
     };
     let block = if params.block > 0 { params.block } else { default_block(&exemplar, continuation) };
     let reach = continuation
@@ -210,12 +235,12 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Emission> {
 
     // Whole lamps as pieces, the rest as the patches have it; then full detail.
     let (instances, by_pixel) = match inside {
-        Some(_) => (Vec::new(), vec![true; exemplar.whole.len()]),
-        None => {
+        None if params.whole_lamps => {
             let is_lattice = continuation.lattice().is_some();
             let instances = lamps::resolve(&exemplar, &layout, is_lattice, params.seed, job.part(0.8, 0.85))?;
-            (instances, exemplar.whole.iter().map(|w| !w).collect())
+            (instances, exemplar.whole.iter().zip(&exemplar.cut).map(|(whole, cut)| !whole && !cut).collect())
         }
+        _ => (Vec::new(), vec![true; exemplar.whole.len()]),
     };
     let source = recover::Source {
         exemplar: &exemplar,
@@ -230,13 +255,33 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Emission> {
         let smallest = exemplar.lamps().map(|l| l.area as f64).fold(f64::INFINITY, f64::min);
         luminaires::sweep(&mut texture, &mut mask, CRUMB * smallest / params.scale.powi(2))?;
     }
-    let luminaires = luminaires::find(&texture, &mask, job.part(0.95, 1.0))?;
+    let components = luminaires::components(&mask)?;
+    let luminaires = luminaires::find(&texture, &components, job.part(0.95, 1.0))?;
 
-    let lit = mask.data.iter().filter(|&&m| m > 0.5).count() as f64 / mask.data.len() as f64;
-    let error = (lit / exemplar.lit_share - 1.0).abs();
+    // A border may cut periods, but not the only one.
+    let fades = match continuation {
+        Continuation::Lattice(_) | Continuation::Free => [true; 2],
+        Continuation::Row([along, _]) => [along.x.abs() > along.y.abs(), along.x.abs() <= along.y.abs()],
+        Continuation::Tile(_) | Continuation::Copy => [false; 2],
+    };
+    let statistics = [
+        exemplar.statistics(fades).scaled(1.0 / params.scale),
+        statistics_of(&texture, &components, [continuation != Continuation::Copy; 2]),
+    ];
+    let error = statistics[1].difference(&statistics[0]);
     let metadata = shown_metadata(&layout, &exemplar, &exemplar_metadata)?;
     job.report(1.0);
-    Ok(Emission { texture, mask, exemplar_metadata, metadata, luminaires, continuation, regularity, error })
+    Ok(Emission { texture, mask, exemplar_metadata, metadata, luminaires, continuation, regularity, statistics, error })
+}
+
+/// The statistics of a texture; lamps are whole that do not touch its border.
+fn statistics_of(texture: &Image, components: &Components, fades: [bool; 2]) -> Statistics {
+    let (width, height) = (texture.width, texture.height);
+    let inside =
+        |c: &components::Component| c.min.iter().all(|&low| low > 0) && c.max[0] + 1 < width && c.max[1] + 1 < height;
+    let whole: Vec<bool> = components.list.iter().map(inside).collect();
+    let colour = |i: usize| Some(Vec3::from_slice(&texture.data[3 * i..]));
+    Statistics::of(&Pattern { width, height, components, whole: &whole, fades, colour })
 }
 
 /// Longest side of the exemplar at work: coarser than asked for where the result would have too many working pixels.

@@ -12,8 +12,6 @@ use crate::image::{Image, pyramid};
 use crate::job::Job;
 use glam::{DMat2, DVec2};
 
-/// Correlation from which a shift may be a period.
-const LEAST_CORRELATION: f32 = 0.6;
 /// How far below the best a period's correlation may lie: lower ones match lamps of unequal kind.
 const RELATIVE_CORRELATION: f32 = 0.9;
 /// Correlation at all shifts along an axis from which the pattern does not change along it.
@@ -53,7 +51,11 @@ impl Continuation {
 }
 
 /// Finds how the lights of the exemplar repeat, and how well: the lower correlation of its periods, 0 if there are none.
-pub fn find(exemplar: &Exemplar, job: Job) -> Result<(Continuation, f64)> {
+/// From the correlation `least_regularity` on a shift may be a period; at 1 nothing repeats.
+pub fn find(exemplar: &Exemplar, least_regularity: f32, job: Job) -> Result<(Continuation, f64)> {
+    if least_regularity >= 1.0 {
+        return Ok((Continuation::Free, 0.0));
+    }
     let working = &exemplar.working;
     let bounds = working.usable_box();
     let extent = DVec2::new((bounds[2] - bounds[0]) as f64, (bounds[3] - bounds[1]) as f64) * working.pitch;
@@ -77,11 +79,11 @@ pub fn find(exemplar: &Exemplar, job: Job) -> Result<(Continuation, f64)> {
     let unchanging: Vec<DVec2> =
         [DVec2::X, DVec2::Y].into_iter().filter(|&axis| is_unchanging(&correlation, axis, least)).collect();
     let mut periods: Vec<(DVec2, f64)> = unchanging.iter().map(|&axis| (axis, 1.0)).collect();
-    let mut repeats = peaks(&correlation, width, height, least, unchanging.first().copied());
+    let mut repeats = peaks(&correlation, width, height, least, least_regularity, unchanging.first().copied());
     sharpen(&mut repeats);
     repeats.iter_mut().for_each(|(shift, _)| *shift *= to_unwarped);
     let best = repeats.iter().map(|r| r.1).fold(0.0, f32::max);
-    repeats.retain(|r| r.1 >= LEAST_CORRELATION.max(RELATIVE_CORRELATION * best));
+    repeats.retain(|r| r.1 >= least_regularity.max(RELATIVE_CORRELATION * best));
     repeats.sort_by(|a, b| a.0.length_squared().total_cmp(&b.0.length_squared()));
     for (shift, value) in repeats {
         let parallel = |p: &(DVec2, f64)| p.0.normalize().perp_dot(shift.normalize()).abs() < 0.3;
@@ -118,6 +120,7 @@ fn peaks(
     width: usize,
     height: usize,
     least: f32,
+    least_value: f32,
     unchanging: Option<DVec2>,
 ) -> Vec<(DVec2, f32)> {
     let (w, h) = (width as isize, height as isize);
@@ -128,7 +131,7 @@ fn peaks(
             if (y == 0 && x <= 0) || off_axis {
                 continue;
             }
-            let Some(value) = correlation.at(x, y, least).filter(|&v| v >= LEAST_CORRELATION) else { continue };
+            let Some(value) = correlation.at(x, y, least).filter(|&v| v >= least_value) else { continue };
             let at = |dx: isize, dy: isize| match unchanging {
                 Some(u) if u.dot(DVec2::new(dx as f64, dy as f64)) != 0.0 => -1.0,
                 _ => correlation.at(x + dx, y + dy, 1.0).unwrap_or(-1.0),

@@ -1,17 +1,17 @@
 //! Full detail: every lamp and every patch is copied again from the finest source there is ("Lighting Style Transfer", §6, Fig. 12h).
 //!
 //! A texel looks up its shift, undoes it, and arrives in the unwarped image; from there the homography leads into the photo,
-//! where the area the texel covers is averaged. What is light is decided in the unwarped mask: sharply where it is magnified,
-//! by share of area where it is reduced.
+//! where the area the texel covers is averaged. What is light is decided in the unwarped image: where it is magnified, by its
+//! confidence between pixels, so that outlines are no staircases; where it is reduced, by share of area.
 
-use super::exemplar::Exemplar;
+use super::exemplar::{Exemplar, LIT};
 use super::lamps::Instance;
 use super::patches::Layout;
 use crate::error::Result;
 use crate::geometry::Homography;
 use crate::image::Image;
 use crate::job::Job;
-use glam::{DVec2, Vec3};
+use glam::{DVec2, Vec3, Vec4};
 use rayon::prelude::*;
 
 /// Most samples along each side of a texel.
@@ -109,16 +109,20 @@ impl Source<'_> {
         for i in 0..(n * n) as usize {
             let step = DVec2::new((i % n as usize) as f64 + 0.5, (i / n as usize) as f64 + 0.5);
             let p = corner + step * spacing;
-            let taps = self.taps(p, spacing > 0.999);
-            let light: f32 = taps.iter().filter(|t| is_shown(self.label(t.0))).map(|t| t.1).sum();
-            if light >= 0.5 {
+            let is_magnified = spacing <= 0.999;
+            let taps = self.taps(p, !is_magnified);
+            let light: f32 = taps.iter().map(|&(pixel, w)| w * self.light(pixel, is_magnified, &is_shown)).sum();
+            if light >= LIT {
                 inside += 1;
                 colour += self.from_photo(p, spacing).unwrap_or_else(|| {
                     // Only light mixes with light.
                     let lit = taps.iter().filter(|t| t.1 > 0.0 && is_shown(self.label(t.0)));
-                    lit.map(|&(i, w)| self.exemplar.image.rgb(i % self.exemplar.width, i / self.exemplar.width) * w)
-                        .sum::<Vec3>()
-                        / light
+                    let sum: Vec4 = lit
+                        .map(|&(i, w)| {
+                            (self.exemplar.image.rgb(i % self.exemplar.width, i / self.exemplar.width) * w).extend(w)
+                        })
+                        .sum();
+                    sum.truncate() / sum.w.max(f32::MIN_POSITIVE)
                 });
             }
         }
@@ -129,6 +133,20 @@ impl Source<'_> {
     /// Label of an unwarped pixel; `usize::MAX` is none.
     fn label(&self, pixel: usize) -> u32 {
         self.exemplar.components.labels.get(pixel).copied().unwrap_or(0)
+    }
+
+    /// How much an unwarped pixel is of the light that is shown. Beside a lamp confidence fades away; where it is none of a
+    /// lamp's, it is nobody's.
+    fn light(&self, pixel: usize, is_graded: bool, is_shown: &impl Fn(u32) -> bool) -> f32 {
+        let label = self.label(pixel);
+        if label != 0 && !is_shown(label) || !self.exemplar.shown.get(pixel).is_some_and(|&s| s) {
+            return 0.0;
+        }
+        match (is_graded, self.exemplar.light.data[pixel].min(1.0)) {
+            (false, _) => f32::from(label != 0),
+            (true, confidence) if label != 0 || confidence < LIT => confidence.max(0.0),
+            _ => 0.0,
+        }
     }
 
     /// Pixels and weights of a bilinear look-up, or of the pixel a point lies in.

@@ -77,21 +77,8 @@ fn score(result: &Emission, per_area: f64, areas: (f64, f64, f64), basis: Option
     let mean = lamps.iter().map(|l| l.area).sum::<f64>() / lamps.len() as f64;
     // Lamps are counted by their light, so that those on the border count by their part.
     let lit = result.mask.data.iter().sum::<f32>() as f64;
-    let phase = basis.map_or(0.0, |[a, b]| {
-        // Phase angles of the centres; their circular mean is the origin of the lattice.
-        let inverse = DMat2::from_cols(a, b).inverse();
-        let cells: Vec<DVec2> = lamps.iter().map(|l| inverse * l.centre).collect();
-        let angle = |f: &dyn Fn(&DVec2) -> f64| {
-            let turn = |c: &DVec2| DVec2::from_angle(std::f64::consts::TAU * f(c));
-            cells.iter().map(turn).sum::<DVec2>().to_angle() / std::f64::consts::TAU
-        };
-        let origin = DVec2::new(angle(&|c| c.x), angle(&|c| c.y));
-        let off = |c: &DVec2| {
-            let d = *c - origin;
-            (d - d.round()).length_squared()
-        };
-        (cells.iter().map(off).sum::<f64>() / cells.len() as f64).sqrt()
-    });
+    let centres: Vec<DVec2> = lamps.iter().map(|l| l.centre).collect();
+    let phase = basis.map_or(0.0, |basis| statistics::phase(&centres, basis));
     Score {
         density: lit / mean / (width * height) as f64 / per_area,
         area: mean / areas.1,

@@ -14,7 +14,7 @@ use super::scene::missing;
 use super::stage::{Stage, need};
 use super::status::luxfer_status;
 use crate::emission::{self, Emission};
-use crate::error::Error;
+use crate::error::{Error, Result};
 use crate::geometry::Homography;
 use crate::image::Image;
 use glam::DMat3;
@@ -56,16 +56,21 @@ pub struct luxfer_emission_params {
     pub metadata_weight: f32,
     /// Seed of the synthesis; default 1.
     pub seed: u64,
+    /// Correlation of the lights with themselves from which they are taken for regular, in [0, 1]; default 0.6. At 0 any
+    /// repetition is held to exactly, at 1 none is, and patches go anywhere.
+    pub regularity: f32,
+    /// 1, the default, shows every lamp as one piece; with 0 seams may cut lamps.
+    pub whole_lamps: u32,
 }
 
 // SAFETY: plain numbers.
 unsafe impl Versioned for luxfer_emission_params {
     const NAME: &'static str = "luxfer_emission_params";
-    const SIZES: &'static [usize] = &[40];
+    const SIZES: &'static [usize] = &[48];
     fn defaults() -> Self {
         let d = emission::Params::default();
         Self {
-            struct_size: 40,
+            struct_size: 48,
             width: d.width as u32,
             height: d.height as u32,
             block: d.block as u32,
@@ -73,21 +78,25 @@ unsafe impl Versioned for luxfer_emission_params {
             working_side: d.working_side as u32,
             metadata_weight: d.metadata_weight,
             seed: d.seed,
+            regularity: d.regularity,
+            whole_lamps: u32::from(d.whole_lamps),
         }
     }
 }
 
 impl luxfer_emission_params {
-    pub(super) fn params(&self) -> emission::Params {
-        emission::Params {
+    pub(super) fn params(&self) -> Result<emission::Params> {
+        Ok(emission::Params {
             width: self.width as usize,
             height: self.height as usize,
             scale: self.scale,
             block: self.block as usize,
             working_side: self.working_side as usize,
             metadata_weight: self.metadata_weight,
+            regularity: self.regularity,
+            whole_lamps: params::flag(self.whole_lamps, "whole_lamps")?,
             seed: self.seed,
-        }
+        })
     }
 }
 
@@ -99,7 +108,8 @@ pub struct luxfer_emission_report {
     pub struct_size: u32,
     /// Number of luminaires; see luxfer_emission_get_luminaire.
     pub luminaires: u32,
-    /// Relative difference between texture and exemplar in the share of lit area.
+    /// The largest relative difference between texture and exemplar: in the share that is lit, in the luminance of what is, and in the
+    /// area of whole lamps and the distance from each to the nearest other. Lamps count the less the nearer a border they are.
     pub error: f64,
     /// How regular the lights are, in [0, 1]: correlation with themselves shifted by the lattice that was found, 0 without.
     pub regularity: f64,
@@ -247,7 +257,7 @@ pub unsafe extern "C" fn luxfer_emission_start(
     job: *mut *mut luxfer_job,
 ) -> luxfer_status {
     enter(emission, |stage| {
-        let params = params::read(params)?.params();
+        let params = params::read(params)?.params()?;
         need(&stage.inputs().unwarped, "luxfer_emission_set_exemplar")?;
         stage.start(job, move |inputs, _, job| {
             let [unwarped, light, valid] = need(&inputs.unwarped, "luxfer_emission_set_exemplar")?;

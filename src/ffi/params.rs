@@ -71,6 +71,14 @@ pub(super) fn read_required<P: Versioned>(place: *const P) -> Result<P> {
     Ok(params)
 }
 
+/// A switch from outside.
+pub(super) fn flag(value: u32, name: &str) -> Result<bool> {
+    match value {
+        0 | 1 => Ok(value == 1),
+        _ => Err(Error::argument(format!("{name} is {value}; it must be 0 or 1"))),
+    }
+}
+
 /// A place for a report, whose `struct_size` the caller has set.
 pub(super) struct Report<P> {
     place: *mut P,

@@ -17,7 +17,7 @@ use super::params;
 use super::pointer::{Out, text};
 use super::stage::{Stage, need};
 use super::status::luxfer_status;
-use super::stylize_params::{choice, flag, luxfer_stylize_params};
+use super::stylize_params::{choice, luxfer_stylize_params};
 use super::stylize_results::Stylised;
 use crate::error::{Error, ErrorKind, Result, check_range};
 use crate::guides;
@@ -284,7 +284,7 @@ pub unsafe extern "C" fn luxfer_stylize_start(
 ) -> luxfer_status {
     enter(stylize, |stage| {
         let settings = params::read(params)?;
-        let (params, keep) = (settings.params()?, flag(settings.keep_for_update, "keep_for_update")?);
+        let (params, keep) = (settings.params()?, params::flag(settings.keep_for_update, "keep_for_update")?);
         need(&stage.inputs().artwork, "luxfer_stylize_set_artwork")?;
         need(&stage.inputs().guides.first(), "luxfer_stylize_add_guide")?;
         let previous = match stage.inputs().motion {

@@ -122,13 +122,6 @@ pub(super) fn choice<T: Copy>(values: &[T], index: i32, name: &str, prefix: &str
     value.copied().ok_or_else(|| Error::argument(format!("{name} is {index}; it must be a {prefix} value")))
 }
 
-pub(super) fn flag(value: u32, name: &str) -> Result<bool> {
-    match value {
-        0 | 1 => Ok(value == 1),
-        _ => Err(Error::argument(format!("{name} is {value}; it must be 0 or 1"))),
-    }
-}
-
 impl luxfer_stylize_params {
     fn of(p: &stylize::Params) -> Self {
         Self {
@@ -173,7 +166,7 @@ impl luxfer_stylize_params {
             seam: self.seam,
             vote: choice(&VOTES, self.vote, "vote", "LUXFER_STYLIZE_VOTE_")?,
             final_vote: choice(&VOTES, self.final_vote, "final_vote", "LUXFER_STYLIZE_VOTE_")?,
-            preview: flag(self.preview, "preview")?,
+            preview: params::flag(self.preview, "preview")?,
             coherence: self.coherence,
             match_appearance: self.match_appearance,
             seed: self.seed,

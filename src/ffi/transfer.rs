@@ -137,7 +137,7 @@ impl luxfer_transfer_params {
             } else {
                 params::read_required(self.lights)?.params()
             },
-            emission: params::read(self.emission)?.params(),
+            emission: params::read(self.emission)?.params()?,
             plane_distance: self.plane_distance,
             max_texels: self.max_texels as usize,
             target,

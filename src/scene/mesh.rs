@@ -18,6 +18,18 @@ pub struct Mesh {
 }
 
 impl Mesh {
+    /// A parallelogram of two triangles that faces along `u` × `v`. Its texture coordinates are (0, 0) at the corner, and (1, 0) and (0, 1)
+    /// along `u` and `v`.
+    pub fn parallelogram(corner: Vec3, u: Vec3, v: Vec3, material: usize) -> Self {
+        Self {
+            material,
+            positions: vec![corner, corner + u, corner + u + v, corner + v],
+            uvs: [vec![Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y], Vec::new()],
+            triangles: vec![[0, 1, 2], [0, 2, 3]],
+            ..Self::default()
+        }
+    }
+
     pub fn corners(&self, triangle: usize) -> [Vec3; 3] {
         self.triangles[triangle].map(|i| self.positions[i as usize])
     }

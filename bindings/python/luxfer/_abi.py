@@ -573,6 +573,8 @@ class luxfer_emission_params(Structure):
         ("working_side", c_uint32),
         ("metadata_weight", c_float),
         ("seed", c_uint64),
+        ("regularity", c_float),
+        ("whole_lamps", c_uint32),
     ]
 
 

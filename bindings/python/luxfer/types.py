@@ -967,6 +967,11 @@ class EmissionParams(TypedDict, total=False):
     """Weight of the metadata channels against colour, in [0, 1e3]; default 1; 0 is plain quilting."""
     seed: int
     """Seed of the synthesis; default 1."""
+    regularity: float
+    """Correlation of the lights with themselves from which they are taken for regular, in [0, 1]; default 0.6.
+    At 0 any repetition is held to exactly, at 1 none is, and patches go anywhere."""
+    whole_lamps: int
+    """1, the default, shows every lamp as one piece; with 0 seams may cut lamps."""
 
 
 @dataclass(frozen=True)
@@ -976,7 +981,9 @@ class EmissionReport:
     luminaires: int
     """Number of luminaires; see luxfer_emission_get_luminaire."""
     error: float
-    """Relative difference between texture and exemplar in the share of lit area."""
+    """The largest relative difference between texture and exemplar: in the share that is lit, in the luminance
+    of what is, and in the area of whole lamps and the distance from each to the nearest other. Lamps count the
+    less the nearer a border they are."""
     regularity: float
     """How regular the lights are, in [0, 1]: correlation with themselves shifted by the lattice that was found,
     0 without."""

@@ -6,7 +6,6 @@ use crate::image::Image;
 use crate::job::Monitor;
 use crate::render::sampler::Sampler;
 use crate::render::tests::chi2::assert_follows;
-use crate::render::tests::quad;
 use crate::render::{PathSink, SurfacePoint, World, irradiance};
 use crate::rng::Rng;
 use crate::scene::{Environment, Material, Mesh, PunctualLight, Texture, TextureRef};
@@ -105,7 +104,8 @@ fn the_way_down_the_tree_has_a_way_back() {
 #[test]
 fn every_kind_of_light_is_chosen_as_often_as_its_density_says() {
     // Without a place to be chosen on, a punctual light has a density that is a probability times a squared distance.
-    let mut scene = over_floor(vec![quad(Vec3::new(-0.5, 2.0, -0.5), Vec3::X, Vec3::Z, 1)], vec![matt(0.0, 3.0)]);
+    let mut scene =
+        over_floor(vec![Mesh::parallelogram(Vec3::new(-0.5, 2.0, -0.5), Vec3::X, Vec3::Z, 1)], vec![matt(0.0, 3.0)]);
     let intensity = |i: usize| Vec3::splat(1.0 + i as f32);
     let place = |i: usize| Vec3::new(i as f32 - 2.0, 1.5, 0.3);
     scene.lights = (0..6)
@@ -259,7 +259,7 @@ fn matt(albedo: f32, emission: f32) -> Material {
 
 /// A black floor of 2 × 2 mm around the origin, facing up, and others.
 fn over_floor(meshes: Vec<Mesh>, materials: Vec<Material>) -> Scene {
-    let floor = quad(Vec3::new(-1e-3, 0.0, -1e-3), Vec3::Z * 2e-3, Vec3::X * 2e-3, 0);
+    let floor = Mesh::parallelogram(Vec3::new(-1e-3, 0.0, -1e-3), Vec3::Z * 2e-3, Vec3::X * 2e-3, 0);
     let meshes = std::iter::once(floor).chain(meshes).collect();
     Scene { meshes, materials: std::iter::once(matt(0.0, 0.0)).chain(materials).collect(), ..Scene::default() }
 }
@@ -383,7 +383,7 @@ fn textured_lamps_light_as_the_polygons_of_their_texels() {
         Image::from_fn(37, 23, |x, y| [if (x * 7 + y * 3) % 11 < 2 { (1 + x % 3) as f32 } else { 0.0 }]).unwrap();
     for (width, slack) in [(3.0f32, 1e-5), (1e-3, 1e-5), (1e-8, 1e-4)] {
         let corner = Vec3::new(-width / 2.0, 1.0, -width / 2.0);
-        let lamp = quad(corner, Vec3::X * width, Vec3::Z * width, 1);
+        let lamp = Mesh::parallelogram(corner, Vec3::X * width, Vec3::Z * width, 1);
         let mut expected = 0.0;
         for (x, y) in (0..23).flat_map(|y| (0..37).map(move |x| (x, y))) {
             let texel = Vec2::new(width / 37.0, width / 23.0);
@@ -412,8 +412,9 @@ fn textured_lamps_light_as_the_polygons_of_their_texels() {
 
 #[test]
 fn lamps_without_area_or_power_are_none_and_extreme_ones_are_exact() {
-    let up = |size: f32| quad(Vec3::new(-size / 2.0, 1.0, -size / 2.0), Vec3::X * size, Vec3::Z * size, 1);
-    let needle = quad(Vec3::new(0.0, 1.0, 0.0), Vec3::X, Vec3::X * 2.0, 1);
+    let up =
+        |size: f32| Mesh::parallelogram(Vec3::new(-size / 2.0, 1.0, -size / 2.0), Vec3::X * size, Vec3::Z * size, 1);
+    let needle = Mesh::parallelogram(Vec3::new(0.0, 1.0, 0.0), Vec3::X, Vec3::X * 2.0, 1);
     for dark in [over_floor(vec![needle], vec![matt(0.0, 5.0)]), over_floor(vec![up(1.0)], vec![matt(0.0, 0.0)])] {
         assert_eq!(measure(dark), (0.0, 0.0));
     }
@@ -423,7 +424,7 @@ fn lamps_without_area_or_power_are_none_and_extreme_ones_are_exact() {
         assert_close(measured, one * f64::from(emission), 1e-5, "intensity");
     }
     // A dim lamp beside one 1e12 times as bright, which faces away from the floor.
-    let away = quad(Vec3::new(-0.5, 2.0, -0.5), Vec3::Z, Vec3::X, 2);
+    let away = Mesh::parallelogram(Vec3::new(-0.5, 2.0, -0.5), Vec3::Z, Vec3::X, 2);
     let measured = measure(over_floor(vec![up(1.0), away], vec![matt(0.0, 1.0), matt(0.0, 1e12)]));
     assert_close(measured, one, 1e-5, "beside");
     assert!(measured.1 < 0.01 * one, "what faces away is not chosen: {measured:?}");
@@ -460,7 +461,7 @@ fn point_and_spot_lights_add_up() {
 #[test]
 fn a_sample_states_the_density_that_scattering_into_it_would() {
     let image = Image::from_fn(64, 64, |x, y| [((x / 3 + y / 5) % 4 / 3) as f32 * (1 + x % 2) as f32]).unwrap();
-    let lamp = |i: usize| quad(Vec3::new(i as f32 * 1.5 - 7.0, 2.0, -1.0), Vec3::X, Vec3::Z, 1 + i % 2);
+    let lamp = |i: usize| Mesh::parallelogram(Vec3::new(i as f32 * 1.5 - 7.0, 2.0, -1.0), Vec3::X, Vec3::Z, 1 + i % 2);
     let mut scene = over_floor((0..10).map(lamp).collect(), vec![matt(0.0, 3.0), matt(0.0, 9.0)]);
     scene.materials[1].emission_texture = Some(TextureRef::new(0));
     scene.textures.push(Texture::new("", image));
@@ -496,10 +497,10 @@ fn light_goes_from_one_surface_to_another_as_it_comes_back() {
     // Between two matt quads, past an obstacle and by way of a wall: ⟨e₁, T e₂⟩ = ⟨e₂, T e₁⟩.
     let quads = || {
         vec![
-            quad(Vec3::new(-1.0, 0.0, -1.0), Vec3::Z * 2.0, Vec3::X * 2.0, 0),
-            quad(Vec3::new(0.3, 1.5, -0.7), Vec3::new(0.8, -0.5, 0.0), Vec3::Z * 0.6, 1),
-            quad(Vec3::new(0.2, 0.7, -0.5), Vec3::X * 0.4, Vec3::Z * 0.9, 2),
-            quad(Vec3::new(-1.0, 0.0, -1.0), Vec3::X * 3.0, Vec3::Y * 3.0, 2),
+            Mesh::parallelogram(Vec3::new(-1.0, 0.0, -1.0), Vec3::Z * 2.0, Vec3::X * 2.0, 0),
+            Mesh::parallelogram(Vec3::new(0.3, 1.5, -0.7), Vec3::new(0.8, -0.5, 0.0), Vec3::Z * 0.6, 1),
+            Mesh::parallelogram(Vec3::new(0.2, 0.7, -0.5), Vec3::X * 0.4, Vec3::Z * 0.9, 2),
+            Mesh::parallelogram(Vec3::new(-1.0, 0.0, -1.0), Vec3::X * 3.0, Vec3::Y * 3.0, 2),
         ]
     };
     let albedos = [0.5, 0.3, 0.7];
@@ -535,7 +536,7 @@ fn the_floor_of_a_hall_with_thousands_of_lamps_sees_them_all() {
     let mut lamps = Mesh { material: 1, ..Mesh::default() };
     let mut expected = 0.0;
     for i in 0..side * side {
-        let q = quad(lamp(i), Vec3::X * 0.1, Vec3::Z * 0.1, 1);
+        let q = Mesh::parallelogram(lamp(i), Vec3::X * 0.1, Vec3::Z * 0.1, 1);
         expected += lambert(&q.positions) * 1000.0;
         let first = lamps.positions.len() as u32;
         lamps.positions.extend(q.positions);

@@ -22,9 +22,15 @@ fn rel_mse(image: &Image, truth: &Image) -> f64 {
 fn room() -> (World, Camera) {
     let corners = [Vec3::ZERO, Vec3::X * 4.0, Vec3::Y * 3.0, Vec3::Z * 4.0];
     let [o, x, y, z] = corners;
-    let mut meshes = vec![quad(o, z, x, 0), quad(y, x, z, 0), quad(o, x, y, 0), quad(o, y, z, 2), quad(x, z, y, 3)];
-    meshes.push(quad(Vec3::new(1.5, 2.9, 1.5), Vec3::X, Vec3::Z, 1));
-    meshes.push(quad(Vec3::new(1.0, 1.0, 0.5), Vec3::Z, Vec3::X * 2.0, 0));
+    let mut meshes = vec![
+        Mesh::parallelogram(o, z, x, 0),
+        Mesh::parallelogram(y, x, z, 0),
+        Mesh::parallelogram(o, x, y, 0),
+        Mesh::parallelogram(o, y, z, 2),
+        Mesh::parallelogram(x, z, y, 3),
+    ];
+    meshes.push(Mesh::parallelogram(Vec3::new(1.5, 2.9, 1.5), Vec3::X, Vec3::Z, 1));
+    meshes.push(Mesh::parallelogram(Vec3::new(1.0, 1.0, 0.5), Vec3::Z, Vec3::X * 2.0, 0));
     let mut red = matt(0.5, 0.0);
     red.base_color = Vec3::new(0.6, 0.1, 0.1);
     let scene =

@@ -24,7 +24,7 @@ fn energy_is_never_made() {
         for roughness in [0.0, 0.05, 0.2, 0.5, 0.8, 1.0] {
             let material = Material { metallic, roughness, ior, ..Material::default() };
             let scene = Scene {
-                meshes: vec![quad(Vec3::new(-50.0, 0.0, -50.0), Vec3::Z * 100.0, Vec3::X * 100.0, 0)],
+                meshes: vec![Mesh::parallelogram(Vec3::new(-50.0, 0.0, -50.0), Vec3::Z * 100.0, Vec3::X * 100.0, 0)],
                 materials: vec![material],
                 environment: Some(Environment::Constant(Vec3::ONE)),
                 ..Scene::default()

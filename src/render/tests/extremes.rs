@@ -7,8 +7,10 @@ fn scale_changes_nothing() {
     let irradiance_at = |scale: f32| {
         let mut room = inward_sphere(1.0, 0);
         room.positions.iter_mut().for_each(|p| *p *= scale);
-        let lamp = quad(Vec3::new(-0.2, 0.5, -0.2) * scale, Vec3::X * 0.4 * scale, Vec3::Z * 0.4 * scale, 1);
-        let table = quad(Vec3::new(-0.3, -0.2, -0.3) * scale, Vec3::Z * 0.6 * scale, Vec3::X * 0.6 * scale, 0);
+        let lamp =
+            Mesh::parallelogram(Vec3::new(-0.2, 0.5, -0.2) * scale, Vec3::X * 0.4 * scale, Vec3::Z * 0.4 * scale, 1);
+        let table =
+            Mesh::parallelogram(Vec3::new(-0.3, -0.2, -0.3) * scale, Vec3::Z * 0.6 * scale, Vec3::X * 0.6 * scale, 0);
         let scene = Scene {
             meshes: vec![room, lamp, table],
             materials: vec![matt(0.6, 0.0), matt(0.0, 50.0)],
@@ -78,14 +80,14 @@ fn scenes_of_any_size_make_the_same_image() {
 fn room() -> (Scene, Camera) {
     let (x, y, z) = (Vec3::X * 4.0, Vec3::Y * 3.0, Vec3::Z * 4.0);
     let meshes = vec![
-        quad(Vec3::ZERO, z, x, 0),
-        quad(y, x, z, 0),
-        quad(Vec3::ZERO, x, y, 0),
-        quad(z, y, x, 0),
-        quad(Vec3::ZERO, y, z, 0),
-        quad(x, z, y, 0),
-        quad(Vec3::new(1.0, 2.75, 1.0), Vec3::X * 1.5, Vec3::Z, 1),
-        quad(Vec3::new(1.0, 1.0, 0.5), Vec3::X * 2.0, Vec3::new(0.0, 0.5, 0.5), 0),
+        Mesh::parallelogram(Vec3::ZERO, z, x, 0),
+        Mesh::parallelogram(y, x, z, 0),
+        Mesh::parallelogram(Vec3::ZERO, x, y, 0),
+        Mesh::parallelogram(z, y, x, 0),
+        Mesh::parallelogram(Vec3::ZERO, y, z, 0),
+        Mesh::parallelogram(x, z, y, 0),
+        Mesh::parallelogram(Vec3::new(1.0, 2.75, 1.0), Vec3::X * 1.5, Vec3::Z, 1),
+        Mesh::parallelogram(Vec3::new(1.0, 1.0, 0.5), Vec3::X * 2.0, Vec3::new(0.0, 0.5, 0.5), 0),
     ];
     let scene = Scene { meshes, materials: vec![matt(0.6, 0.0), matt(0.0, 100.0)], ..Scene::default() };
     (scene, Camera::look_at(Vec3::new(2.0, 1.5, 3.5), Vec3::new(2.0, 1.5, 0.0), 1.2))
@@ -149,7 +151,7 @@ fn a_camera_inside_a_wall_or_on_it_sees_something_finite() {
     }
     // Inside a solid without light it is dark.
     let solid = Scene {
-        meshes: vec![inward_sphere(1.0, 0), quad(Vec3::new(-1.0, 3.0, -1.0), Vec3::X, Vec3::Z, 1)],
+        meshes: vec![inward_sphere(1.0, 0), Mesh::parallelogram(Vec3::new(-1.0, 3.0, -1.0), Vec3::X, Vec3::Z, 1)],
         materials: vec![matt(0.9, 0.0), matt(0.0, 1e6)],
         ..Scene::default()
     };
@@ -164,7 +166,7 @@ fn closed_white_rooms_end_with_the_right_energy() {
     let (mut scene, camera) = room();
     scene.materials[0] = matt(1.0, 0.0);
     // It covers the ceiling, and its back is behind that.
-    scene.meshes[6] = quad(Vec3::new(0.25, 2.75, 0.25), Vec3::X * 3.5, Vec3::Z * 3.5, 1);
+    scene.meshes[6] = Mesh::parallelogram(Vec3::new(0.25, 2.75, 0.25), Vec3::X * 3.5, Vec3::Z * 3.5, 1);
     let film = render(&world(scene), &camera, &Params { samples: 512, ..SMALL() });
     assert_mean(&film, 100.0);
     // Walls that shine themselves and give back 99 %.
@@ -190,7 +192,9 @@ fn assert_mean(film: &Film, expected: f64) {
 #[test]
 fn surfaces_in_the_same_place_are_one_or_the_other() {
     let scene = |materials: [usize; 2]| Scene {
-        meshes: materials.map(|m| quad(Vec3::new(-3.0, -3.0, -2.0), Vec3::X * 6.0, Vec3::Y * 6.0, m)).to_vec(),
+        meshes: materials
+            .map(|m| Mesh::parallelogram(Vec3::new(-3.0, -3.0, -2.0), Vec3::X * 6.0, Vec3::Y * 6.0, m))
+            .to_vec(),
         materials: vec![matt(0.2, 0.0), matt(0.8, 0.0)],
         environment: Some(Environment::Constant(Vec3::ONE)),
         ..Scene::default()

@@ -12,8 +12,8 @@ fn measure(world: &World, place: &Place, params: &Params) -> Output {
 fn lit_floor() -> Scene {
     Scene {
         meshes: vec![
-            quad(Vec3::new(-1.0, 0.0, -1.0), Vec3::Z * 2.0, Vec3::X * 2.0, 0),
-            quad(Vec3::new(-0.5, 1.5, -0.75), Vec3::X, Vec3::Z * 1.5, 1),
+            Mesh::parallelogram(Vec3::new(-1.0, 0.0, -1.0), Vec3::Z * 2.0, Vec3::X * 2.0, 0),
+            Mesh::parallelogram(Vec3::new(-0.5, 1.5, -0.75), Vec3::X, Vec3::Z * 1.5, 1),
         ],
         materials: vec![matt(0.3, 0.0), Material { double_sided: false, ..matt(0.0, 100.0) }],
         ..Scene::default()

@@ -5,9 +5,9 @@ use glam::Vec4;
 
 #[test]
 fn irradiance_under_a_rectangle_is_its_form_factor() {
-    let floor = quad(Vec3::new(-1.0, 0.0, -1.0), Vec3::Z * 2.0, Vec3::X * 2.0, 0);
+    let floor = Mesh::parallelogram(Vec3::new(-1.0, 0.0, -1.0), Vec3::Z * 2.0, Vec3::X * 2.0, 0);
     // Overhead: four quarters of 0.5 × 0.75 at 1.5 m, 100 cd/m², facing down.
-    let lamp = quad(Vec3::new(-0.5, 1.5, -0.75), Vec3::X, Vec3::Z * 1.5, 1);
+    let lamp = Mesh::parallelogram(Vec3::new(-0.5, 1.5, -0.75), Vec3::X, Vec3::Z * 1.5, 1);
     let scene = Scene {
         meshes: vec![floor.clone(), lamp],
         materials: vec![matt(0.3, 0.0), Material { double_sided: false, ..matt(0.0, 100.0) }],
@@ -19,7 +19,7 @@ fn irradiance_under_a_rectangle_is_its_form_factor() {
     let above = SurfacePoint { front: false, ..centre_of(1) };
     assert!(measure(&world(scene.clone()), &above).0 < 1e-6);
     // A window beside it: 0.8 to each side, 1.2 high, standing 0.7 away on the floor's plane.
-    let window = quad(Vec3::new(0.7, 0.0, -0.8), Vec3::Z * 1.6, Vec3::Y * 1.2, 1);
+    let window = Mesh::parallelogram(Vec3::new(0.7, 0.0, -0.8), Vec3::Z * 1.6, Vec3::Y * 1.2, 1);
     let scene = Scene { meshes: vec![floor, window], ..scene };
     let expected = 100.0 * std::f64::consts::PI * 2.0 * perpendicular_form_factor(0.8, 1.2, 0.7);
     assert_close(&world(scene), &centre_of(0), expected);
@@ -27,7 +27,7 @@ fn irradiance_under_a_rectangle_is_its_form_factor() {
 
 #[test]
 fn a_lit_texel_is_a_lamp_of_its_size_however_the_texture_wraps() {
-    let floor = quad(Vec3::new(-1.0, 0.0, -1.0), Vec3::Z * 2.0, Vec3::X * 2.0, 0);
+    let floor = Mesh::parallelogram(Vec3::new(-1.0, 0.0, -1.0), Vec3::Z * 2.0, Vec3::X * 2.0, 0);
     let mut image = Image::new(8, 8, 3).unwrap();
     image.pixel_mut(5, 2).copy_from_slice(&[1.0, 0.5, 0.25]);
     let lamp = Material {
@@ -36,8 +36,8 @@ fn a_lit_texel_is_a_lamp_of_its_size_however_the_texture_wraps() {
         double_sided: false,
         ..matt(0.0, 0.0)
     };
-    let textured = quad(Vec3::new(-1.0, 1.0, -1.0), Vec3::X * 2.0, Vec3::Z * 2.0, 1);
-    let small = quad(Vec3::new(-1.0 + 1.25, 1.0, -0.5), Vec3::X * 0.25, Vec3::Z * 0.25, 2);
+    let textured = Mesh::parallelogram(Vec3::new(-1.0, 1.0, -1.0), Vec3::X * 2.0, Vec3::Z * 2.0, 1);
+    let small = Mesh::parallelogram(Vec3::new(-1.0 + 1.25, 1.0, -0.5), Vec3::X * 0.25, Vec3::Z * 0.25, 2);
     let scene = Scene {
         meshes: vec![floor.clone(), textured.clone()],
         materials: vec![matt(0.5, 0.0), lamp, Material { double_sided: false, ..matt(0.0, 5000.0) }],
@@ -77,7 +77,7 @@ fn a_lit_texel_is_a_lamp_of_its_size_however_the_texture_wraps() {
 
 #[test]
 fn punctual_lights_follow_the_inverse_square_and_their_cones() {
-    let floor = quad(Vec3::new(-1.0, 0.0, -1.0), Vec3::Z * 2.0, Vec3::X * 2.0, 0);
+    let floor = Mesh::parallelogram(Vec3::new(-1.0, 0.0, -1.0), Vec3::Z * 2.0, Vec3::X * 2.0, 0);
     let lit = |light| {
         let scene = Scene {
             meshes: vec![floor.clone()],
@@ -106,7 +106,7 @@ fn punctual_lights_follow_the_inverse_square_and_their_cones() {
 
 #[test]
 fn skies_light_a_floor_by_their_integral() {
-    let floor = quad(Vec3::new(-1.0, 0.0, -1.0), Vec3::Z * 2.0, Vec3::X * 2.0, 0);
+    let floor = Mesh::parallelogram(Vec3::new(-1.0, 0.0, -1.0), Vec3::Z * 2.0, Vec3::X * 2.0, 0);
     let base = Scene { meshes: vec![floor], materials: vec![matt(0.5, 0.0)], ..Scene::default() };
     let constant = Scene { environment: Some(Environment::Constant(Vec3::splat(7.0))), ..base.clone() };
     assert_close(&world(constant), &centre_of(0), 7.0 * std::f64::consts::PI);
@@ -142,9 +142,9 @@ fn skies_light_a_floor_by_their_integral() {
 
 #[test]
 fn scattering_alone_finds_the_same_light_as_the_weighed_strategies() {
-    let floor = quad(Vec3::new(-1.0, 0.0, -1.0), Vec3::Z * 2.0, Vec3::X * 2.0, 0);
-    let lamp = quad(Vec3::new(-0.7, 0.8, -0.5), Vec3::X, Vec3::new(0.0, 0.3, 1.5), 1);
-    let shade = quad(Vec3::new(-0.2, 0.4, -0.3), Vec3::X * 0.5, Vec3::Z * 0.5, 2);
+    let floor = Mesh::parallelogram(Vec3::new(-1.0, 0.0, -1.0), Vec3::Z * 2.0, Vec3::X * 2.0, 0);
+    let lamp = Mesh::parallelogram(Vec3::new(-0.7, 0.8, -0.5), Vec3::X, Vec3::new(0.0, 0.3, 1.5), 1);
+    let shade = Mesh::parallelogram(Vec3::new(-0.2, 0.4, -0.3), Vec3::X * 0.5, Vec3::Z * 0.5, 2);
     let image = Image::from_fn(5, 3, |x, y| [((x * 7 + y * 5) % 4) as f32]).unwrap();
     let shining = Material { emission_texture: Some(TextureRef::new(0)), ..matt(0.0, 10.0) };
     let scene = Scene {
@@ -184,9 +184,9 @@ fn scattering_alone_finds_the_same_light_as_the_weighed_strategies() {
 #[test]
 fn light_through_a_clear_pane_is_the_same_by_either_strategy() {
     // A pane between lamp and floor takes the share that Fresnel's factor and its colour demand.
-    let floor = quad(Vec3::new(-1.0, 0.0, -1.0), Vec3::Z * 2.0, Vec3::X * 2.0, 0);
-    let lamp = quad(Vec3::new(-0.01, 2.0, -0.01), Vec3::X * 0.02, Vec3::Z * 0.02, 1);
-    let pane = quad(Vec3::new(-1.0, 1.0, -1.0), Vec3::X * 2.0, Vec3::Z * 2.0, 2);
+    let floor = Mesh::parallelogram(Vec3::new(-1.0, 0.0, -1.0), Vec3::Z * 2.0, Vec3::X * 2.0, 0);
+    let lamp = Mesh::parallelogram(Vec3::new(-0.01, 2.0, -0.01), Vec3::X * 0.02, Vec3::Z * 0.02, 1);
+    let pane = Mesh::parallelogram(Vec3::new(-1.0, 1.0, -1.0), Vec3::X * 2.0, Vec3::Z * 2.0, 2);
     let glass = Material {
         base_color: Vec3::new(0.8, 0.9, 1.0),
         metallic: 0.0,

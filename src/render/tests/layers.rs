@@ -26,12 +26,12 @@ fn layer<'a>(film: &'a Film, name: &str) -> &'a Image {
 fn open() -> Scene {
     let mut scene = everything();
     let names = ["Floor", "Ceiling", "Gloss", "Mirror", "Window", "Leaf"];
-    scene.meshes[0] = quad(Vec3::new(-3.0, -0.6, -3.0), Vec3::Z * 6.0, Vec3::X * 6.0, 0);
+    scene.meshes[0] = Mesh::parallelogram(Vec3::new(-3.0, -0.6, -3.0), Vec3::Z * 6.0, Vec3::X * 6.0, 0);
     scene.meshes.iter_mut().zip(names).for_each(|(mesh, name)| mesh.name = name.into());
     // A paint that is diffuse below and glossy on top, and a pane in front of all.
     scene.materials[0] = Material { ior: 1.5, roughness: 0.4, ..scene.materials[0].clone() };
-    scene.meshes.push(quad(Vec3::new(-0.4, -0.5, 0.2), Vec3::X, Vec3::Y * 0.5, 4));
-    scene.meshes.push(quad(Vec3::new(-1.0, 0.9, -1.0), Vec3::X, Vec3::Z * 2.0, 4));
+    scene.meshes.push(Mesh::parallelogram(Vec3::new(-0.4, -0.5, 0.2), Vec3::X, Vec3::Y * 0.5, 4));
+    scene.meshes.push(Mesh::parallelogram(Vec3::new(-1.0, 0.9, -1.0), Vec3::X, Vec3::Z * 2.0, 4));
     scene
 }
 
@@ -126,8 +126,8 @@ fn direct_diffuse_light_is_the_form_factor_whatever_the_walls_add() {
     let room = |albedo: f32| Scene {
         meshes: vec![
             inward_sphere(2.0, 2),
-            quad(Vec3::new(-1.0, 0.0, -1.0), Vec3::Z * 2.0, Vec3::X * 2.0, 0),
-            quad(Vec3::new(-0.5, 1.5, -0.75), Vec3::X, Vec3::Z * 1.5, 1),
+            Mesh::parallelogram(Vec3::new(-1.0, 0.0, -1.0), Vec3::Z * 2.0, Vec3::X * 2.0, 0),
+            Mesh::parallelogram(Vec3::new(-0.5, 1.5, -0.75), Vec3::X, Vec3::Z * 1.5, 1),
         ],
         materials: vec![matt(0.5, 0.0), Material { double_sided: false, ..matt(0.0, 100.0) }, matt(albedo, 0.0)],
         ..Scene::default()
@@ -151,7 +151,7 @@ fn layers_of_a_paint_are_told_apart_under_a_lamp() {
     // One floor, one punctual light: the image is LDE + LSE, and each is the BSDF's own layer.
     let paint = Material { base_color: Vec3::new(0.6, 0.4, 0.2), metallic: 0.0, roughness: 0.5, ..Material::default() };
     let scene = Scene {
-        meshes: vec![quad(Vec3::new(-5.0, 0.0, -5.0), Vec3::Z * 10.0, Vec3::X * 10.0, 0)],
+        meshes: vec![Mesh::parallelogram(Vec3::new(-5.0, 0.0, -5.0), Vec3::Z * 10.0, Vec3::X * 10.0, 0)],
         materials: vec![paint],
         lights: vec![PunctualLight::Point { position: Vec3::new(-1.0, 1.0, 0.0), intensity: Vec3::splat(30.0) }],
         ..Scene::default()
@@ -172,10 +172,10 @@ fn layers_of_a_paint_are_told_apart_under_a_lamp() {
 #[test]
 fn mirrors_and_panes_are_specular_however_their_light_is_found() {
     // A mirror floor that shows a lamp: LSE is the lamp times the reflectance of the metal at that angle.
-    let lamp = || quad(Vec3::new(-1.5, 1.0, -1.0), Vec3::X, Vec3::Z * 2.0, 1);
+    let lamp = || Mesh::parallelogram(Vec3::new(-1.5, 1.0, -1.0), Vec3::X, Vec3::Z * 2.0, 1);
     let metal = Material { base_color: Vec3::new(0.9, 0.6, 0.3), roughness: 0.0, ..Material::default() };
     let scene = Scene {
-        meshes: vec![quad(Vec3::new(-2.0, 0.0, -2.0), Vec3::Z * 4.0, Vec3::X * 4.0, 0), lamp()],
+        meshes: vec![Mesh::parallelogram(Vec3::new(-2.0, 0.0, -2.0), Vec3::Z * 4.0, Vec3::X * 4.0, 0), lamp()],
         materials: vec![metal.clone(), Material { double_sided: false, ..matt(0.0, 50.0) }],
         ..Scene::default()
     };
@@ -190,8 +190,8 @@ fn mirrors_and_panes_are_specular_however_their_light_is_found() {
     // A matt floor that the lamp lights through a pane: none of it is LDE, all of it is LS*DE, and it is what comes
     // without the pane times what the pane lets through. A small lamp is found by choice, a large one by scattering.
     for size in [0.1, 8.0] {
-        let lamp = quad(Vec3::new(-size / 2.0, 1.0, -size / 2.0), Vec3::X * size, Vec3::Z * size, 1);
-        let pane = quad(Vec3::new(-9.0, 0.5, -9.0), Vec3::X * 18.0, Vec3::Z * 18.0, 2);
+        let lamp = Mesh::parallelogram(Vec3::new(-size / 2.0, 1.0, -size / 2.0), Vec3::X * size, Vec3::Z * size, 1);
+        let pane = Mesh::parallelogram(Vec3::new(-9.0, 0.5, -9.0), Vec3::X * 18.0, Vec3::Z * 18.0, 2);
         let mut scene = Scene { meshes: vec![scene.meshes[0].clone(), lamp, pane], ..scene.clone() };
         scene.meshes[2].name = "Pane".into();
         scene.materials[0] = matt(0.5, 0.0);
@@ -247,9 +247,9 @@ fn objects_are_lights_by_the_letter_asked_for() {
 #[test]
 fn surfaces_seen_have_their_distance_place_and_name() {
     // A wall 2 m ahead that covers the left half of the image, tilted normals by its corners.
-    let mut wall = quad(Vec3::new(-4.0, -4.0, -2.0), Vec3::X * 4.0, Vec3::Y * 8.0, 1);
+    let mut wall = Mesh::parallelogram(Vec3::new(-4.0, -4.0, -2.0), Vec3::X * 4.0, Vec3::Y * 8.0, 1);
     wall.normals = vec![Vec3::new(0.6, 0.0, 0.8); 4];
-    let behind = quad(Vec3::new(-1.0, -1.0, -3.0), Vec3::X, Vec3::Y, 0);
+    let behind = Mesh::parallelogram(Vec3::new(-1.0, -1.0, -3.0), Vec3::X, Vec3::Y, 0);
     let scene = Scene {
         meshes: vec![behind, wall],
         materials: vec![matt(0.1, 0.0), Material { base_color: Vec3::new(0.2, 0.4, 0.8), ..matt(0.0, 3.0) }],

@@ -23,17 +23,6 @@ fn matt(albedo: f32, emission: f32) -> Material {
     Material { ior: 1.0, emission: Vec3::splat(emission), ..Material::diffuse("matt", Vec3::splat(albedo)) }
 }
 
-/// A parallelogram with texture coordinates from 0 to 1, facing `u × v`.
-pub(super) fn quad(corner: Vec3, u: Vec3, v: Vec3, material: usize) -> Mesh {
-    Mesh {
-        material,
-        positions: vec![corner, corner + u, corner + u + v, corner + v],
-        uvs: [vec![Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y], Vec::new()],
-        triangles: vec![[0, 1, 2], [0, 2, 3]],
-        ..Mesh::default()
-    }
-}
-
 /// A closed sphere of triangles that faces its centre.
 fn inward_sphere(radius: f32, material: usize) -> Mesh {
     let (rows, columns) = (12, 24);
@@ -119,9 +108,9 @@ fn everything() -> Scene {
         [f32::from(u8::from(lit)), 0.5 * f32::from(u8::from(lit)), 0.1, if x < 8 { 1.0 } else { 0.3 }]
     });
     let mut meshes = vec![inward_sphere(2.0, 0)];
-    meshes.push(quad(Vec3::new(-1.0, 1.2, -1.0), Vec3::X * 2.0, Vec3::Z * 2.0, 1));
+    meshes.push(Mesh::parallelogram(Vec3::new(-1.0, 1.2, -1.0), Vec3::X * 2.0, Vec3::Z * 2.0, 1));
     for (i, x) in [-1.2, -0.6, 0.0, 0.6].into_iter().enumerate() {
-        meshes.push(quad(Vec3::new(x, -0.5, -0.8), Vec3::X * 0.5, Vec3::new(0.0, 0.6, -0.2), 2 + i));
+        meshes.push(Mesh::parallelogram(Vec3::new(x, -0.5, -0.8), Vec3::X * 0.5, Vec3::new(0.0, 0.6, -0.2), 2 + i));
     }
     let gloss = Material { base_color: Vec3::new(0.9, 0.6, 0.3), roughness: 0.3, ..Material::default() };
     Scene {

@@ -8,17 +8,17 @@ fn room(at: Vec3) -> (Scene, Camera) {
         let (x, y, z) = (Vec3::X * size.x, Vec3::Y * size.y, Vec3::Z * size.z);
         let (low, high) = (low + at, low + size + at);
         [
-            quad(low, z, x, material),
-            quad(low, x, y, material),
-            quad(low, y, z, material),
-            quad(high, -x, -z, material),
-            quad(high, -y, -x, material),
-            quad(high, -z, -y, material),
+            Mesh::parallelogram(low, z, x, material),
+            Mesh::parallelogram(low, x, y, material),
+            Mesh::parallelogram(low, y, z, material),
+            Mesh::parallelogram(high, -x, -z, material),
+            Mesh::parallelogram(high, -y, -x, material),
+            Mesh::parallelogram(high, -z, -y, material),
         ]
     };
     let mut meshes = boxed(Vec3::ZERO, Vec3::new(6.0, 3.0, 4.0), 0).to_vec();
     meshes.extend(boxed(Vec3::new(2.0, 0.0, 1.0), Vec3::new(1.0, 0.75, 1.5), 1));
-    meshes.push(quad(Vec3::new(2.5, 2.875, 1.5) + at, Vec3::X, Vec3::Z, 2));
+    meshes.push(Mesh::parallelogram(Vec3::new(2.5, 2.875, 1.5) + at, Vec3::X, Vec3::Z, 2));
     let scene = Scene {
         meshes,
         materials: vec![

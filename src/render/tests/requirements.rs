@@ -19,8 +19,8 @@ fn leaving_out_what_is_not_required_changes_nothing() {
     let rooms = || {
         let mut room = inward_sphere(2.0, 0);
         room.normals = room.positions.iter().map(|p| -p.normalize()).collect();
-        let lamp = quad(Vec3::new(-0.5, 1.2, -0.5), Vec3::X, Vec3::Z, 1);
-        let mut shelf = quad(Vec3::new(-0.8, -0.5, -0.8), Vec3::Z, Vec3::X, 0);
+        let lamp = Mesh::parallelogram(Vec3::new(-0.5, 1.2, -0.5), Vec3::X, Vec3::Z, 1);
+        let mut shelf = Mesh::parallelogram(Vec3::new(-0.8, -0.5, -0.8), Vec3::Z, Vec3::X, 0);
         shelf.normals = vec![Vec3::Y; 4];
         Scene { meshes: vec![room, lamp, shelf], materials: vec![matt(0.7, 0.0), matt(0.0, 30.0)], ..Scene::default() }
     };

@@ -1,0 +1,332 @@
+//! Emissive textures: how well patterns go on, against patches alone and another program, and what it costs.
+//!
+//! Designs of known statistics are cut from a larger ceiling, continued, and held against what they were made by.
+
+mod harness;
+
+use glam::{DMat2, DVec2};
+use harness::plot::Plot;
+use harness::{Clock, Table, absent, figure, interleaved, time};
+use luxfer::emission::{self, Emission, Input, Luminaire, Params, statistics};
+use luxfer::exec::Pool;
+use luxfer::image::{Image, io};
+use luxfer::job::Monitor;
+use luxfer::rng::Rng;
+use std::hint::black_box;
+use std::path::Path;
+use std::process::Command;
+
+const ROUNDS: usize = 5;
+/// Sides of patches in working pixels, as in Fig. 11 of the paper.
+const BLOCKS: [usize; 8] = [25, 50, 75, 100, 125, 150, 175, 200];
+
+fn main() {
+    let pool = Pool::new(2).expect("two threads");
+    pool.run(|| {
+        patterns();
+        seconds();
+        knobs();
+    });
+    if let Err(reason) = peer(&pool) {
+        absent("emission.vs_texture_synthesis", &reason);
+    }
+}
+
+/// A design: a lattice with a lamp of one of two kinds at each place, or at random places.
+struct Design {
+    name: &'static str,
+    periods: [DVec2; 2],
+    /// Whether a point relative to a lamp's place belongs to it, by the place's numbers; and the lamp's area.
+    lamp: fn(DVec2, [i64; 2]) -> bool,
+    /// Mean area and least and largest area of a lamp, in pixels.
+    areas: [f64; 3],
+    /// Share of places that have a lamp.
+    filled: f64,
+}
+
+const DISC: f64 = std::f64::consts::PI * 81.0;
+
+const DESIGNS: [Design; 6] = [
+    Design {
+        name: "square",
+        periods: [DVec2::new(40.0, 0.0), DVec2::new(0.0, 40.0)],
+        lamp: |p, _| p.abs().max_element() < 7.0,
+        areas: [196.0; 3],
+        filled: 1.0,
+    },
+    Design {
+        name: "rectangular",
+        periods: [DVec2::new(48.0, 0.0), DVec2::new(0.0, 40.0)],
+        lamp: |p, _| p.x.abs() < 10.0 && p.y.abs() < 5.0,
+        areas: [200.0; 3],
+        filled: 1.0,
+    },
+    Design {
+        name: "hexagonal",
+        periods: [DVec2::new(44.0, 0.0), DVec2::new(22.0, 38.0)],
+        lamp: |p, _| p.length() < 9.0,
+        areas: [DISC; 3],
+        filled: 1.0,
+    },
+    Design {
+        name: "skewed",
+        periods: [DVec2::new(40.0, 6.0), DVec2::new(-8.0, 46.0)],
+        lamp: |p, _| p.length() < 9.0,
+        areas: [DISC; 3],
+        filled: 1.0,
+    },
+    Design {
+        name: "two kinds",
+        periods: [DVec2::new(50.0, 0.0), DVec2::new(0.0, 50.0)],
+        lamp: |p, place| if place[0] % 2 == 0 { p.abs().max_element() < 12.0 } else { p.length() < 9.0 },
+        areas: [(576.0 + DISC) / 2.0, DISC, 576.0],
+        filled: 1.0,
+    },
+    Design {
+        name: "10 % missing",
+        periods: [DVec2::new(40.0, 0.0), DVec2::new(0.0, 36.0)],
+        lamp: |p, place| {
+            let places = [place[0] as u64, place[1] as u64];
+            p.x.abs() < 8.0 && p.y.abs() < 6.0 && Rng::new(77, &places).next_f64() < 0.9
+        },
+        areas: [192.0; 3],
+        filled: 0.9,
+    },
+];
+
+/// An exemplar: the unwarped photo, its light and where it is valid.
+struct Exemplar {
+    unwarped: Image,
+    light: Image,
+    valid: Image,
+}
+
+impl Design {
+    /// A part of the ceiling with the noise of a photo, the mask unsure by it, and two corners off the photo.
+    fn exemplar(&self, side: usize) -> Exemplar {
+        let inverse = DMat2::from_cols(self.periods[0], self.periods[1]).inverse();
+        let is_lit = |x: usize, y: usize| {
+            let p = DVec2::new(x as f64 + 0.5, y as f64 + 0.5) - DVec2::new(17.0, 11.0);
+            let base = (inverse * p).floor();
+            (0..4).any(|i| {
+                let place = base + DVec2::new(f64::from(i % 2), f64::from(i / 2));
+                let at = self.periods[0] * place.x + self.periods[1] * place.y;
+                (self.lamp)(p - at, [place.x as i64, place.y as i64])
+            })
+        };
+        let noise = |x: usize, y: usize, c: u64| 0.1 * Rng::new(9, &[x as u64, y as u64, c]).next_f32();
+        let unwarped = Image::from_fn(side, side, |x, y| {
+            let base = if is_lit(x, y) { [0.9, 0.8, 0.7] } else { [0.1, 0.1, 0.12] };
+            std::array::from_fn::<f32, 3, _>(|c| base[c] + noise(x, y, c as u64))
+        });
+        let light = Image::from_fn(side, side, |x, y| {
+            [(f32::from(is_lit(x, y)) + noise(x, y, 3) - noise(x, y, 4)).clamp(0.0, 1.0)]
+        });
+        let valid = Image::from_fn(side, side, |x, y| {
+            let (u, v) = (x as f64 / side as f64, y as f64 / side as f64);
+            [f32::from(u + 0.7 * v >= 0.25 && (1.0 - u) + 0.9 * v >= 0.3)]
+        });
+        let image = |image: luxfer::error::Result<Image>| image.expect("a small image");
+        Exemplar { unwarped: image(unwarped), light: image(light), valid: image(valid) }
+    }
+}
+
+impl Exemplar {
+    fn run(&self, params: &Params) -> Emission {
+        let input = Input { unwarped: &self.unwarped, light: &self.light, valid: &self.valid, photo: None };
+        emission::run(&input, params, Monitor::default().job()).expect("a texture")
+    }
+}
+
+/// A texture against the design it continues.
+#[derive(Clone, Copy, Default)]
+struct Score {
+    /// Largest relative difference of lamps per area, mean lamp area and light per area.
+    worst: f64,
+    /// Root mean square distance from the lattice, in parts of the period.
+    phase: f64,
+    /// Lamps smaller than 70 % of the least of the design, or larger than 130 % of its largest.
+    broken: usize,
+}
+
+impl Score {
+    fn of(result: &Emission, design: &Design) -> Self {
+        let size = DVec2::new(result.mask.width as f64, result.mask.height as f64);
+        let off_border =
+            |l: &&Luminaire| l.outline.iter().all(|p| p.min_element() > 0.0 && (size - *p).min_element() > 0.0);
+        let lamps: Vec<&Luminaire> = result.luminaires.iter().filter(off_border).collect();
+        let centres: Vec<DVec2> = lamps.iter().map(|l| l.centre).collect();
+        let seen = result.statistics[1];
+        let cell = design.periods[0].perp_dot(design.periods[1]).abs() / design.filled;
+        let per_area = seen.lit / seen.area * cell;
+        let brightness =
+            seen.luminance / f64::from(luxfer::image::colour::luminance(glam::Vec3::new(0.95, 0.85, 0.75)));
+        let ratios = [per_area, seen.area / design.areas[0], seen.lit * brightness * cell / design.areas[0]];
+        let is_broken = |l: &&&Luminaire| l.area < 0.7 * design.areas[1] || l.area > 1.3 * design.areas[2];
+        Self {
+            worst: ratios.iter().map(|r| (r - 1.0).abs()).fold(0.0, f64::max),
+            phase: statistics::phase(&centres, design.periods),
+            broken: lamps.iter().filter(is_broken).count(),
+        }
+    }
+
+    fn worse(self, other: Self) -> Self {
+        Self {
+            worst: self.worst.max(other.worst),
+            phase: self.phase.max(other.phase),
+            broken: self.broken + other.broken,
+        }
+    }
+}
+
+/// Every design by three methods, over all sizes of patches.
+fn patterns() {
+    let methods: [(&str, Params); 3] = [
+        ("default", Params::default()),
+        ("as in the paper", Params { regularity: 1.0, whole_lamps: false, ..Params::default() }),
+        ("quilting", Params { regularity: 1.0, whole_lamps: false, metadata_weight: 0.0, ..Params::default() }),
+    ];
+    let mut table = Table::new(["design", "method", "worst statistic %", "phase %", "lamps broken", "stated error %"]);
+    let mut ours = Score::default();
+    for design in &DESIGNS {
+        let exemplar = design.exemplar(480);
+        for (method, params) in &methods {
+            let (mut worst, mut stated) = (Score::default(), 0.0f64);
+            for block in BLOCKS {
+                let result = exemplar.run(&Params { width: 800, height: 720, block, ..params.clone() });
+                worst = worst.worse(Score::of(&result, design));
+                stated = stated.max(result.error);
+                if block == 100 {
+                    save(&result.texture, &format!("emission_{}_{}", design.name, method).replace([' ', '%'], "_"));
+                }
+            }
+            if *method == "default" {
+                ours = ours.worse(worst);
+            }
+            table.row([
+                design.name.to_string(),
+                method.to_string(),
+                format!("{:.1}", 100.0 * worst.worst),
+                format!("{:.2}", 100.0 * worst.phase),
+                worst.broken.to_string(),
+                format!("{:.1}", 100.0 * stated),
+            ]);
+        }
+    }
+    table.print("800 x 720 from 480 x 480 with two corners missing; the worst of patches of 25 to 200 pixels");
+    figure("emission.worst_stat", 100.0 * ours.worst, "%");
+    figure("emission.lattice_rms", 100.0 * ours.phase, "% of the period");
+    figure("emission.cut_lamps", ours.broken as f64, "lamps");
+}
+
+/// Time over the size of the texture.
+fn seconds() {
+    let exemplar = DESIGNS[1].exemplar(512);
+    let sides = [512, 1024, 2048, 4096];
+    let mut runs = sides.map(|side| {
+        let (exemplar, params) = (&exemplar, Params { width: side, height: side, ..Params::default() });
+        move || {
+            black_box(exemplar.run(&params));
+        }
+    });
+    let [a, b, c, d] = &mut runs;
+    let times = interleaved(Clock::Wall, ROUNDS, &mut [a, b, c, d]);
+    let mut table = Table::new(["side", "seconds", "ns per texel"]);
+    for (i, side) in sides.iter().enumerate() {
+        let seconds = times.median(i);
+        table.row([side.to_string(), format!("{seconds:.3}"), format!("{:.0}", 1e9 * seconds / (side * side) as f64)]);
+    }
+    table.print("From 512 x 512");
+    figure("emission.2048.seconds", times.median(2), "s");
+}
+
+/// Quality against time over the working resolution and the size of patches, where patches go anywhere and so do the work.
+fn knobs() {
+    let mut plot = Plot::new("Emission: statistics against time", "seconds", "worst statistic");
+    let mut table = Table::new(["working side", "patch", "seconds", "worst statistic %", "lamps broken"]);
+    let design = &DESIGNS[5];
+    let exemplar = design.exemplar(480);
+    for working_side in [64, 128, 256, 512] {
+        let points: Vec<[f64; 2]> = [0.5, 1.0, 2.0]
+            .iter()
+            .map(|relative| {
+                let block = (relative * 60.0 * working_side as f64 / 480.0) as usize;
+                let params =
+                    Params { width: 1024, height: 1024, working_side, block, regularity: 1.0, ..Params::default() };
+                let (seconds, result) = time(Clock::Wall, || exemplar.run(&params));
+                let score = Score::of(&result, design);
+                table.row([
+                    working_side.to_string(),
+                    block.to_string(),
+                    format!("{seconds:.3}"),
+                    format!("{:.1}", 100.0 * score.worst),
+                    score.broken.to_string(),
+                ]);
+                [seconds, score.worst.max(1e-4)]
+            })
+            .collect();
+        plot.add(&format!("working side {working_side}"), points);
+    }
+    table.print("1024 x 1024 from 480 x 480, free patches");
+    if let Err(reason) = plot.write("emission_knobs") {
+        println!("# the plot was not written: {reason}");
+    }
+}
+
+/// The program of the crate texture-synthesis, on the same exemplar.
+fn peer(pool: &Pool) -> Result<(), String> {
+    let program = Path::new("target/peers/texture_synthesis/bin/texture-synthesis");
+    if !program.exists() {
+        return Err("texture-synthesis is not installed (benches/peers/install.sh texture_synthesis)".into());
+    }
+    let design = &DESIGNS[1];
+    let mut exemplar = design.exemplar(256);
+    exemplar.valid.data.fill(1.0);
+    save(&exemplar.unwarped, "emission_peer_exemplar");
+    let (theirs, output) = time(Clock::Wall, || {
+        Command::new(program)
+            .args(["--out-size", "1024", "--threads", "2", "-o", "out/bench/emission_peer.png"])
+            .args(["generate", "out/bench/emission_peer_exemplar.png"])
+            .output()
+    });
+    let output = output.map_err(|e| e.to_string())?;
+    if !output.status.success() {
+        return Err(String::from_utf8_lossy(&output.stderr).into_owned());
+    }
+    let params = Params { width: 1024, height: 1024, ..Params::default() };
+    let (ours, result) = pool.run(|| time(Clock::Wall, || exemplar.run(&params)));
+    let bytes = std::fs::read("out/bench/emission_peer.png").map_err(|e| e.to_string())?;
+    let picture = io::decode(&bytes, io::Encoding::Srgb).map_err(|e| e.to_string())?;
+    // Lamps are what is brighter than halfway.
+    let mut lamps = picture.to_rgb().map_err(|e| e.to_string())?;
+    for pixel in lamps.data.chunks_exact_mut(3) {
+        if pixel[1] < 0.5 {
+            pixel.fill(0.0);
+        }
+    }
+    let rival = emission::given(&lamps, Monitor::default().job()).map_err(|e| e.to_string())?;
+    let mut table = Table::new(["program", "seconds", "worst statistic %", "phase %", "lamps broken"]);
+    for (name, seconds, result) in [("luxfer", ours, &result), ("texture-synthesis", theirs, &rival)] {
+        let score = Score::of(result, design);
+        table.row([
+            name.to_string(),
+            format!("{seconds:.2}"),
+            format!("{:.1}", 100.0 * score.worst),
+            format!("{:.2}", 100.0 * score.phase),
+            score.broken.to_string(),
+        ]);
+    }
+    table.print("1024 x 1024 from 256 x 256");
+    figure("emission.vs_texture_synthesis", theirs / ours, "x");
+    Ok(())
+}
+
+fn save(texture: &Image, name: &str) {
+    let written = std::fs::create_dir_all("out/bench").map_err(|e| e.to_string()).and_then(|()| {
+        let png = io::encode_png(texture, 1.0).map_err(|e| e.to_string())?;
+        io::write_file(Path::new(&format!("out/bench/{name}.png")), &png).map_err(|e| e.to_string())
+    });
+    if let Err(reason) = written {
+        println!("# out/bench/{name}.png was not written: {reason}");
+    }
+}
