@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::exec;
 use crate::image::colour::{linear_to_srgb, luminance, srgb_to_linear};
-use crate::image::{Image, pyramid};
+use crate::image::{Image, pyramid, try_collect};
 use crate::job::Job;
 use crate::render::{self, World};
 use crate::rng::Rng;
@@ -57,11 +57,10 @@ pub fn photograph(scene: Arc<Scene>, camera: &Camera, params: &Params, job: Job)
     let glow = pyramid::blur(&film.beauty, GLARE.1, job.part(0.92, 0.96))?;
 
     // Exposure for the room, not for its lamps.
-    let mut levels: Vec<f32> = (0..params.width * params.height)
-        .map(|i| luminance(film.beauty.rgb(i % params.width, i / params.width)))
-        .collect();
-    levels.sort_by(f32::total_cmp);
-    let exposure = MEDIAN_EXPOSURE / levels[levels.len() / 2].max(f32::MIN_POSITIVE);
+    let mut levels = try_collect(film.beauty.data.chunks_exact(3).map(|p| luminance(Vec3::from_slice(p))))?;
+    let half = levels.len() / 2;
+    let median = *levels.select_nth_unstable_by(half, f32::total_cmp).1;
+    let exposure = MEDIAN_EXPOSURE / median.max(f32::MIN_POSITIVE);
 
     // White balance: the mean of the room moves towards grey, its luminance stays.
     let mean = film.beauty.data.chunks_exact(3).map(|p| Vec3::from_slice(p)).sum::<Vec3>();

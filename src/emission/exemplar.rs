@@ -5,7 +5,7 @@ use super::components::{self, Component, Components};
 use super::statistics::{Pattern, Statistics};
 use crate::error::{Error, Result};
 use crate::geometry::Homography;
-use crate::image::{Image, pyramid, try_vec};
+use crate::image::{Image, pyramid, try_collect, try_vec};
 use crate::job::Job;
 use glam::DVec2;
 
@@ -94,7 +94,7 @@ impl<'a> Exemplar<'a> {
         let whole = find_whole(&components, &shown, width, height);
         let cut = find_cut(&components, &whole);
         let is_usable = |(&s, &l): (&bool, &u32)| s && (l == 0 || !cut[l as usize - 1]);
-        let usable: Vec<bool> = shown.iter().zip(&components.labels).map(is_usable).collect();
+        let usable = try_collect(shown.iter().zip(&components.labels).map(is_usable))?;
         let sources = Sources { image, light, components: &components, usable: &usable, shown: &shown };
         let working = Working::new(&sources, working_side, job)?;
         let lit_share = lit as f64 / total as f64;

@@ -251,7 +251,12 @@ pub unsafe extern "C" fn luxfer_render_start(
         };
         stage.start(job, move |_, stage, job| {
             let world = object.world(&scene, job.part(0.0, 0.05))?;
-            render::run(&world, &camera, &params, job.part(0.05, 1.0), &mut |film| stage.publish(film.clone()))
+            render::run(&world, &camera, &params, job.part(0.05, 1.0), &mut |film| {
+                // What is on the way can be done without.
+                if let Ok(copy) = film.try_clone() {
+                    stage.publish(copy);
+                }
+            })
         })
     })
 }

@@ -21,8 +21,8 @@ mod tests;
 pub use motion::motion;
 
 use crate::error::{Result, check_range};
-use crate::image::Image;
 use crate::image::colour::luminance;
+use crate::image::{Image, try_collect};
 use crate::job::Job;
 use crate::render::{self, Aov, Outputs, World};
 use crate::rng::Rng;
@@ -164,16 +164,16 @@ pub struct Pair {
 /// The guides of an exemplar and a target at a common exposure: the luminance that nine tenths of both full pictures stay
 /// below becomes [`BRIGHT`].
 pub fn pairs(source: &Guides, target: &Guides, extras: Extras) -> Result<Vec<Pair>> {
-    let exposure = exposure(&source.light[0], &target.light[0]);
+    let exposure = exposure(&source.light[0], &target.light[0])?;
     let mut pairs = Vec::new();
     for (i, (name, _)) in LIGHT.iter().enumerate().filter(|(i, _)| *i != CAUSTICS || extras.caustics) {
         // As a screen would show it: what is beyond white is white.
-        let expose = |image: &Image| {
-            let mut exposed = image.clone();
+        let expose = |image: &Image| -> Result<Image> {
+            let mut exposed = image.try_clone()?;
             exposed.data.iter_mut().for_each(|v| *v = (*v * exposure).min(1.0));
-            exposed
+            Ok(exposed)
         };
-        let (source, target) = (expose(&source.light[i]), expose(&target.light[i]));
+        let (source, target) = (expose(&source.light[i])?, expose(&target.light[i])?);
         pairs.push(Pair { name, source, target, is_light: true, is_extra: i == CAUSTICS });
     }
     let more: [(bool, &'static str, fn(&Guides) -> &Image); 3] = [
@@ -184,8 +184,8 @@ pub fn pairs(source: &Guides, target: &Guides, extras: Extras) -> Result<Vec<Pai
     for (_, name, pick) in more.into_iter().filter(|m| m.0) {
         pairs.push(Pair {
             name,
-            source: pick(source).clone(),
-            target: pick(target).clone(),
+            source: pick(source).try_clone()?,
+            target: pick(target).try_clone()?,
             is_light: false,
             is_extra: true,
         });
@@ -197,13 +197,13 @@ pub fn pairs(source: &Guides, target: &Guides, extras: Extras) -> Result<Vec<Pai
 const BRIGHT: f32 = 0.8;
 
 /// The factor from cd/m² to the common exposure.
-pub fn exposure(source: &Image, target: &Image) -> f32 {
+pub fn exposure(source: &Image, target: &Image) -> Result<f32> {
     let pixels = source.data.chunks_exact(3).chain(target.data.chunks_exact(3));
-    let mut luminances: Vec<f32> = pixels.map(|p| luminance(Vec3::from_slice(p))).filter(|l| l.is_finite()).collect();
+    let mut luminances = try_collect(pixels.map(|p| luminance(Vec3::from_slice(p))).filter(|l| l.is_finite()))?;
     if luminances.is_empty() {
-        return 1.0;
+        return Ok(1.0);
     }
     let rank = (luminances.len() - 1) * 9 / 10;
     let bright = *luminances.select_nth_unstable_by(rank, f32::total_cmp).1;
-    if bright > 0.0 { BRIGHT / bright } else { 1.0 }
+    Ok(if bright > 0.0 { BRIGHT / bright } else { 1.0 })
 }

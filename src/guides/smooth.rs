@@ -23,7 +23,7 @@ pub fn along_surfaces(light: &Image, normals: &Image, material: &Image, job: Job
         let apart = (a - b) / (TOLERANCE * (0.5 * (a + b) + floor)).max(f32::MIN_POSITIVE);
         (-apart * apart).exp()
     };
-    let mut current = light.clone();
+    let mut current = light.try_clone()?;
     for pass in 0..PASSES {
         let means = surface.average(&current, &current, 1, |_, _| 1.0, job)?;
         current = surface.average(&current, &means, 1 << pass, near, job)?;

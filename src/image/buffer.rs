@@ -17,13 +17,34 @@ pub struct Image {
 
 /// A vector of `len` copies of `value`, or an error where an infallible allocation would end the host's process.
 pub fn try_vec<T: Clone>(len: usize, value: T) -> Result<Vec<T>> {
-    let mut data = Vec::new();
-    data.try_reserve_exact(len).map_err(|_| {
-        let mib = (len as f64) * size_of::<T>() as f64 / (1 << 20) as f64;
-        Error::new(ErrorKind::OutOfMemory, format!("could not allocate {mib:.1} MiB"))
-    })?;
+    let mut data = try_with_capacity(len)?;
     data.resize(len, value);
     Ok(data)
+}
+
+/// An empty vector with room for `len` items, or an error.
+pub fn try_with_capacity<T>(len: usize) -> Result<Vec<T>> {
+    let mut data = Vec::new();
+    data.try_reserve_exact(len).map_err(|_| no_memory::<T>(len))?;
+    Ok(data)
+}
+
+/// What an iterator gives, or an error.
+pub fn try_collect<T>(items: impl IntoIterator<Item = T>) -> Result<Vec<T>> {
+    let items = items.into_iter();
+    let mut data = try_with_capacity(items.size_hint().0)?;
+    for item in items {
+        if data.len() == data.capacity() {
+            data.try_reserve(1).map_err(|_| no_memory::<T>(2 * data.len()))?;
+        }
+        data.push(item);
+    }
+    Ok(data)
+}
+
+fn no_memory<T>(len: usize) -> Error {
+    let mib = (len as f64) * size_of::<T>() as f64 / (1 << 20) as f64;
+    Error::new(ErrorKind::OutOfMemory, format!("could not allocate {mib:.1} MiB"))
 }
 
 impl Image {
@@ -38,6 +59,11 @@ impl Image {
             return Err(Error::argument(format!("image has {channels} channels; it must have 1 to 64")));
         }
         Ok(Self { width, height, channels, data: try_vec(width * height * channels, 0.0)? })
+    }
+
+    /// A copy, or an error where there is no memory for it.
+    pub fn try_clone(&self) -> Result<Self> {
+        Ok(Self { data: try_collect(self.data.iter().copied())?, ..*self })
     }
 
     /// An image whose every pixel is computed from its column and row.

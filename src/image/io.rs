@@ -4,9 +4,9 @@
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::colour::{linear_to_srgb, srgb_to_linear, srgb8_table};
-use crate::image::{Image, MAX_SIDE};
+use crate::image::{Image, MAX_SIDE, try_collect, try_vec, try_with_capacity};
 use exr::prelude as ex;
-use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader};
+use image::{ImageDecoder, ImageFormat, ImageReader};
 use std::io::Cursor;
 use std::path::Path;
 
@@ -74,41 +74,41 @@ fn broken_raster(e: image::ImageError) -> Error {
 
 fn decode_raster(bytes: &[u8], encoding: Encoding) -> Result<Image> {
     let (format, decoder) = raster_decoder(bytes)?;
-    let is_hdr = format == ImageFormat::Hdr;
     let (width, height) = decoder.dimensions();
-    let decoded = DynamicImage::from_decoder(decoder).map_err(broken_raster)?;
-    let (width, height) = (width as usize, height as usize);
+    let colour = decoder.color_type();
+    let mut raw = try_vec(usize::try_from(decoder.total_bytes()).unwrap_or(usize::MAX), 0u8)?;
+    decoder.read_image(&mut raw).map_err(broken_raster)?;
 
-    // Integers in sRGB decode through a table or the curve; everything else is scaled only.
-    let curve = |v: f32| if encoding == Encoding::Srgb && !is_hdr { srgb_to_linear(v) } else { v };
-    let table = if encoding == Encoding::Srgb { srgb8_table() } else { std::array::from_fn(|i| i as f32 / 255.0) };
-    let from8 = |data: &[u8], channels: usize| {
-        let mut out = Image::new(width, height, channels)?;
-        for (i, (o, &v)) in out.data.iter_mut().zip(data).enumerate() {
-            *o = if channels == 4 && i % 4 == 3 { f32::from(v) / 255.0 } else { table[v as usize] };
-        }
-        Ok(out)
-    };
-    match decoded {
-        DynamicImage::ImageLuma8(i) => from8(i.as_raw(), 1),
-        DynamicImage::ImageRgb8(i) => from8(i.as_raw(), 3),
-        DynamicImage::ImageRgba8(i) => from8(i.as_raw(), 4),
-        other => {
-            let channels = match other.color().channel_count() {
-                1 => 1,
-                3 => 3,
-                _ => 4,
-            };
-            let rgba = other.into_rgba32f();
-            let mut out = Image::new(width, height, channels)?;
-            for (o, p) in out.data.chunks_exact_mut(channels).zip(rgba.as_raw().chunks_exact(4)) {
-                for (c, v) in o.iter_mut().enumerate() {
-                    *v = if c == 3 { p[3] } else { curve(p[c]) };
-                }
+    // Grey with alpha becomes RGBA.
+    let given = usize::from(colour.channel_count());
+    let channels = if given == 2 { 4 } else { given };
+    let mut out = Image::new(width as usize, height as usize, channels)?;
+    let mut fill = |value: &dyn Fn(usize, bool) -> f32| {
+        for (i, pixel) in out.data.chunks_exact_mut(channels).enumerate() {
+            for (c, sample) in pixel.iter_mut().enumerate() {
+                let from = if given == 2 { c / 3 } else { c };
+                *sample = value(i * given + from, c == 3);
             }
-            Ok(out)
         }
+    };
+    // Integers in sRGB decode through a table or the curve; everything else is scaled only.
+    let is_curved = encoding == Encoding::Srgb && format != ImageFormat::Hdr;
+    let curve = |v: f32, is_alpha: bool| if is_curved && !is_alpha { srgb_to_linear(v) } else { v };
+    match usize::from(colour.bytes_per_pixel()) / given {
+        1 => {
+            let linear: [f32; 256] = std::array::from_fn(|i| i as f32 / 255.0);
+            let table = if is_curved { srgb8_table() } else { linear };
+            fill(&|i, is_alpha| (if is_alpha { &linear } else { &table })[usize::from(raw[i])]);
+        }
+        2 => fill(&|i, is_alpha| curve(f32::from(sample(&raw, i, u16::from_ne_bytes)) / 65_535.0, is_alpha)),
+        _ => fill(&|i, is_alpha| curve(sample(&raw, i, f32::from_ne_bytes), is_alpha)),
     }
+    Ok(out)
+}
+
+/// The sample of a number of bytes at an index.
+fn sample<const N: usize, T>(raw: &[u8], index: usize, of: fn([u8; N]) -> T) -> T {
+    of(std::array::from_fn(|k| raw[index * N + k]))
 }
 
 fn broken_exr(e: exr::error::Error) -> Error {
@@ -214,7 +214,7 @@ pub fn encode_exr(layers: &[Layer], notes: &[(String, String)]) -> Result<Vec<u8
         }
         for (c, channel) in layer.channels.iter().enumerate() {
             let name = if layer.name.is_empty() { channel.to_string() } else { format!("{}.{channel}", layer.name) };
-            let samples: Vec<f32> = layer.image.data.iter().skip(c).step_by(layer.image.channels).copied().collect();
+            let samples = try_collect(layer.image.data.iter().skip(c).step_by(layer.image.channels).copied())?;
             list.push(ex::AnyChannel::new(text(&name), ex::FlatSamples::F32(samples)));
         }
     }
@@ -222,7 +222,11 @@ pub fn encode_exr(layers: &[Layer], notes: &[(String, String)]) -> Result<Vec<u8
     for (name, note) in notes {
         file.layer_data.attributes.other.insert(text(name), ex::AttributeValue::Text(text(note)));
     }
-    let mut out = Cursor::new(Vec::new());
+    // Room for what no compression could make larger: samples, and for each line its number, size and place; names and notes.
+    let channels = layers.iter().map(|l| l.channels.len()).sum::<usize>();
+    let texts = notes.iter().map(|(name, note)| name.len() + note.len() + 64).sum::<usize>() + 128 * channels;
+    let mut out =
+        Cursor::new(try_with_capacity(4 * channels * first.width * first.height + 32 * first.height + texts + 4096)?);
     file.write()
         .non_parallel()
         .to_buffered(&mut out)

@@ -10,4 +10,4 @@ pub mod io;
 pub mod pyramid;
 pub mod view;
 
-pub use buffer::{Image, MAX_SIDE, try_vec};
+pub use buffer::{Image, MAX_SIDE, try_collect, try_vec, try_with_capacity};

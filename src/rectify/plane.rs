@@ -4,7 +4,7 @@ use super::View;
 use crate::error::{Error, Result};
 use crate::geometry::perspective::{HORIZONTAL_A, HORIZONTAL_B, VERTICAL};
 use crate::geometry::{Homography, Perspective};
-use crate::image::Image;
+use crate::image::{Image, try_collect};
 use glam::{DMat3, DVec2, DVec3};
 
 /// Most mask pixels looked at; more are thinned out evenly.
@@ -46,8 +46,8 @@ impl Plane {
 
 /// Centres of the pixels that a mask marks with at least one half.
 pub fn marked_pixels(mask: &Image) -> Result<Vec<DVec2>> {
-    let marked: Vec<u32> =
-        (0..mask.width * mask.height).filter(|i| mask.data[i * mask.channels] >= 0.5).map(|i| i as u32).collect();
+    let is_marked = |i: &usize| mask.data[i * mask.channels] >= 0.5;
+    let marked = try_collect((0..mask.width * mask.height).filter(is_marked).map(|i| i as u32))?;
     if marked.is_empty() {
         return Err(Error::degenerate(
             "the plane's mask is empty: paint a stroke on the plane that carries the lights",
@@ -55,7 +55,7 @@ pub fn marked_pixels(mask: &Image) -> Result<Vec<DVec2>> {
     }
     let step = marked.len().div_ceil(MOST_PIXELS);
     let centre = |i: u32| DVec2::new((i as usize % mask.width) as f64 + 0.5, (i as usize / mask.width) as f64 + 0.5);
-    Ok(marked.into_iter().step_by(step).map(centre).collect())
+    try_collect(marked.into_iter().step_by(step).map(centre))
 }
 
 /// The plane along the given axes, or along the two that suit the mask best.
@@ -68,8 +68,7 @@ pub fn choose(view: &View, mask: &Image, pixels: &[DVec2], axes: Option<[usize; 
         None => best_pair(view, mask, pixels),
     };
     let plane = facing(&view.perspective, pair, pixels);
-    let mut incidence: Vec<f64> =
-        pixels.iter().map(|&p| plane.normal.dot(view.perspective.ray(p).normalize())).collect();
+    let mut incidence = try_collect(pixels.iter().map(|&p| plane.normal.dot(view.perspective.ray(p).normalize())))?;
     let half = incidence.len() / 2;
     let median = *incidence.select_nth_unstable_by(half, f64::total_cmp).1;
     if !(median >= LEAST_INCIDENCE) {
@@ -90,8 +89,8 @@ fn facing(perspective: &Perspective, [i, j]: [usize; 2], pixels: &[DVec2]) -> Pl
     let normal = perspective.axes.col(3 - i - j);
     let ahead = pixels.iter().filter(|&&p| normal.dot(perspective.ray(p)) > 0.0).count();
     let normal = if 2 * ahead >= pixels.len() { normal } else { -normal };
-    let seen: Vec<DVec2> = pixels.iter().copied().filter(|&p| normal.dot(perspective.ray(p)) > 0.0).collect();
-    let centre = seen.iter().sum::<DVec2>() / seen.len().max(1) as f64;
+    let seen = || pixels.iter().filter(|&&p| normal.dot(perspective.ray(p)) > 0.0);
+    let centre = seen().sum::<DVec2>() / seen().count().max(1) as f64;
     // How an axis runs in the photo near the centre of the mask.
     let runs = |axis: usize| {
         let v = perspective.vanishing_point(axis);

@@ -3,7 +3,7 @@
 
 use super::plane::Plane;
 use crate::error::{Error, Result};
-use crate::image::Image;
+use crate::image::{Image, try_collect};
 use glam::DVec2;
 
 /// Cells along each side of the grid on which the rectangle is sought.
@@ -24,12 +24,11 @@ pub struct Rectangle {
 /// The rectangle that holds most of the plane that the mask marks, less what it must hold besides.
 pub fn largest(plane: &Plane, mask: &Image, pixels: &[DVec2], max_magnification: f64) -> Result<Rectangle> {
     // Pixels on the camera's side of the horizon, and how much of the plane each sees.
-    let mut seen: Vec<(f64, DVec2)> =
-        pixels.iter().filter_map(|&p| plane.meet(p).map(|q| (plane.pixel_side(p), q))).collect();
+    let mut seen = try_collect(pixels.iter().filter_map(|&p| plane.meet(p).map(|q| (plane.pixel_side(p), q))))?;
     if seen.is_empty() {
         return Err(Error::degenerate("the mask lies beyond the plane's horizon: choose other axes"));
     }
-    seen.sort_by(|a, b| a.0.total_cmp(&b.0));
+    seen.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
     let densest = seen[seen.len() / 50].0;
     let farthest = densest * max_magnification;
     seen.truncate(seen.partition_point(|s| s.0 <= farthest).max(1));

@@ -190,6 +190,24 @@ pub struct Film {
     pub preview: Option<denoise::Output>,
 }
 
+impl Film {
+    /// A copy, or an error where there is no memory for it.
+    pub fn try_clone(&self) -> Result<Self> {
+        let layer = |l: &Layer| {
+            Ok(Layer { image: l.image.try_clone()?, name: l.name.clone(), expression: l.expression.clone(), ..*l })
+        };
+        let preview = |p: &denoise::Output| Ok(denoise::Output { image: p.image.try_clone()?, ..*p });
+        Ok(Self {
+            beauty: self.beauty.try_clone()?,
+            variance: self.variance.try_clone()?,
+            paths: self.paths.try_clone()?,
+            layers: self.layers.iter().map(layer).collect::<Result<_>>()?,
+            preview: self.preview.as_ref().map(preview).transpose()?,
+            ..*self
+        })
+    }
+}
+
 /// Renders a camera's view; `publish` is called with the film after the first pass, and again whenever enough has been
 /// added to be worth its time. To be called on the library's own pool.
 ///

@@ -10,6 +10,7 @@ use super::samples::{PARTS, Samples};
 use super::standardise::{Standard, term_count, terms};
 use crate::error::Result;
 use crate::exec;
+use crate::image::try_with_capacity;
 use crate::job::Job;
 
 /// Most folds; with more strokes than that some are held out together.
@@ -85,7 +86,7 @@ pub fn choose(samples: &Samples, ridge: f64, job: Job) -> Result<Chosen> {
 
 fn fit(samples: &Samples, x: &[Vec<f64>], positive: &[bool], model: Model, ridge: f64, job: Job) -> Result<Fitted> {
     let dimension = term_count(model, samples.dimension);
-    let mut rows = Vec::with_capacity(x.len() * dimension);
+    let mut rows = try_with_capacity(x.len() * dimension)?;
     x.iter().for_each(|x| terms(model, x, &mut rows));
     let problem = Problem { rows: &rows, dimension, positive, weights: &balanced(positive, |_| true) };
     let weights = logistic::fit(&problem, ridge, &vec![0.0; dimension], job)?;

@@ -2,8 +2,8 @@
 
 use crate::error::Result;
 use crate::guides::{self, Guides};
-use crate::image::Image;
 use crate::image::colour::{linear_to_srgb, luminance};
+use crate::image::{Image, try_collect, try_with_capacity};
 use glam::{Vec2, Vec3};
 
 /// The axis that strokes go around, as the camera has it, and the way of strokes on the table.
@@ -40,23 +40,20 @@ pub struct Subject {
 impl Subject {
     pub fn new(guides: &Guides) -> Result<Self> {
         let [full, direct, specular, indirect, ..] = &guides.light;
-        let exposure = guides::exposure(full, full);
+        let exposure = guides::exposure(full, full)?;
         let lightness = |image: &Image, x: usize, y: usize, factor: f32| {
             linear_to_srgb((luminance(image.rgb(x, y)) * exposure * factor).clamp(0.0, 1.0))
         };
         // What is in the corner is the ground.
         let ground = guides.materials.pixel(0, 0);
         // A thing's own colour is not its tone: its brightest part is light, however dark its paint.
-        let mut brightest = Vec::new();
-        for (i, pixel) in direct.data.chunks_exact(3).enumerate() {
-            if guides.materials.pixel(i % full.width, i / full.width) != ground {
-                brightest.push(luminance(Vec3::from_slice(pixel)));
-            }
-        }
+        let things =
+            direct.data.chunks_exact(3).zip(guides.materials.data.chunks_exact(3)).filter(|(_, m)| *m != ground);
+        let mut brightest = try_collect(things.map(|(light, _)| luminance(Vec3::from_slice(light))))?;
         brightest.sort_unstable_by(f32::total_cmp);
         let light = brightest.get(brightest.len() * 98 / 100).copied().unwrap_or(0.0);
         let own = if light > 0.0 { 0.7 / (light * exposure) } else { 1.0 };
-        let mut sights = Vec::new();
+        let mut sights = try_with_capacity(full.width * full.height)?;
         for y in 0..full.height {
             for x in 0..full.width {
                 let is_thing = guides.materials.pixel(x, y) != ground;

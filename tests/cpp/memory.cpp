@@ -1,0 +1,207 @@
+// A machine that has no more memory: every allocation of a size that follows from the input fails once, in turn. The call, or the job,
+// must say so; the process lives on, nothing is lost, and the next try gives the same result as ever.
+#include "check.hpp"
+
+#include <luxfer.hpp>
+
+#include <atomic>
+#include <cerrno>
+#include <cstdint>
+#include <cstdlib>
+#include <functional>
+#include <vector>
+
+#include <malloc.h>
+
+// glibc's own allocator, under its other names.
+extern "C" {
+void *__libc_malloc(std::size_t);
+void *__libc_calloc(std::size_t, std::size_t);
+void *__libc_realloc(void *, std::size_t);
+void *__libc_memalign(std::size_t, std::size_t);
+}
+
+namespace {
+
+// Smaller ones do not follow from the size of the pictures here. The tree over a scene, which others build, is not counted either.
+constexpr std::size_t LARGE = 400 << 10;
+
+// How many large allocations there have been, and which of them is to fail.
+std::atomic<long> large{0}, failing{-1};
+
+bool is_denied(std::size_t size) {
+    return size >= LARGE && large.fetch_add(1) == failing.load();
+}
+
+} // namespace
+
+// The library's calls come here: the dynamic linker asks the program first.
+extern "C" {
+
+void *malloc(std::size_t size) {
+    return is_denied(size) ? nullptr : __libc_malloc(size);
+}
+
+void *calloc(std::size_t count, std::size_t size) {
+    return is_denied(count * size) ? nullptr : __libc_calloc(count, size);
+}
+
+void *realloc(void *old, std::size_t size) {
+    return is_denied(size) ? nullptr : __libc_realloc(old, size);
+}
+
+void *memalign(std::size_t alignment, std::size_t size) {
+    return is_denied(size) ? nullptr : __libc_memalign(alignment, size);
+}
+
+void *aligned_alloc(std::size_t alignment, std::size_t size) {
+    return memalign(alignment, size);
+}
+
+int posix_memalign(void **place, std::size_t alignment, std::size_t size) {
+    void *found = memalign(alignment, size);
+    if (!found)
+        return ENOMEM;
+    *place = found;
+    return 0;
+}
+}
+
+namespace {
+
+using luxfer::Context, luxfer::Image, luxfer::Scene;
+
+// What a use of the library gave, as one number.
+using Use = std::function<std::uint64_t()>;
+
+std::uint64_t hash(const Image &image) {
+    const luxfer::ImageSize size = image.size();
+    static std::vector<float> plane(1 << 20);
+    std::uint64_t out = 1469598103934665603u;
+    for (std::uint32_t channel = 0; channel < size.channels; ++channel) {
+        image.read({plane, size.width, size.height, 1}, channel);
+        const auto *bytes = reinterpret_cast<const unsigned char *>(plane.data());
+        for (std::size_t i = 0; i < std::size_t(size.width) * size.height * sizeof(float); ++i)
+            out = (out ^ bytes[i]) * 1099511628211u;
+    }
+    return out;
+}
+
+// Lets each of a use's large allocations fail; at most `most` of them, evenly chosen.
+void starve(const char *name, const Use &use, long most) {
+    const std::uint64_t truth = use();
+    large = 0;
+    CHECK(use() == truth);
+    const long count = large;
+    CHECK(count > 0);
+    long refused = 0;
+    const long tries = count < most ? count : most;
+    for (long i = 0; i < tries; ++i) {
+        large = 0;
+        failing = i * count / tries;
+        try {
+            // What can do without the memory may go on, but not to another result.
+            CHECK(use() == truth);
+        } catch (const luxfer::Error &error) {
+            ++refused;
+            if (error.status() != LUXFER_OUT_OF_MEMORY)
+                std::fprintf(stderr, "%s, allocation %ld: %s\n", name, failing.load(), error.what());
+            CHECK(error.status() == LUXFER_OUT_OF_MEMORY);
+        }
+        failing = -1;
+    }
+    CHECK(use() == truth);
+    std::printf("%-10s %4ld large allocations, %ld of %ld failures reported\n", name, count, refused, tries);
+    std::fflush(stdout);
+}
+
+} // namespace
+
+int main() {
+    const Context context = Context::create();
+    static std::vector<float> samples(512 * 512 * 3, 0.25f);
+
+    starve("image", [&] {
+        const Image image = Image::create(context, {samples, 512, 512, 3});
+        const double half[] = {2, 0, 0, 0, 2, 0, 0, 0, 1};
+        image.save("memory.png");
+        return hash(image.warp(half, 300, 300)) ^ hash(Image::load(context, "memory.png"));
+    }, 100);
+
+    luxfer::DemoPhotoParams size;
+    size.width = 480;
+    size.height = 320;
+    size.samples = 2;
+    const auto demo = luxfer::DemoPhoto::create(context);
+    demo.start(size).wait();
+    const Image photo = demo.image(LUXFER_DEMO_PHOTO_PICTURE), strokes = demo.image(LUXFER_DEMO_PHOTO_STROKES);
+
+    const auto rectify = luxfer::Rectify::create(context);
+    const auto features = luxfer::Features::create(context);
+    starve("features", [&] {
+        rectify.set_photo(photo);
+        rectify.start().wait();
+        features.set_photo(photo);
+        features.set_view(rectify);
+        features.start().wait();
+        return hash(features.image(LUXFER_FEATURES_CHANNELS));
+    }, 100);
+
+    const auto plane = luxfer::Segment::create(context), lights = luxfer::Segment::create(context);
+    const auto emission = luxfer::Emission::create(context);
+    starve("texture", [&] {
+        plane.set_features(features.image(LUXFER_FEATURES_CHANNELS));
+        plane.clear_strokes();
+        plane.add_strokes(strokes, LUXFER_PHASE_PLANE);
+        plane.start().wait();
+        lights.set_features(features.image(LUXFER_FEATURES_CHANNELS));
+        lights.set_within(plane.image(LUXFER_SEGMENT_MASK));
+        lights.clear_strokes();
+        lights.add_strokes(strokes, LUXFER_PHASE_LIGHTS);
+        luxfer::SegmentParams colour;
+        colour.channels = 7;
+        lights.start(colour).wait();
+        rectify.set_mask(plane.image(LUXFER_SEGMENT_MASK));
+        rectify.start().wait();
+        emission.set_exemplar(rectify.image(LUXFER_RECTIFY_UNWARPED),
+                              rectify.warp(lights.image(LUXFER_SEGMENT_CONFIDENCE)), rectify.image(LUXFER_RECTIFY_VALID));
+        emission.set_photo(photo, rectify.report().to_photo);
+        luxfer::EmissionParams texture;
+        texture.width = 400;
+        texture.height = 300;
+        emission.start(texture).wait();
+        return hash(emission.image(LUXFER_EMISSION_TEXTURE));
+    }, 60);
+
+    const auto render = luxfer::Render::create(context);
+    render.set_scene(Scene::demo(context, LUXFER_DEMO_TARGET_ROOM));
+    render.add_expression("direct", "LDE");
+    render.set_aovs(LUXFER_AOV_ALPHA | LUXFER_AOV_NORMAL);
+    starve("render", [&] {
+        luxfer::RenderParams small;
+        small.width = 400;
+        small.height = 300;
+        small.samples = 2;
+        small.preview = 1;
+        render.start(small).wait();
+        render.write_exr("memory.exr");
+        return hash(render.image());
+    }, 60);
+
+    const auto guides = luxfer::Guides::create(context);
+    guides.set_scene(Scene::demo(context, LUXFER_DEMO_SPHERE_ON_TABLE));
+    const auto stylize = luxfer::Stylize::create(context);
+    starve("stylize", [&] {
+        luxfer::GuidesParams small;
+        small.width = 400;
+        small.height = 280;
+        small.samples = 2;
+        guides.start(small).wait();
+        stylize.set_artwork(guides.demo_artwork(LUXFER_ARTWORK_PEN));
+        stylize.clear_guides();
+        stylize.add_guides(guides, guides, LUXFER_GUIDES_WITH_NORMALS, 0.5f);
+        stylize.start(luxfer::StylizeParams(LUXFER_STYLIZE_PREVIEW)).wait();
+        return hash(stylize.image());
+    }, 40);
+    return check::summary("memory");
+}
