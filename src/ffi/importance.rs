@@ -11,8 +11,8 @@ use super::image::{Pixels, luxfer_image};
 use super::job::luxfer_job;
 use super::params::{self, Report, Versioned};
 use super::pointer::Out;
-use super::relight::{LUXFER_QUANTITY_OUTGOING, luxfer_quantity, luxfer_relight_report, quantity};
-use super::scene::{SceneObject, colour, luxfer_scene, missing};
+use super::relight::{Emitter, LUXFER_QUANTITY_OUTGOING, luxfer_quantity, luxfer_relight_report, quantity};
+use super::scene::{colour, luxfer_scene};
 use super::stage::{Stage, need};
 use super::status::luxfer_status;
 use crate::error::{Error, Result};
@@ -98,7 +98,7 @@ unsafe impl Versioned for luxfer_importance_report {
 
 #[derive(Clone, Default)]
 pub(super) struct Inputs {
-    emission: Option<(Arc<SceneObject>, u32, u32)>,
+    emitter: Option<Emitter>,
 }
 
 impl Handle for luxfer_importance {
@@ -140,16 +140,9 @@ pub unsafe extern "C" fn luxfer_importance_set_scene(
     mesh: u32,
 ) -> luxfer_status {
     enter(importance, |stage| {
-        let scene = handle::borrow_in(stage.context(), scene, "scene")?;
-        let snapshot = scene.snapshot();
-        if material as usize >= snapshot.materials.len() {
-            return Err(missing("material", material, snapshot.materials.len()));
-        }
-        if mesh as usize >= snapshot.meshes.len() {
-            return Err(missing("mesh", mesh, snapshot.meshes.len()));
-        }
+        let emitter = Emitter::new(stage.context(), scene, material, mesh)?;
         stage.change(|inputs| {
-            inputs.emission = Some((scene, material, mesh));
+            inputs.emitter = Some(emitter);
             Ok(())
         })
     })
@@ -178,11 +171,10 @@ pub unsafe extern "C" fn luxfer_importance_start(
             seed: p.seed,
         };
         let params = MapParams { width: p.width as usize, height: p.height as usize, tracing };
-        let (object, material, mesh) = need(&stage.inputs().emission, "luxfer_importance_set_scene")?.clone();
-        let scene = object.snapshot();
+        let emitter = need(&stage.inputs().emitter, "luxfer_importance_set_scene")?.clone();
+        let scene = emitter.scene.snapshot();
+        let triangles = emitter.triangles(&scene)?;
         stage.start(job, move |_, _, job| {
-            let count = scene.meshes.get(mesh as usize).map_or(0, |m| m.triangles.len());
-            let triangles: Vec<_> = (0..count).map(|t| (mesh as usize, t)).collect();
             let goal = Goal {
                 place: Place::Surface(&triangles),
                 quantity,
@@ -190,7 +182,7 @@ pub unsafe extern "C" fn luxfer_importance_start(
                 aspect: relight::Aspect::Colour,
                 weight: 1.0,
             };
-            Importance::trace(&scene, material as usize, &goal, &params, job)
+            Importance::trace(&scene, emitter.material as usize, &goal, &params, job)
         })
     })
 }

@@ -3,7 +3,7 @@
 //! Solves for the colour and intensity of an emission, so that a surface of the scene gets the colour it has in the photo:
 //! what to multiply the emission with, per channel, with a confidence interval.
 
-use super::context::luxfer_context;
+use super::context::{Context, luxfer_context};
 use super::guard::{enter, guard};
 use super::handle::{self, Handle, Owned, tag};
 use super::job::luxfer_job;
@@ -178,10 +178,11 @@ pub(super) struct Inputs {
     target: Option<Vec3>,
 }
 
+/// A scene, its material that emits, and its mesh that is the target, as a host has named them.
 #[derive(Clone)]
-struct Emitter {
-    scene: Arc<SceneObject>,
-    material: u32,
+pub(super) struct Emitter {
+    pub scene: Arc<SceneObject>,
+    pub material: u32,
     mesh: u32,
 }
 
@@ -220,9 +221,7 @@ pub unsafe extern "C" fn luxfer_relight_set_scene(
     mesh: u32,
 ) -> luxfer_status {
     enter(relight, |stage| {
-        let scene = handle::borrow_in(stage.context(), scene, "scene")?;
-        let emitter = Emitter { scene, material, mesh };
-        emitter.triangles(&emitter.scene.snapshot())?;
+        let emitter = Emitter::new(stage.context(), scene, material, mesh)?;
         stage.change(|inputs| {
             inputs.emitter = Some(emitter);
             Ok(())
@@ -249,8 +248,20 @@ pub unsafe extern "C" fn luxfer_relight_set_target(
 }
 
 impl Emitter {
+    pub(super) fn new(
+        context: &Arc<Context>,
+        scene: *mut luxfer_scene,
+        material: u32,
+        mesh: u32,
+    ) -> Result<Self> {
+        let scene = handle::borrow_in(context, scene, "scene")?;
+        let emitter = Self { scene, material, mesh };
+        emitter.triangles(&emitter.scene.snapshot())?;
+        Ok(emitter)
+    }
+
     /// The target's triangles.
-    fn triangles(&self, scene: &Scene) -> Result<Vec<(usize, usize)>> {
+    pub(super) fn triangles(&self, scene: &Scene) -> Result<Vec<(usize, usize)>> {
         if self.material as usize >= scene.materials.len() {
             return Err(missing("material", self.material, scene.materials.len()));
         }

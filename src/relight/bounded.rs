@@ -6,6 +6,7 @@
 //! method with an exact line search minimises in a few steps. Every step solves for the unknowns that are not at a bound:
 //! the primal-dual active set method (Hintermüller, Ito and Kunisch 2002), on the small side of the problem.
 
+use super::line_search::Slope;
 use crate::error::{Error, ErrorKind, Result};
 
 pub(super) struct Problem<'a> {
@@ -23,8 +24,6 @@ pub(super) struct Problem<'a> {
 
 /// Newton steps: each but the last few changes which unknowns are at a bound.
 const STEPS: usize = 200;
-/// Halvings of a line search, down to rounding.
-const HALVINGS: usize = 60;
 /// Residual, relative to the right-hand side, that is rounding only.
 const ROUNDING: f64 = 1e-12;
 /// Residual that counts as settled all the same.
@@ -51,10 +50,10 @@ impl Problem<'_> {
             }
             let between = self.between(&z);
             let step = self.newton_step(lambda, &between, &gradient);
-            let t = self.line_search(lambda, &z, &step);
+            let t = self.line_search(lambda, &z, &step, &gradient);
             z.iter_mut().zip(&step).for_each(|(z, d)| *z += t * d);
             // Where no unknown came to a bound or left one, the function is a parabola, and the step ends at its foot.
-            if t == 1.0 && self.between(&z) == between {
+            if t > 1.0 - ROUNDING && self.between(&z) == between {
                 return Ok(self.clipped(&z));
             }
         }
@@ -113,23 +112,22 @@ impl Problem<'_> {
         step
     }
 
-    /// Where along the step the function is least: the derivative along it grows, piece by piece linearly.
-    fn line_search(&self, lambda: f64, z: &[f64], step: &[f64]) -> f64 {
-        let slope = |t: f64| {
-            let at: Vec<f64> = z.iter().zip(step).map(|(z, d)| z + t * d).collect();
-            dot(&self.gradient(lambda, &at), step)
+    /// Where along the step the function is least: its derivative grows linearly, and steeper or flatter from where an
+    /// unknown leaves a bound or comes to one.
+    fn line_search(&self, lambda: f64, z: &[f64], step: &[f64], gradient: &[f64]) -> f64 {
+        let along = {
+            let mut along = vec![0.0; self.preferred.len()];
+            for (i, &d) in step.iter().enumerate() {
+                along.iter_mut().zip(self.row(i)).for_each(|(v, a)| *v += a * d);
+            }
+            along
         };
-        // Where nothing comes to a bound the whole step is exact: its slope is rounding.
-        let start = slope(0.0).abs();
-        if slope(1.0) <= 1e-9 * start {
-            return 1.0;
+        let mut slope = Slope { start: dot(gradient, step), growth: lambda * dot(step, step), changes: Vec::new() };
+        for ((x, v), u) in self.free(z).iter().zip(&along).zip(self.upper).filter(|((_, v), _)| **v != 0.0) {
+            let (enters, leaves) = if *v > 0.0 { (-x / v, (u - x) / v) } else { ((u - x) / v, -x / v) };
+            slope.add(enters, leaves, v * v);
         }
-        let (mut low, mut high) = (0.0, 1.0);
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (low + high);
-            if slope(middle) > 0.0 { high = middle } else { low = middle }
-        }
-        0.5 * (low + high)
+        slope.zero()
     }
 }
 

@@ -12,8 +12,8 @@ use super::estimate::BATCHES;
 use super::responses::{Estimate, Goal};
 use super::solve::{self, Measured};
 use super::target::Sampler;
-use super::transport::Batches;
-use super::{Params, Solution, time_left, transport};
+use super::transport::{Batches, Stop};
+use super::{Params, Solution};
 use crate::error::{Error, Result, check_range};
 use crate::exec;
 use crate::image::Image;
@@ -84,21 +84,19 @@ impl Importance {
         let points = Sampler::new(scene, goal.place, goal.quantity)?;
         let bins = Bins::new(&world, emitter, Division::Cells { width: params.width, height: params.height });
         let mut batches = Batches::new(&world, &points, bins, tracing.seed)?;
-        let clock = std::time::Instant::now();
-        let wanted = f64::from(tracing.target_error);
+        let stop = Stop::new(tracing);
         let mut growth = f64::INFINITY;
         loop {
-            batches.trace_round(growth, tracing.paths, job.part(0.1, 1.0))?;
+            batches.trace_round(growth, stop.most, job.part(0.1, 1.0))?;
             let map = Self::of(&batches, params);
-            let all = Estimate::of(|b| map.batches[b].iter().sum());
-            let relative = all.half_width() / all.mean;
-            let error = (0..3).map(|c| relative[c]).filter(|e| e.is_finite()).fold(0.0, f64::max);
-            let late = tracing.time_budget_ms > 0 && clock.elapsed().as_millis() >= u128::from(tracing.time_budget_ms);
-            if wanted > 0.0 && error <= wanted || late || batches.paths() >= tracing.paths {
-                job.report(1.0);
-                return Ok(map);
+            let error = Estimate::of(|b| map.batches[b].iter().sum()).error();
+            match stop.growth(error, batches.paths()) {
+                Some(more) => growth = more,
+                None => {
+                    job.report(1.0);
+                    return Ok(map);
+                }
             }
-            growth = time_left(tracing, clock).min(transport::forecast(error, wanted));
         }
     }
 

@@ -18,6 +18,7 @@ mod estimate;
 mod groups;
 mod importance;
 mod lamps;
+mod line_search;
 mod responses;
 mod solve;
 mod target;
@@ -37,7 +38,7 @@ use crate::job::Job;
 use crate::render::World;
 use bins::{Bins, Division};
 use glam::{DVec3, Vec3};
-use transport::Batches;
+use transport::{Batches, Stop};
 
 /// What should match the photo.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -151,19 +152,19 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Solution> {
     let points = target::Sampler::new(scene, Place::Surface(input.target_triangles), params.quantity)?;
     let bins = Bins::new(input.world, input.emitter, Division::Whole);
     let mut batches = Batches::new(input.world, &points, bins, params.seed)?;
-    let clock = std::time::Instant::now();
+    let stop = Stop::new(params);
     let mut growth = f64::INFINITY;
     loop {
-        batches.trace_round(growth, params.paths, job)?;
+        batches.trace_round(growth, stop.most, job)?;
         let solution = solve::run(&whole(&batches), input.target.as_dvec3());
-        let wanted = f64::from(params.target_error);
         let error = solution.as_ref().map_or(f64::INFINITY, Solution::error);
-        let late = params.time_budget_ms > 0 && clock.elapsed().as_millis() >= u128::from(params.time_budget_ms);
-        if wanted > 0.0 && error <= wanted || late || batches.paths() >= params.paths {
-            job.report(1.0);
-            return solution;
+        match stop.growth(error, batches.paths()) {
+            Some(more) => growth = more,
+            None => {
+                job.report(1.0);
+                return solution;
+            }
         }
-        growth = time_left(params, clock).min(transport::forecast(error, wanted));
     }
 }
 
@@ -175,10 +176,4 @@ fn whole(batches: &Batches) -> solve::Measured {
         background: means.iter().map(|m| m.others).collect(),
         paths: batches.paths(),
     }
-}
-
-/// How many times the paths there are there is time for.
-fn time_left(params: &Params, clock: std::time::Instant) -> f64 {
-    let spent = clock.elapsed().as_secs_f64().max(1e-6);
-    if params.time_budget_ms > 0 { f64::from(params.time_budget_ms) / 1e3 / spent } else { f64::INFINITY }
 }

@@ -4,8 +4,8 @@ use super::bins::{Bins, Division};
 use super::estimate::{BATCHES, STUDENT_T, mean, standard_error};
 use super::lamps::Lamps;
 use super::target::Sampler;
-use super::transport::{self, Batches};
-use super::{Params, Place, Quantity, time_left};
+use super::transport::{Batches, Stop};
+use super::{Params, Place, Quantity};
 use crate::error::{Error, Result};
 use crate::job::Job;
 use crate::render::World;
@@ -48,6 +48,12 @@ impl Estimate {
     /// Half-width of the 95 % confidence interval.
     pub fn half_width(&self) -> DVec3 {
         self.standard_error * STUDENT_T
+    }
+
+    /// Relative half-width of the worst channel that has light.
+    pub(super) fn error(&self) -> f64 {
+        let relative = self.half_width() / self.mean;
+        (0..3).map(|c| relative[c]).filter(|e| e.is_finite()).fold(0.0, f64::max)
     }
 
     pub(super) fn of(batches: impl Fn(usize) -> DVec3) -> Self {
@@ -107,35 +113,32 @@ pub fn lamp_responses(
         .iter()
         .map(|points| Batches::new(world, points, Bins::new(world, emitter, Division::Lamps(lamps)), params.seed))
         .collect::<Result<_>>()?;
-    let clock = std::time::Instant::now();
+    let stop = Stop::new(params);
     let mut growth = f64::INFINITY;
-    let wanted = f64::from(params.target_error);
     loop {
         let share = 1.0 / batches.len() as f64;
         let mut error = 0.0f64;
         for (i, batch) in batches.iter_mut().enumerate() {
             let part = job.part(share * i as f64, (share * (i + 1) as f64).min(1.0));
-            batch.trace_round(growth, params.paths, part)?;
+            batch.trace_round(growth, stop.most, part)?;
             error = error.max(error_of_all(batch));
         }
         let paths = batches[0].paths();
-        let late = params.time_budget_ms > 0 && clock.elapsed().as_millis() >= u128::from(params.time_budget_ms);
-        if wanted > 0.0 && error <= wanted || late || paths >= params.paths {
-            job.report(1.0);
-            let goals = batches.iter().map(|b| PerGoal::new(b, lamps.count())).collect();
-            return Ok(Responses { lamps: lamps.count(), goals, paths });
+        match stop.growth(error, paths) {
+            Some(more) => growth = more,
+            None => {
+                job.report(1.0);
+                let goals = batches.iter().map(|b| PerGoal::new(b, lamps.count())).collect();
+                return Ok(Responses { lamps: lamps.count(), goals, paths });
+            }
         }
-        growth = time_left(params, clock).min(transport::forecast(error, wanted));
     }
 }
 
-/// Relative half-width of the response to all lamps, of the worst channel that has one.
+/// Of the response to all lamps.
 fn error_of_all(batches: &Batches) -> f64 {
-    let means = batches.means();
-    let sums: Vec<DVec3> = means.iter().map(|m| m.bins.iter().sum()).collect();
-    let all = Estimate::of(|b| sums[b]);
-    let relative = all.half_width() / all.mean;
-    (0..3).map(|c| relative[c]).filter(|e| e.is_finite()).fold(0.0, f64::max)
+    let sums: Vec<DVec3> = batches.means().iter().map(|m| m.bins.iter().sum()).collect();
+    Estimate::of(|b| sums[b]).error()
 }
 
 impl PerGoal {

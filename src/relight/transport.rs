@@ -1,6 +1,7 @@
 //! Transport: what paths from the target find, sorted into bins, in independent batches.
 
 use super::bins::{Bins, Sorter};
+use super::Params;
 use super::estimate::BATCHES;
 use super::target::Sampler;
 use crate::error::Result;
@@ -10,6 +11,7 @@ use crate::job::Job;
 use crate::render::World;
 use crate::rng::{Rng, hash};
 use glam::DVec3;
+use std::time::Instant;
 
 /// Paths of a batch in the first round.
 const FIRST_ROUND: u32 = 64;
@@ -17,6 +19,35 @@ const FIRST_ROUND: u32 = 64;
 const GROWTH: [f64; 2] = [1.25, 4.0];
 /// What is added to a forecast of the paths that a given error takes: an error is itself known to 13 % with 32 batches.
 const MARGIN: f64 = 1.1;
+
+/// When the paths are enough: at the error that is wanted, when the time is up, or when they are as many as allowed.
+pub(super) struct Stop {
+    clock: Instant,
+    /// Seconds there are; infinite if nothing limits them.
+    budget: f64,
+    /// Relative half-width; 0 if none is wanted.
+    wanted: f64,
+    pub most: u32,
+}
+
+impl Stop {
+    pub fn new(params: &Params) -> Self {
+        let milliseconds = f64::from(params.time_budget_ms);
+        let budget = if milliseconds > 0.0 { milliseconds / 1e3 } else { f64::INFINITY };
+        Self { clock: Instant::now(), budget, wanted: f64::from(params.target_error), most: params.paths }
+    }
+
+    /// How many times the paths there are should follow, now that they have brought the relative half-width down to
+    /// `error`; `None` when they are enough.
+    pub fn growth(&self, error: f64, paths: u32) -> Option<f64> {
+        let spent = self.clock.elapsed().as_secs_f64().max(1e-6);
+        if error <= self.wanted && self.wanted > 0.0 || spent >= self.budget || paths >= self.most {
+            return None;
+        }
+        let forecast = if self.wanted > 0.0 { MARGIN * (error / self.wanted).powi(2) } else { f64::INFINITY };
+        Some(forecast.min(self.budget / spent))
+    }
+}
 
 /// Paths traced between two looks at the cancel request.
 const CHUNK: u32 = 256;
@@ -111,9 +142,4 @@ impl Batch {
             self.count += 1;
         }
     }
-}
-
-/// How many times the paths there are an error takes that is to fall to `wanted`.
-pub(super) fn forecast(error: f64, wanted: f64) -> f64 {
-    if wanted > 0.0 { MARGIN * (error / wanted).powi(2) } else { f64::INFINITY }
 }
