@@ -10,8 +10,8 @@ use luxfer::exec::Pool;
 use luxfer::image::Image;
 use luxfer::job::Monitor;
 use luxfer::relight::{
-    Aspect, Goal, GroupParams, Importance, Input, Lamps, MapParams, Params, Place, Quantity, Solution, lamp_responses,
-    run, solve_groups,
+    Aspect, Goal, GroupParams, Importance, Input, Lamps, MapParams, Params, Place, Quantity, Sense, Solution,
+    lamp_responses, run, solve_groups,
 };
 use luxfer::render::World;
 use luxfer::scene::{Material, Mesh, Scene, Texture, TextureRef, surface};
@@ -208,6 +208,7 @@ fn map(case: &Case) {
         quantity: Quantity::Outgoing,
         target: Vec3::ONE,
         aspect: Aspect::Colour,
+        sense: [Sense::Exactly; 3],
         weight: 1.0,
     };
     let (seconds, map) = time(Clock::Wall, || {
@@ -242,6 +243,7 @@ fn lamps() {
         quantity: Quantity::Incident,
         target: Vec3::splat(100.0),
         aspect: Aspect::Colour,
+        sense: [Sense::Exactly; 3],
         weight: 1.0,
     }];
     let solve = |scene: &Arc<Scene>| {

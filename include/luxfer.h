@@ -2120,6 +2120,9 @@ typedef struct luxfer_relight luxfer_relight;
 /** What should match the photo: a LUXFER_QUANTITY_ value. */
 typedef int32_t luxfer_quantity;
 
+/** What of the target counts: a LUXFER_FIT_ value. */
+typedef int32_t luxfer_fit;
+
 /** Settings of a relighting. Fill them with luxfer_relight_params_init. */
 typedef struct luxfer_relight_params {
     /** sizeof(luxfer_relight_params), set by luxfer_relight_params_init. */
@@ -2135,8 +2138,8 @@ typedef struct luxfer_relight_params {
     float target_error;
     /** Stop after this many milliseconds; default 0: never. */
     uint32_t time_budget_ms;
-    /** Must be 0. */
-    uint32_t reserved;
+    /** LUXFER_FIT_ value; default LUXFER_FIT_MEAN. */
+    luxfer_fit fit;
     /** Seed of the paths; default 1. */
     uint64_t seed;
 } luxfer_relight_params;
@@ -2176,6 +2179,16 @@ typedef struct luxfer_relight_report {
 
 /** The light that arrives at it, as if it were white. */
 #define LUXFER_QUANTITY_INCIDENT 1
+
+/** Its mean. */
+#define LUXFER_FIT_MEAN 0
+
+/**
+ * Every point of it, by least squares: what gradient descent on texels comes to. Bright points count more, so the answer is
+ * dimmer than that of the mean, by 1 / (1 + CV²) without other light, where CV is the spread of the response over the target
+ * relative to its mean.
+ */
+#define LUXFER_FIT_LEAST_SQUARES 1
 
 /** The target is met. */
 #define LUXFER_REACH_MET 0
@@ -2286,6 +2299,9 @@ typedef struct luxfer_lamps_params {
     uint64_t seed;
 } luxfer_lamps_params;
 
+/** On which side of its value a goal's light should be: a LUXFER_SENSE_ value. */
+typedef int32_t luxfer_sense;
+
 /** All lamps. */
 #define LUXFER_GROUP_ALL 0
 
@@ -2300,6 +2316,15 @@ typedef struct luxfer_lamps_params {
 
 /** Those whose centres agree in their third coordinate: z of meshes. */
 #define LUXFER_GROUP_THIRD 4
+
+/** At it. */
+#define LUXFER_SENSE_EXACTLY 0
+
+/** At it or above: what a standard asks of a desk, or what a clipped channel of a photo says. */
+#define LUXFER_SENSE_AT_LEAST 1
+
+/** At it or below: a limit against glare. */
+#define LUXFER_SENSE_AT_MOST 2
 
 /**
  * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
@@ -2341,6 +2366,17 @@ luxfer_status luxfer_lamps_add_grid(luxfer_lamps *lamps,
                                     const luxfer_illuminance_grid *grid,
                                     float lux,
                                     double weight);
+
+/**
+ * Makes a goal a limit, in each channel for itself: LUXFER_SENSE_ values; those of a goal in lux must be the same. Goals are
+ * counted from 0 as they were added, and ask for just their value until then. Any thread.
+ * LUXFER_NOT_FOUND if there is no such goal.
+ */
+luxfer_status luxfer_lamps_set_sense(luxfer_lamps *lamps,
+                                     uint32_t goal,
+                                     luxfer_sense red,
+                                     luxfer_sense green,
+                                     luxfer_sense blue);
 
 /** Forgets the goals. Any thread. */
 luxfer_status luxfer_lamps_clear_goals(luxfer_lamps *lamps);

@@ -356,7 +356,7 @@ layouts! {
     luxfer_illuminance_params: struct_size columns rows samples seed;
     luxfer_illuminance_grid: struct_size origin across down normal reserved;
     luxfer_illuminance_report: struct_size points least mean largest mean_error;
-    luxfer_relight_params: struct_size quantity paths target_error time_budget_ms reserved seed;
+    luxfer_relight_params: struct_size quantity paths target_error time_budget_ms fit seed;
     luxfer_relight_report: struct_size paths scale half_width response background reach reserved error delta_e;
     luxfer_lamps_params: struct_size group row_tolerance free_colour most evenness tolerance paths target_error
         time_budget_ms reserved seed;

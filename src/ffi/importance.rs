@@ -169,6 +169,7 @@ pub unsafe extern "C" fn luxfer_importance_start(
             target_error: p.target_error,
             time_budget_ms: p.time_budget_ms,
             seed: p.seed,
+            ..relight::Params::default()
         };
         let params = MapParams { width: p.width as usize, height: p.height as usize, tracing };
         let emitter = need(&stage.inputs().emitter, "luxfer_importance_set_scene")?.clone();
@@ -180,6 +181,7 @@ pub unsafe extern "C" fn luxfer_importance_start(
                 quantity,
                 target: Vec3::ONE,
                 aspect: relight::Aspect::Colour,
+                sense: [relight::Sense::Exactly; 3],
                 weight: 1.0,
             };
             Importance::trace(&scene, emitter.material as usize, &goal, &params, job)

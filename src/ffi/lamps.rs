@@ -17,7 +17,7 @@ use super::stage::{Stage, need};
 use super::status::luxfer_status;
 use crate::error::{Error, ErrorKind, Result};
 use crate::relight::{
-    self, Aspect, Colour, Goal, GroupParams, GroupSolution, Lamps, Place, Quantity, Responses, lamp_responses,
+    self, Aspect, Colour, Goal, GroupParams, GroupSolution, Lamps, Place, Quantity, Responses, Sense, lamp_responses,
     solve_groups,
 };
 use crate::scene::Scene;
@@ -42,6 +42,15 @@ pub const LUXFER_GROUP_FIRST: luxfer_group = 2;
 pub const LUXFER_GROUP_SECOND: luxfer_group = 3;
 /// Those whose centres agree in their third coordinate: z of meshes.
 pub const LUXFER_GROUP_THIRD: luxfer_group = 4;
+
+/// On which side of its value a goal's light should be: a LUXFER_SENSE_ value.
+pub type luxfer_sense = i32;
+/// At it.
+pub const LUXFER_SENSE_EXACTLY: luxfer_sense = 0;
+/// At it or above: what a standard asks of a desk, or what a clipped channel of a photo says.
+pub const LUXFER_SENSE_AT_LEAST: luxfer_sense = 1;
+/// At it or below: a limit against glare.
+pub const LUXFER_SENSE_AT_MOST: luxfer_sense = 2;
 
 /// Settings of the calculation. Fill them with luxfer_lamps_params_init.
 #[repr(C)]
@@ -109,6 +118,7 @@ struct Aim {
     quantity: Quantity,
     target: Vec3,
     aspect: Aspect,
+    sense: [Sense; 3],
     weight: f64,
 }
 
@@ -189,7 +199,8 @@ pub unsafe extern "C" fn luxfer_lamps_add_mesh(
 ) -> luxfer_status {
     enter(lamps, |stage| {
         let (quantity, target) = (self::quantity(quantity)?, colour("target", red, green, blue)?);
-        add(stage, Aim { place: Where::Mesh(mesh), quantity, target, aspect: Aspect::Colour, weight })
+        let sense = [Sense::Exactly; 3];
+        add(stage, Aim { place: Where::Mesh(mesh), quantity, target, aspect: Aspect::Colour, sense, weight })
     })
 }
 
@@ -207,7 +218,8 @@ pub unsafe extern "C" fn luxfer_lamps_add_grid(
         let [origin, across, down, normal] = params::read(grid)?.vectors()?;
         let target = colour("lux", lux, lux, lux)? / std::f32::consts::PI;
         let place = Where::Grid { origin, across, down, normal };
-        add(stage, Aim { place, quantity: Quantity::Incident, target, aspect: Aspect::Luminance, weight })
+        let (quantity, sense) = (Quantity::Incident, [Sense::Exactly; 3]);
+        add(stage, Aim { place, quantity, target, aspect: Aspect::Luminance, sense, weight })
     })
 }
 
@@ -226,6 +238,40 @@ fn add(stage: &Stage<Inputs, Output>, aim: Aim) -> Result<()> {
         inputs.goals.push(aim);
         Ok(())
     })
+}
+
+/// Makes a goal a limit, in each channel for itself: LUXFER_SENSE_ values; those of a goal in lux must be the same. Goals are
+/// counted from 0 as they were added, and ask for just their value until then. Any thread.
+/// LUXFER_NOT_FOUND if there is no such goal.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_lamps_set_sense(
+    lamps: *mut luxfer_lamps,
+    goal: u32,
+    red: luxfer_sense,
+    green: luxfer_sense,
+    blue: luxfer_sense,
+) -> luxfer_status {
+    enter(lamps, |stage| {
+        let senses = [sense(red)?, sense(green)?, sense(blue)?];
+        stage.change(|inputs| {
+            let count = inputs.goals.len();
+            let aim = inputs.goals.get_mut(goal as usize).ok_or_else(|| missing("goal", goal, count))?;
+            if aim.aspect == Aspect::Luminance && senses != [senses[0]; 3] {
+                return Err(Error::argument(format!("goal {goal} is in lux; its channels must have the same sense")));
+            }
+            aim.sense = senses;
+            Ok(())
+        })
+    })
+}
+
+fn sense(value: luxfer_sense) -> Result<Sense> {
+    match value {
+        LUXFER_SENSE_EXACTLY => Ok(Sense::Exactly),
+        LUXFER_SENSE_AT_LEAST => Ok(Sense::AtLeast),
+        LUXFER_SENSE_AT_MOST => Ok(Sense::AtMost),
+        other => Err(Error::argument(format!("sense is {other}; it must be a LUXFER_SENSE_ value"))),
+    }
 }
 
 /// Forgets the goals. Any thread.
@@ -343,7 +389,8 @@ impl Aim {
             Where::Mesh(_) => Place::Surface(triangles),
             Where::Grid { origin, across, down, normal } => Place::Grid { origin, across, down, normal },
         };
-        Goal { place, quantity: self.quantity, target: self.target, aspect: self.aspect, weight: self.weight }
+        let Self { quantity, target, aspect, sense, weight, .. } = *self;
+        Goal { place, quantity, target, aspect, sense, weight }
     }
 }
 

@@ -13,7 +13,7 @@ use super::scene::{SceneObject, colour, luxfer_scene, missing};
 use super::stage::{Stage, need};
 use super::status::luxfer_status;
 use crate::error::{Error, Result};
-use crate::relight::{self, Quantity, Reach, Solution};
+use crate::relight::{self, Fit, Quantity, Reach, Solution};
 use crate::scene::Scene;
 use glam::Vec3;
 use std::sync::Arc;
@@ -29,6 +29,15 @@ pub type luxfer_quantity = i32;
 pub const LUXFER_QUANTITY_OUTGOING: luxfer_quantity = 0;
 /// The light that arrives at it, as if it were white.
 pub const LUXFER_QUANTITY_INCIDENT: luxfer_quantity = 1;
+
+/// What of the target counts: a LUXFER_FIT_ value.
+pub type luxfer_fit = i32;
+/// Its mean.
+pub const LUXFER_FIT_MEAN: luxfer_fit = 0;
+/// Every point of it, by least squares: what gradient descent on texels comes to. Bright points count more, so the answer is
+/// dimmer than that of the mean, by 1 / (1 + CV²) without other light, where CV is the spread of the response over the target
+/// relative to its mean.
+pub const LUXFER_FIT_LEAST_SQUARES: luxfer_fit = 1;
 
 /// How far the answer goes to meet the target in one colour channel: a LUXFER_REACH_ value.
 pub type luxfer_reach = i32;
@@ -56,8 +65,8 @@ pub struct luxfer_relight_params {
     pub target_error: f32,
     /// Stop after this many milliseconds; default 0: never.
     pub time_budget_ms: u32,
-    /// Must be 0.
-    pub reserved: u32,
+    /// LUXFER_FIT_ value; default LUXFER_FIT_MEAN.
+    pub fit: luxfer_fit,
     /// Seed of the paths; default 1.
     pub seed: u64,
 }
@@ -74,7 +83,7 @@ unsafe impl Versioned for luxfer_relight_params {
             paths: d.paths,
             target_error: d.target_error,
             time_budget_ms: d.time_budget_ms,
-            reserved: 0,
+            fit: LUXFER_FIT_MEAN,
             seed: d.seed,
         }
     }
@@ -84,6 +93,11 @@ impl luxfer_relight_params {
     pub(super) fn params(&self) -> Result<relight::Params> {
         Ok(relight::Params {
             quantity: quantity(self.quantity)?,
+            fit: match self.fit {
+                LUXFER_FIT_MEAN => Fit::Mean,
+                LUXFER_FIT_LEAST_SQUARES => Fit::LeastSquares,
+                other => return Err(Error::argument(format!("fit is {other}; it must be a LUXFER_FIT_ value"))),
+            },
             paths: self.paths,
             target_error: self.target_error,
             time_budget_ms: self.time_budget_ms,
@@ -248,12 +262,7 @@ pub unsafe extern "C" fn luxfer_relight_set_target(
 }
 
 impl Emitter {
-    pub(super) fn new(
-        context: &Arc<Context>,
-        scene: *mut luxfer_scene,
-        material: u32,
-        mesh: u32,
-    ) -> Result<Self> {
+    pub(super) fn new(context: &Arc<Context>, scene: *mut luxfer_scene, material: u32, mesh: u32) -> Result<Self> {
         let scene = handle::borrow_in(context, scene, "scene")?;
         let emitter = Self { scene, material, mesh };
         emitter.triangles(&emitter.scene.snapshot())?;

@@ -10,11 +10,10 @@ use super::line_search::Slope;
 use crate::error::{Error, ErrorKind, Result};
 
 pub(super) struct Problem<'a> {
-    pub rows: usize,
     /// Row after row.
     pub matrix: &'a [f64],
     pub right: &'a [f64],
-    /// `λ`, relative to the mean square of a row, > 0.
+    /// `λ` > 0.
     pub pull: f64,
     /// `p`, for every unknown.
     pub preferred: &'a [f64],
@@ -33,13 +32,7 @@ impl Problem<'_> {
     /// # Errors
     /// `Internal` if the method does not end, which it must.
     pub fn solve(&self) -> Result<Vec<f64>> {
-        let m = self.rows;
-        let squares: f64 = self.matrix.iter().map(|a| a * a).sum();
-        let lambda = self.pull * squares / m as f64;
-        if !(lambda > 0.0 && lambda.is_finite()) {
-            // Nothing responds: what is preferred is all there is to say.
-            return Ok(self.clipped(&vec![0.0; m]));
-        }
+        let (m, lambda) = (self.right.len(), self.pull);
         let size = self.right.iter().map(|b| b.abs()).fold(0.0, f64::max);
         let scale = size.max(norm(&self.gradient(lambda, &vec![0.0; m])));
         let mut z = vec![0.0; m];
@@ -93,12 +86,12 @@ impl Problem<'_> {
     /// `λ z + A x(z) − b`
     fn gradient(&self, lambda: f64, z: &[f64]) -> Vec<f64> {
         let x = self.clipped(z);
-        (0..self.rows).map(|i| lambda * z[i] + dot(self.row(i), &x) - self.right[i]).collect()
+        (0..self.right.len()).map(|i| lambda * z[i] + dot(self.row(i), &x) - self.right[i]).collect()
     }
 
     /// `−(λ I + Σ a aᵀ)⁻¹ g` over the unknowns between their bounds.
     fn newton_step(&self, lambda: f64, between: &[usize], gradient: &[f64]) -> Vec<f64> {
-        let m = self.rows;
+        let m = gradient.len();
         let mut hessian = vec![0.0; m * m];
         for i in 0..m {
             for k in 0..=i {
@@ -131,7 +124,7 @@ impl Problem<'_> {
     }
 }
 
-fn dot(a: &[f64], b: &[f64]) -> f64 {
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
@@ -163,8 +156,10 @@ mod tests {
     use super::*;
     use crate::rng::Rng;
 
+    /// The pull is relative to the mean square of a row.
     fn solve(rows: usize, matrix: &[f64], right: &[f64], pull: f64, preferred: &[f64], upper: &[f64]) -> Vec<f64> {
-        Problem { rows, matrix, right, pull, preferred, upper }.solve().unwrap()
+        let pull = pull * dot(matrix, matrix) / rows as f64;
+        Problem { matrix, right, pull, preferred, upper }.solve().unwrap()
     }
 
     const FREE: f64 = f64::INFINITY;
@@ -187,8 +182,11 @@ mod tests {
         // Two equations: [[2, 1], [1, 3]] x = [5, 10] has x = [1, 3].
         let x = solve(2, &[2.0, 1.0, 1.0, 3.0], &[5.0, 10.0], 1e-10, &[0.0, 0.0], &[FREE; 2]);
         assert!((x[0] - 1.0).abs() < 1e-8 && (x[1] - 3.0).abs() < 1e-8, "{x:?}");
-        // No response at all.
-        assert_eq!(solve(1, &[0.0], &[1.0], 1e-6, &[0.7], &[FREE]), [0.7]);
+        // No equation at all.
+        assert_eq!(
+            Problem { matrix: &[], right: &[], pull: 1.0, preferred: &[0.7], upper: &[0.5] }.solve().unwrap(),
+            [0.5]
+        );
     }
 
     /// The conditions of Karush, Kuhn and Tucker hold at the answer of random problems of all shapes, and of groups that

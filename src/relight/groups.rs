@@ -5,13 +5,15 @@
 //! with light", Schoeneman et al. 1993, solves the same sum without it). With one group and one goal this is the closed
 //! form of [`super::run`].
 //!
+//! A goal may be a limit, which counts only where it is broken ([`Sense`]).
+//!
 //! The least squares are between goals, each a mean over many paths: texels, whose noise would make the answer dark, are
 //! never compared one by one.
 
 use super::Reach;
-use super::bounded::Problem;
 use super::estimate::{BATCHES, STUDENT_T, mean, pseudo_values, standard_error};
 use super::responses::{Aspect, Estimate, Goal, Responses};
+use super::sided::{self, Problem, Sense};
 use crate::error::{Error, ErrorKind, Result, check_range};
 use glam::DVec3;
 
@@ -112,6 +114,9 @@ fn check(responses: &Responses, goals: &[Goal], params: &GroupParams) -> Result<
             check_range("target", channel, 0.0, f32::MAX)?;
         }
         check_range("weight", goal.weight, 0.0, 1e12)?;
+        if goal.aspect == Aspect::Luminance && goal.sense != [goal.sense[0]; 3] {
+            return Err(Error::argument("a goal of luminance has limits that differ between channels; give it one"));
+        }
     }
     if params.colour == Colour::Free && goals.iter().any(|g| g.aspect == Aspect::Luminance) {
         return Err(Error::argument(
@@ -197,31 +202,28 @@ impl System<'_> {
     /// One problem of all goals in some channels.
     fn solve_channels(&self, measured: &Measured, upper: &[f64], channels: &[usize]) -> Result<Vec<f64>> {
         let groups = self.responses.lamps();
-        let (mut matrix, mut right) = (Vec::new(), Vec::new());
+        let (mut matrix, mut right, mut senses) = (Vec::new(), Vec::new(), Vec::new());
         for ((goal, row), background) in self.goals.iter().zip(&measured.rows).zip(&measured.background) {
             let target = goal.target.as_dvec3();
-            let senses: Vec<DVec3> = match goal.aspect {
-                Aspect::Colour => channels.iter().map(|c| DVec3::AXES[*c]).collect(),
-                Aspect::Luminance => vec![LUMINANCE],
+            let terms: Vec<(DVec3, Sense)> = match goal.aspect {
+                Aspect::Colour => channels.iter().map(|&c| (DVec3::AXES[c], goal.sense[c])).collect(),
+                Aspect::Luminance => vec![(LUMINANCE, goal.sense[0])],
             };
             // A goal of darkness is measured by what all lamps would bring.
             let bright = target.max_element();
             let size = if bright > 0.0 { bright } else { row.iter().sum::<DVec3>().max_element() };
             let weight = if size > 0.0 { goal.weight / size } else { 0.0 };
-            for sense in senses {
-                matrix.extend(row.iter().map(|r| r.dot(sense) * weight));
-                right.push((target - background).dot(sense) * weight);
+            for (part, sense) in terms {
+                matrix.extend(row.iter().map(|r| r.dot(part) * weight));
+                right.push((target - background).dot(part) * weight);
+                senses.push(sense);
             }
         }
-        // Equal lamps that come nearest: the least squares of one unknown.
-        let rows = right.len();
         let together: Vec<f64> = matrix.chunks_exact(groups).map(|row| row.iter().sum()).collect();
-        let square: f64 = together.iter().map(|a| a * a).sum();
-        let along: f64 = together.iter().zip(&right).map(|(a, b)| a * b).sum();
-        let equal = if square > 0.0 { (along / square).max(0.0) } else { 1.0 };
+        let equal = sided::all_alike(&together, &right, &senses);
         let preferred: Vec<f64> = upper.iter().map(|u| equal.min(*u)).collect();
-        Problem { rows, matrix: &matrix, right: &right, pull: self.params.evenness, preferred: &preferred, upper }
-            .solve()
+        let pull = self.params.evenness;
+        Problem { matrix: &matrix, right: &right, senses: &senses, pull, preferred: &preferred, upper }.solve()
     }
 
     fn outcome(&self, goal: usize, scale: &[DVec3]) -> Outcome {
@@ -236,11 +238,11 @@ impl System<'_> {
         let goal_of = &self.goals[goal];
         let target = goal_of.target.as_dvec3();
         let brightest = target.max_element();
-        let judge = |sense: DVec3| {
-            let batches: [f64; BATCHES] = std::array::from_fn(|b| light(b).dot(sense));
-            let miss = mean(&batches) - target.dot(sense);
+        let judge = |part: DVec3, sense: Sense| {
+            let batches: [f64; BATCHES] = std::array::from_fn(|b| light(b).dot(part));
+            let miss = sense.miss(mean(&batches) - target.dot(part));
             let allowed = self.params.tolerance * brightest + STUDENT_T * standard_error(&batches);
-            let dark = (0..BATCHES).all(|b| self.responses.batch(goal, b).iter().all(|r| r.dot(sense) == 0.0));
+            let dark = (0..BATCHES).all(|b| self.responses.batch(goal, b).iter().all(|r| r.dot(part) == 0.0));
             match () {
                 () if miss.abs() <= allowed => Reach::Met,
                 () if miss > 0.0 => Reach::TooBright,
@@ -249,8 +251,8 @@ impl System<'_> {
             }
         };
         let reach = match goal_of.aspect {
-            Aspect::Colour => DVec3::AXES.map(judge),
-            Aspect::Luminance => [judge(LUMINANCE); 3],
+            Aspect::Colour => std::array::from_fn(|c| judge(DVec3::AXES[c], goal_of.sense[c])),
+            Aspect::Luminance => [judge(LUMINANCE, goal_of.sense[0]); 3],
         };
         Outcome { achieved: all.mean, half_width: all.half_width(), reach }
     }
@@ -263,7 +265,12 @@ impl System<'_> {
         let &first = missed.first()?;
         let outcome = &outcomes[first];
         let channel = outcome.reach.iter().position(|r| *r != Reach::Met)?;
-        let (name, sense) = match self.goals[first].aspect {
+        let side = match self.goals[first].sense[channel] {
+            Sense::Exactly => "",
+            Sense::AtLeast => "at least ",
+            Sense::AtMost => "at most ",
+        };
+        let (name, part) = match self.goals[first].aspect {
             Aspect::Colour => (["red", "green", "blue"][channel], DVec3::AXES[channel]),
             Aspect::Luminance => ("luminance", LUMINANCE),
         };
@@ -288,9 +295,9 @@ impl System<'_> {
             },
         };
         Some(format!(
-            "goal {first} asks for {:.4} cd/m² in {name} and gets {:.4}: {why} ({} of {} goals are missed)",
-            self.goals[first].target.as_dvec3().dot(sense),
-            outcome.achieved.dot(sense),
+            "goal {first} asks for {side}{:.4} cd/m² in {name} and gets {:.4}: {why} ({} of {} goals are missed)",
+            self.goals[first].target.as_dvec3().dot(part),
+            outcome.achieved.dot(part),
             missed.len(),
             outcomes.len()
         ))

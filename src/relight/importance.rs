@@ -149,7 +149,7 @@ impl Importance {
             check_range("target", channel, 0.0, f32::MAX)?;
         }
         let (response, background) = (response.measured.clone(), self.background.clone());
-        solve::run(&Measured { response, background, paths: self.paths }, target.as_dvec3())
+        solve::run(&Measured { response, background, pairs: None, paths: self.paths }, target.as_dvec3())
     }
 
     /// Mean emission of each cell.

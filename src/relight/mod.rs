@@ -20,6 +20,7 @@ mod importance;
 mod lamps;
 mod line_search;
 mod responses;
+mod sided;
 mod solve;
 mod target;
 mod transport;
@@ -29,6 +30,7 @@ pub use groups::{Colour, GroupParams, GroupSolution, Outcome, solve_groups};
 pub use importance::{Importance, MapParams, Response};
 pub use lamps::Lamps;
 pub use responses::{Aspect, Estimate, Goal, Responses, lamp_responses};
+pub use sided::Sense;
 
 #[cfg(test)]
 mod tests;
@@ -47,6 +49,17 @@ pub enum Quantity {
     Outgoing,
     /// The light that arrives at it, as if it were white.
     Incident,
+}
+
+/// What of the target counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fit {
+    /// Its mean: what the paper asks for, a single colour.
+    Mean,
+    /// Every point of it, by least squares: what gradient descent on texels comes to (Lipp et al. 2024). Bright points count
+    /// more, so the answer is dimmer than that of the mean by `1 / (1 + CV²)` without other light, where CV is the spread
+    /// of the response over the target relative to its mean.
+    LeastSquares,
 }
 
 /// How far an answer could go to meet the target in one colour channel.
@@ -90,6 +103,8 @@ pub struct Input<'a> {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Params {
     pub quantity: Quantity,
+    /// Used by [`run`] alone.
+    pub fit: Fit,
     /// Most paths to trace, in `[1024, 1 << 30]`.
     pub paths: u32,
     /// Stop when the half-width of the widest 95 % interval is below this share of its answer, in `[0, 1]`; 0 = never.
@@ -101,7 +116,14 @@ pub struct Params {
 
 impl Default for Params {
     fn default() -> Self {
-        Self { quantity: Quantity::Outgoing, paths: 1 << 20, target_error: 0.01, time_budget_ms: 0, seed: 1 }
+        Self {
+            quantity: Quantity::Outgoing,
+            fit: Fit::Mean,
+            paths: 1 << 20,
+            target_error: 0.01,
+            time_budget_ms: 0,
+            seed: 1,
+        }
     }
 }
 
@@ -152,11 +174,14 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Solution> {
     let points = target::Sampler::new(scene, Place::Surface(input.target_triangles), params.quantity)?;
     let bins = Bins::new(input.world, input.emitter, Division::Whole);
     let mut batches = Batches::new(input.world, &points, bins, params.seed)?;
+    if params.fit == Fit::LeastSquares {
+        batches = batches.in_pairs();
+    }
     let stop = Stop::new(params);
     let mut growth = f64::INFINITY;
     loop {
         batches.trace_round(growth, stop.most, job)?;
-        let solution = solve::run(&whole(&batches), input.target.as_dvec3());
+        let solution = solve::run(&whole(&batches, params.fit), input.target.as_dvec3());
         let error = solution.as_ref().map_or(f64::INFINITY, Solution::error);
         match stop.growth(error, batches.paths()) {
             Some(more) => growth = more,
@@ -169,11 +194,12 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Solution> {
 }
 
 /// The response of the target to all of the emission.
-fn whole(batches: &Batches) -> solve::Measured {
+fn whole(batches: &Batches, fit: Fit) -> solve::Measured {
     let means = batches.means();
     solve::Measured {
         response: means.iter().map(|m| m.bins[0]).collect(),
         background: means.iter().map(|m| m.others).collect(),
+        pairs: (fit == Fit::LeastSquares).then(|| means.iter().map(|m| m.pairs).collect()),
         paths: batches.paths(),
     }
 }

@@ -3,6 +3,7 @@
 use super::bins::{Bins, Division};
 use super::estimate::{BATCHES, STUDENT_T, mean, standard_error};
 use super::lamps::Lamps;
+use super::sided::Sense;
 use super::target::Sampler;
 use super::transport::{Batches, Stop};
 use super::{Params, Place, Quantity};
@@ -28,6 +29,8 @@ pub struct Goal<'a> {
     /// Mean radiance it should have in cd/m² per channel, ≥ 0; in incident light illuminance / π.
     pub target: Vec3,
     pub aspect: Aspect,
+    /// On which side of the target each channel should be; of luminance all alike.
+    pub sense: [Sense; 3],
     /// What missing it by a share of itself weighs beside other goals, ≥ 0.
     pub weight: f64,
 }

@@ -1,6 +1,7 @@
 //! The closed form and its interval, from the means of independent batches.
 
 use super::estimate::{BATCHES, STUDENT_T, mean, pseudo_values, standard_error, without};
+use super::transport::Pairs;
 use super::{Reach, Solution};
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::colour;
@@ -10,6 +11,8 @@ use glam::DVec3;
 pub(super) struct Measured {
     pub response: Vec<DVec3>,
     pub background: Vec<DVec3>,
+    /// For least squares over the target's points.
+    pub pairs: Option<Vec<Pairs>>,
     /// Paths behind it.
     pub paths: u32,
 }
@@ -18,6 +21,8 @@ pub(super) struct Measured {
 struct Channel {
     response: [f64; BATCHES],
     background: [f64; BATCHES],
+    /// Means over the target's points of the squared response, and of the response times the background.
+    squares: Option<[[f64; BATCHES]; 2]>,
 }
 
 struct Answer {
@@ -32,6 +37,10 @@ pub(super) fn run(measured: &Measured, target: DVec3) -> Result<Solution> {
     let channels: [Channel; 3] = std::array::from_fn(|c| Channel {
         response: std::array::from_fn(|b| measured.response[b][c]),
         background: std::array::from_fn(|b| measured.background[b][c]),
+        squares: measured
+            .pairs
+            .as_ref()
+            .map(|pairs| [std::array::from_fn(|b| pairs[b].own[c]), std::array::from_fn(|b| pairs[b].cross[c])]),
     });
     let answers: [Answer; 3] = std::array::from_fn(|c| channels[c].solve(target[c]));
     let reach = answers.each_ref().map(|a| a.reach);
@@ -55,17 +64,26 @@ pub(super) fn run(measured: &Measured, target: DVec3) -> Result<Solution> {
 }
 
 impl Channel {
-    /// `(target - background) / response` and its interval by the jackknife.
+    /// The scale from means over all batches, or over some, as `mean` takes them: `(t - E b) / E r` of the mean, and
+    /// `(t E r - E br) / E r²` of least squares.
+    fn scale(&self, target: f64, mean: impl Fn(&[f64; BATCHES]) -> f64) -> f64 {
+        match &self.squares {
+            None => (target - mean(&self.background)) / mean(&self.response),
+            Some([own, cross]) => (target * mean(&self.response) - mean(cross)) / mean(own),
+        }
+    }
+
+    /// The scale and its interval by the jackknife.
     fn solve(&self, target: f64) -> Answer {
-        let (response, background) = (mean(&self.response), mean(&self.background));
+        let response = mean(&self.response);
         let noise = standard_error(&self.response);
-        if response.is_nan() || response <= 3.0 * noise {
+        // Without any batch there must be something left to divide by.
+        let paired = self.squares.is_none_or(|[own, _]| own.iter().filter(|square| **square > 0.0).count() > 1);
+        if response.is_nan() || response <= 3.0 * noise || !paired {
             return Answer { scale: 0.0, half_width: 0.0, reach: Reach::Dark, deviations: [0.0; BATCHES] };
         }
-        let rest: [f64; BATCHES] = std::array::from_fn(|b| {
-            (target - without(background, self.background[b])) / without(response, self.response[b])
-        });
-        let alone = pseudo_values((target - background) / response, &rest);
+        let rest = std::array::from_fn(|b| self.scale(target, |values| without(mean(values), values[b])));
+        let alone = pseudo_values(self.scale(target, mean), &rest);
         let scale = mean(&alone);
         let half_width = STUDENT_T * standard_error(&alone);
         let deviations = alone.map(|a| a - scale);

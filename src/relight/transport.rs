@@ -1,7 +1,7 @@
 //! Transport: what paths from the target find, sorted into bins, in independent batches.
 
-use super::bins::{Bins, Sorter};
 use super::Params;
+use super::bins::{Bins, Sorter};
 use super::estimate::BATCHES;
 use super::target::Sampler;
 use crate::error::Result;
@@ -59,14 +59,29 @@ struct Batch {
     bins: Vec<DVec3>,
     /// Of all other light.
     others: DVec3,
+    /// Of what two paths from the same point found: the products of their light of the emission, and of the emission's of
+    /// one with all other light of the other.
+    pairs: Pairs,
     /// Paths that started beside the lamps.
     count: u32,
+}
+
+/// Means of products over pairs of paths that share their first point and nothing else: unbiased moments of the light
+/// there, which the squares of single paths, noise included, are not.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Pairs {
+    /// Of the squared response.
+    pub own: DVec3,
+    /// Of the response times the background.
+    pub cross: DVec3,
 }
 
 /// Means over the paths of a batch.
 pub(super) struct Means {
     pub bins: Vec<DVec3>,
     pub others: DVec3,
+    /// 0 unless paths come in pairs.
+    pub pairs: Pairs,
 }
 
 pub(super) struct Batches<'a> {
@@ -74,6 +89,7 @@ pub(super) struct Batches<'a> {
     points: &'a Sampler<'a>,
     bins: Bins<'a>,
     seed: u64,
+    paired: bool,
     batches: Vec<Batch>,
     /// Paths traced per batch.
     traced: u32,
@@ -83,9 +99,15 @@ impl<'a> Batches<'a> {
     pub fn new(world: &'a World, points: &'a Sampler<'a>, bins: Bins<'a>, seed: u64) -> Result<Self> {
         let mut batches = Vec::with_capacity(BATCHES);
         for _ in 0..BATCHES {
-            batches.push(Batch { bins: try_vec(bins.count(), DVec3::ZERO)?, others: DVec3::ZERO, count: 0 });
+            let (others, pairs) = (DVec3::ZERO, Pairs::default());
+            batches.push(Batch { bins: try_vec(bins.count(), DVec3::ZERO)?, others, pairs, count: 0 });
         }
-        Ok(Self { world, points, bins, seed, batches, traced: 0 })
+        Ok(Self { world, points, bins, seed, paired: false, batches, traced: 0 })
+    }
+
+    /// Sends two paths from each point; for a single bin.
+    pub fn in_pairs(self) -> Self {
+        Self { paired: true, ..self }
     }
 
     /// Paths traced so far.
@@ -100,10 +122,17 @@ impl<'a> Batches<'a> {
         let wanted = f64::from(self.traced) * growth.clamp(GROWTH[0], GROWTH[1]);
         let (first, last) = (self.traced, (wanted as u32).max(FIRST_ROUND).min(most));
         let part = job.part(f64::from(first) / f64::from(most), f64::from(last) / f64::from(most));
-        let (world, points, bins, seed) = (self.world, self.points, &self.bins, self.seed);
+        let (world, points, bins) = (self.world, self.points, &self.bins);
+        let (seed, paired) = (self.seed, self.paired);
         // A batch is a unit of work: its sums are made in the order of its paths, whatever the number of threads.
         exec::for_rows(&mut self.batches, 1, part, |index, batch| {
-            batch[0].extend(world, points, bins, hash(seed, &[index as u64]), first..last, job);
+            let seed = hash(seed, &[index as u64]);
+            if paired {
+                // Those that begin in this round.
+                batch[0].extend_pairs(world, points, bins, seed, first.div_ceil(2)..last.div_ceil(2), job);
+            } else {
+                batch[0].extend(world, points, bins, seed, first..last, job);
+            }
         })?;
         job.check()?;
         self.traced = last;
@@ -114,7 +143,8 @@ impl<'a> Batches<'a> {
     pub fn means(&self) -> Vec<Means> {
         let mean = |batch: &Batch| {
             let n = f64::from(batch.count.max(1));
-            Means { bins: batch.bins.iter().map(|sum| sum / n).collect(), others: batch.others / n }
+            let pairs = Pairs { own: batch.pairs.own / (n / 2.0), cross: batch.pairs.cross / (n / 2.0) };
+            Means { bins: batch.bins.iter().map(|sum| sum / n).collect(), others: batch.others / n, pairs }
         };
         self.batches.iter().map(mean).collect()
     }
@@ -140,6 +170,38 @@ impl Batch {
             let mut sorter = Sorter::new(bins, target.factor, &mut self.bins, &mut self.others);
             target.gather(world, seed, index, &mut sorter);
             self.count += 1;
+        }
+    }
+
+    /// The same by two paths from each point.
+    fn extend_pairs(
+        &mut self,
+        world: &World,
+        points: &Sampler,
+        bins: &Bins,
+        seed: u64,
+        pairs: std::ops::Range<u32>,
+        job: Job,
+    ) {
+        let mut rng = Rng::new(seed, &[]);
+        let shift = [rng.next_f64(), rng.next_f64()];
+        let seeds = [seed, hash(seed, &[1])];
+        for index in pairs {
+            if index % CHUNK == 0 && job.is_cancelled() {
+                return;
+            }
+            let Some(target) = points.point(index, shift) else { continue };
+            let [a, b] = seeds.map(|seed| {
+                let (mut response, mut background) = (DVec3::ZERO, DVec3::ZERO);
+                let sums = std::slice::from_mut(&mut response);
+                target.gather(world, seed, index, &mut Sorter::new(bins, target.factor, sums, &mut background));
+                (response, background)
+            });
+            self.bins[0] += a.0 + b.0;
+            self.others += a.1 + b.1;
+            self.pairs.own += a.0 * b.0;
+            self.pairs.cross += 0.5 * (a.0 * b.1 + b.0 * a.1);
+            self.count += 2;
         }
     }
 }

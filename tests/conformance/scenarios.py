@@ -232,6 +232,7 @@ def lamps() -> Scenario:
     s.call("lamps_add_grid", stage, struct("illuminance_grid", across=array("float", 1, 0, 0), down=array("float", 0, 0, 1)), 500.0, 1.0)
     s.call("lamps_clear_goals", stage)
     s.call("lamps_add_mesh", stage, 0, 0, 2.0, 2.0, 2.0, 1.0)
+    s.call("lamps_set_sense", stage, 0, 1, 2, 0)
     s.run("lamps_start", stage, struct("lamps_params", paths=2048))
     s.call("lamps_get_report", stage, struct("lamps_report", "size"))
     s.call("lamps_get_lamp", stage, 0, struct("lamp", "size"))

@@ -402,6 +402,7 @@ void stages_say_what_they_lack() {
     CHECK_ERROR(relight.start(), LUXFER_INVALID_OPERATION);
     CHECK_ERROR(lamps.start(), LUXFER_INVALID_OPERATION);
     CHECK_ERROR(lamps.add_mesh(0, LUXFER_QUANTITY_OUTGOING, {1, 1, 1}), LUXFER_INVALID_OPERATION);
+    CHECK_ERROR(lamps.set_sense(0, LUXFER_SENSE_AT_LEAST), LUXFER_NOT_FOUND);
     CHECK_ERROR(importance.start(), LUXFER_INVALID_OPERATION);
     CHECK_ERROR(guides.start(), LUXFER_INVALID_OPERATION);
     CHECK_ERROR(rectify.report(), LUXFER_NOT_READY);

@@ -174,6 +174,12 @@ class Rendering(Case):
             self.assertAlmostEqual(found, lux, delta=0.02 * lux)
         scaled = lamps.texture.numpy()
         np.testing.assert_allclose(scaled[3, 2], lamps.lamp(0).scale, rtol=1e-5)
+        # Limits: neither desk may have less, and what they have more is theirs.
+        for goal in (0, 1):
+            lamps.set_sense(goal, "at-least")
+        self.assertEqual(lamps.run(paths=1 << 14).report.met, 1, lamps.reason)
+        for goal in (0, 1):
+            lamps.set_sense(goal, ("exactly",) * 3)
         # All lamps alike cannot light one desk more than the other.
         report = lamps.run(paths=1 << 14, group="all", tolerance=0.001).report
         self.assertEqual((report.groups, report.met), (1, 0))

@@ -32,6 +32,12 @@ public:
         return call(luxfer_lamps_add_grid, &grid, lux, weight);
     }
 
+    /// Makes a goal a limit; a LUXFER_SENSE_ value for all channels, or for each.
+    Result<> set_sense(std::uint32_t goal, luxfer_sense sense) const { return set_sense(goal, sense, sense, sense); }
+    Result<> set_sense(std::uint32_t goal, luxfer_sense red, luxfer_sense green, luxfer_sense blue) const {
+        return call(luxfer_lamps_set_sense, goal, red, green, blue);
+    }
+
     Result<> clear_goals() const { return call(luxfer_lamps_clear_goals); }
 
     Result<Job> start(const luxfer_lamps_params &params = LampsParams()) const {

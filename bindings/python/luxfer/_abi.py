@@ -106,6 +106,8 @@ LUXFER_ILLUMINANCE_LUX = 0
 LUXFER_ILLUMINANCE_ERROR = 1
 LUXFER_QUANTITY_OUTGOING = 0
 LUXFER_QUANTITY_INCIDENT = 1
+LUXFER_FIT_MEAN = 0
+LUXFER_FIT_LEAST_SQUARES = 1
 LUXFER_REACH_MET = 0
 LUXFER_REACH_TOO_BRIGHT = 1
 LUXFER_REACH_DARK = 2
@@ -115,6 +117,9 @@ LUXFER_GROUP_EACH = 1
 LUXFER_GROUP_FIRST = 2
 LUXFER_GROUP_SECOND = 3
 LUXFER_GROUP_THIRD = 4
+LUXFER_SENSE_EXACTLY = 0
+LUXFER_SENSE_AT_LEAST = 1
+LUXFER_SENSE_AT_MOST = 2
 LUXFER_DISTRIBUTION_IES = 0
 LUXFER_DISTRIBUTION_LDT = 1
 LUXFER_STAGE_VIEW = 0
@@ -686,10 +691,10 @@ class luxfer_relight_params(Structure):
         ("paths", c_uint32),
         ("target_error", c_float),
         ("time_budget_ms", c_uint32),
-        ("reserved", c_uint32),
+        ("fit", c_int32),
         ("seed", c_uint64),
     ]
-    enumerations: dict[str, type] = {"quantity": types.Quantity}
+    enumerations: dict[str, type] = {"quantity": types.Quantity, "fit": types.Fit}
 
 
 class luxfer_relight_report(Structure):
@@ -1180,6 +1185,7 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_lamps_set_scene": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("scene", POINTER(luxfer_scene)), ("material", c_uint32)]),
     "luxfer_lamps_add_mesh": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("mesh", c_uint32), ("quantity", c_int32), ("red", c_float), ("green", c_float), ("blue", c_float), ("weight", c_double)]),
     "luxfer_lamps_add_grid": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("grid", POINTER(luxfer_illuminance_grid)), ("lux", c_float), ("weight", c_double)]),
+    "luxfer_lamps_set_sense": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("goal", c_uint32), ("red", c_int32), ("green", c_int32), ("blue", c_int32)]),
     "luxfer_lamps_clear_goals": (c_int32, [("lamps", POINTER(luxfer_lamps))]),
     "luxfer_lamps_start": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("params", POINTER(luxfer_lamps_params)), ("job", POINTER(POINTER(luxfer_job)))]),
     "luxfer_lamps_retain": (c_int32, [("lamps", POINTER(luxfer_lamps))]),

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, cast
 from . import _abi, _params
 from .image import Image
 from .job import Job, Progress, StageBase
-from .types import Lamp, LampsGoal, LampsReport, LampsResponse, Quantity
+from .types import Lamp, LampsGoal, LampsReport, LampsResponse, Quantity, Sense
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -46,6 +46,12 @@ class Lamps(StageBase):
     def add_grid(self, grid: IlluminanceGrid | Mapping[str, Any], lux: float, weight: float = 1) -> None:
         """The mean illuminance a calculation grid should have: origin, across, down and normal, in metres."""
         self._call("add_grid", _params.fill(_abi.luxfer_illuminance_grid, grid, [], "grid."), lux, weight)
+
+    def set_sense(self, goal: int, sense: Sense | str | Sequence[Sense | str]) -> None:
+        """Makes a goal a limit, "at-least" or "at-most", in all channels or in each for itself."""
+        one = isinstance(sense, (Sense, str))
+        red, green, blue = (_params.member(Sense, s) for s in ((sense,) * 3 if one else sense))
+        self._call("set_sense", goal, red, green, blue)
 
     def clear_goals(self) -> None:
         """Forgets the goals."""

@@ -270,6 +270,17 @@ class Quantity(IntEnum):
     """The light that arrives at it, as if it were white."""
 
 
+class Fit(IntEnum):
+    """What of the target counts."""
+
+    MEAN = 0
+    """Its mean."""
+    LEAST_SQUARES = 1
+    """Every point of it, by least squares: what gradient descent on texels comes to. Bright points count more,
+    so the answer is dimmer than that of the mean, by 1 / (1 + CV²) without other light, where CV is the spread
+    of the response over the target relative to its mean."""
+
+
 class Reach(IntEnum):
     """How far the answer goes to meet the target in one colour channel."""
 
@@ -296,6 +307,17 @@ class Group(IntEnum):
     """Those whose centres agree in their second coordinate: v of a texture, y of meshes."""
     THIRD = 4
     """Those whose centres agree in their third coordinate: z of meshes."""
+
+
+class Sense(IntEnum):
+    """On which side of its value a goal's light should be."""
+
+    EXACTLY = 0
+    """At it."""
+    AT_LEAST = 1
+    """At it or above: what a standard asks of a desk, or what a clipped channel of a photo says."""
+    AT_MOST = 2
+    """At it or below: a limit against glare."""
 
 
 class DistributionFormat(IntEnum):
@@ -1110,6 +1132,8 @@ class RelightParams(TypedDict, total=False):
     default 0.01; 0 = never."""
     time_budget_ms: int
     """Stop after this many milliseconds; default 0: never."""
+    fit: Fit | str | int
+    """Fit; default Fit.MEAN."""
     seed: int
     """Seed of the paths; default 1."""
 

@@ -23,7 +23,7 @@ fn lamp_room(lamps: &[[usize; 2]], values: &[f32]) -> (World, Lamps) {
 const FLOOR: &[(usize, usize)] = &[(0, 0), (0, 1)];
 
 fn goal(place: Place<'_>, target: Vec3) -> Goal<'_> {
-    Goal { place, quantity: Quantity::Incident, target, aspect: Aspect::Colour, weight: 1.0 }
+    Goal { place, quantity: Quantity::Incident, target, aspect: Aspect::Colour, sense: EXACTLY, weight: 1.0 }
 }
 
 /// A horizontal square of side 1 m below the ceiling's point (x, z).
@@ -157,6 +157,44 @@ fn lux_are_luminance() {
     assert!((illuminance - 500.0).abs() < 0.1 && outcome.achieved.x > 1.05 * outcome.achieved.z, "{outcome:?}");
     let free = GroupParams { colour: Colour::Free, ..GroupParams::default() };
     assert_eq!(solve_groups(&responses, &[lux], &free).unwrap_err().kind, ErrorKind::InvalidArgument);
+}
+
+/// Two lamps over two desks: limits are kept where they can be, by as little light as it takes.
+#[test]
+fn limits_count_on_one_side() {
+    let (world, lamps) = lamp_room(&[[3, 3], [12, 12]], &[1.0; 2]);
+    let at = |x, z, target: f32, sense| Goal { sense: [sense; 3], ..goal(desk(x, z), Vec3::splat(target)) };
+    let traced = [at(0.9, 0.9, 1.0, Sense::Exactly), at(3.1, 3.1, 1.0, Sense::Exactly)];
+    let responses = respond(&world, &lamps, &traced);
+    let solve = |first, second| {
+        let goals = [Goal { place: traced[0].place, ..first }, Goal { place: traced[1].place, ..second }];
+        solve_groups(&responses, &goals, &GroupParams { tolerance: 1e-4, ..GroupParams::default() }).unwrap()
+    };
+    let one = |least, sense| at(0.0, 0.0, least, sense);
+    // Lamps that are alike give both desks at least what the darker of them needs, and the brighter one more.
+    let both = responses.all(0).mean.x.min(responses.all(1).mean.x);
+    let solution = solve(one(40.0, Sense::AtLeast), one(40.0, Sense::AtLeast));
+    assert!(solution.unreachable.is_none(), "{solution:?}");
+    let power = solution.scale.iter().map(|x| x.x).fold(0.0, f64::max);
+    assert!((power / (40.0 / both) - 1.0).abs() < 1e-3, "{solution:?} {both}");
+    // A cap that all lamps alike would break: the power moves to the other desk's lamp.
+    let solution = solve(one(40.0, Sense::AtLeast), one(25.0, Sense::AtMost));
+    let light: Vec<f64> = solution.outcomes.iter().map(|o| o.achieved.x).collect();
+    assert!(light[0] > 39.99 && light[1] < 25.01 && solution.unreachable.is_none(), "{solution:?}");
+    // Where nothing is asked for, lamps stay as they are, or go down to the cap.
+    let caps = [1e3, 0.5 * responses.all(0).mean.x as f32];
+    assert_eq!(solve(one(caps[0], Sense::AtMost), one(1e3, Sense::AtMost)).scale, [DVec3::ONE; 2]);
+    let solution = solve(one(caps[1], Sense::AtMost), one(1e3, Sense::AtMost));
+    assert!((solution.outcomes[0].achieved.x / f64::from(caps[1]) - 1.0).abs() < 1e-3, "{solution:?}");
+    // What cannot be is told with its side.
+    let goals = [at(0.9, 0.9, 40.0, Sense::AtLeast), at(3.1, 3.1, 1.0, Sense::AtMost)];
+    let torn = solve_groups(&responses, &goals, &GroupParams::default()).unwrap();
+    assert_eq!([0, 1].map(|goal| torn.outcomes[goal].reach[0]), [Reach::TooDim, Reach::TooBright]);
+    assert!(torn.unreachable.unwrap().contains("at least 40.0000 cd/m²"));
+    // Luminance has one side only.
+    let mixed = [Sense::AtLeast, Sense::AtMost, Sense::Exactly];
+    let goals = [Goal { aspect: Aspect::Luminance, sense: mixed, ..traced[0] }, traced[1]];
+    assert_eq!(solve_groups(&responses, &goals, &GroupParams::default()).unwrap_err().kind, ErrorKind::InvalidArgument);
 }
 
 /// Colours that are free are solved channel by channel, as the closed form does.

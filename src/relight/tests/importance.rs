@@ -14,7 +14,14 @@ fn coloured_room() -> Scene {
 }
 
 fn floor(quantity: Quantity) -> Goal<'static> {
-    Goal { place: Place::Surface(FLOOR), quantity, target: Vec3::ONE, aspect: Aspect::Colour, weight: 1.0 }
+    Goal {
+        place: Place::Surface(FLOOR),
+        quantity,
+        target: Vec3::ONE,
+        aspect: Aspect::Colour,
+        sense: EXACTLY,
+        weight: 1.0,
+    }
 }
 
 fn map(scene: &Scene, cells: usize, error: f32) -> Importance {

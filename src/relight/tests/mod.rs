@@ -1,6 +1,7 @@
 mod extremes;
 mod groups;
 mod importance;
+mod least_squares;
 
 use super::*;
 use crate::error::ErrorKind;
@@ -9,6 +10,8 @@ use crate::job::Monitor;
 use crate::scene::{Material, Mesh, PunctualLight, Scene};
 use glam::Vec2;
 use std::sync::Arc;
+
+const EXACTLY: [Sense; 3] = [Sense::Exactly; 3];
 
 /// A box room of `size` metres whose six sides face inwards: floor, ceiling, then the walls. Material 0 is everything but
 /// the ceiling, which has material 1.

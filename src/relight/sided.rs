@@ -1,0 +1,236 @@
+//! Least squares within bounds, of which some terms count on one side only: what should be at least, or at most, a value.
+//!
+//! Minimises `½ Σ ψ(a x − b)² + ½ λ |x − p|²` over `0 ≤ x ≤ u`, where `ψ(r)` is `r`, its negative part for "at least", its
+//! positive part for "at most". The function is convex, smooth and piecewise quadratic. Newton's method: with the terms that
+//! count where it stands it is a problem of [`super::bounded`], towards whose answer it goes as far as the function falls.
+//! That ends after finitely many steps (Sun 1997, "On piecewise quadratic Newton and trust region problems"), here a few.
+
+use super::bounded::{self, dot};
+use super::line_search::Slope;
+use crate::error::{Error, ErrorKind, Result};
+
+/// On which side of a value light should be.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Sense {
+    /// At the value.
+    #[default]
+    Exactly,
+    /// No less: what a standard asks of a desk, or what a clipped pixel of a photo says.
+    AtLeast,
+    /// No more: a limit against glare.
+    AtMost,
+}
+
+impl Sense {
+    /// How far a value that is `over` too large is off.
+    pub(super) fn miss(self, over: f64) -> f64 {
+        match self {
+            Self::Exactly => over,
+            Self::AtLeast => over.min(0.0),
+            Self::AtMost => over.max(0.0),
+        }
+    }
+}
+
+pub(super) struct Problem<'a> {
+    /// Row after row.
+    pub matrix: &'a [f64],
+    pub right: &'a [f64],
+    /// Of each row.
+    pub senses: &'a [Sense],
+    /// `λ`, relative to the mean square of a row, > 0.
+    pub pull: f64,
+    /// `p`, for every unknown.
+    pub preferred: &'a [f64],
+    /// `u`, ≥ 0, may be infinite.
+    pub upper: &'a [f64],
+}
+
+/// Newton steps, of which a few suffice.
+const STEPS: usize = 200;
+/// A term counts, or ceases to, when it is on its side by more than this share of its parts.
+const ROUNDING: f64 = 1e-12;
+
+impl Problem<'_> {
+    /// # Errors
+    /// `Internal` if the method does not end, which it must.
+    pub fn solve(&self) -> Result<Vec<f64>> {
+        let lambda = self.pull * dot(self.matrix, self.matrix) / self.right.len() as f64;
+        let mut x: Vec<f64> = self.preferred.iter().zip(self.upper).map(|(p, u)| p.clamp(0.0, *u)).collect();
+        if !(lambda > 0.0 && lambda.is_finite()) {
+            // Nothing responds: what is preferred is all there is to say.
+            return Ok(x);
+        }
+        let mut counting = self.counting(&x, &vec![false; self.right.len()]);
+        for _ in 0..STEPS {
+            let next = self.with(&counting, lambda)?;
+            let then = self.counting(&next, &counting);
+            if then == counting {
+                return Ok(next);
+            }
+            let t = self.line_search(lambda, &x, &next);
+            x.iter_mut().zip(&next).for_each(|(x, n)| *x += t * (n - *x));
+            counting = self.counting(&x, &counting);
+        }
+        Err(Error::new(ErrorKind::Internal, "the powers for goals with limits did not settle"))
+    }
+
+    fn row(&self, i: usize) -> &[f64] {
+        let n = self.preferred.len();
+        &self.matrix[i * n..(i + 1) * n]
+    }
+
+    /// Which terms count at `x`; `before` decides on the edge.
+    fn counting(&self, x: &[f64], before: &[bool]) -> Vec<bool> {
+        let counts = |i: usize| {
+            let (light, right) = (dot(self.row(i), x), self.right[i]);
+            let over = light - right;
+            let edge = ROUNDING * (light.abs() + right.abs());
+            match self.senses[i] {
+                Sense::Exactly => true,
+                _ if over.abs() <= edge => before[i],
+                sense => sense.miss(over) != 0.0,
+            }
+        };
+        (0..self.right.len()).map(counts).collect()
+    }
+
+    /// The answer if just these terms count, on either side.
+    fn with(&self, counting: &[bool], pull: f64) -> Result<Vec<f64>> {
+        let rows = || (0..self.right.len()).filter(|&i| counting[i]);
+        let matrix: Vec<f64> = rows().flat_map(|i| self.row(i).iter().copied()).collect();
+        let right: Vec<f64> = rows().map(|i| self.right[i]).collect();
+        let (preferred, upper) = (self.preferred, self.upper);
+        bounded::Problem { matrix: &matrix, right: &right, pull, preferred, upper }.solve()
+    }
+
+    /// Where between two places the function is least.
+    fn line_search(&self, lambda: f64, from: &[f64], to: &[f64]) -> f64 {
+        let step: Vec<f64> = to.iter().zip(from).map(|(b, a)| b - a).collect();
+        let away: f64 = from.iter().zip(self.preferred).zip(&step).map(|((x, p), d)| (x - p) * d).sum();
+        let mut slope = Slope { start: lambda * away, growth: lambda * dot(&step, &step), changes: Vec::new() };
+        for (i, sense) in self.senses.iter().enumerate() {
+            let (over, rise) = (dot(self.row(i), from) - self.right[i], dot(self.row(i), &step));
+            slope.start += sense.miss(over) * rise;
+            let edge = -over / rise;
+            let (first, last) = match (sense, rise > 0.0) {
+                (Sense::Exactly, _) => (f64::NEG_INFINITY, f64::INFINITY),
+                (Sense::AtLeast, true) | (Sense::AtMost, false) => (f64::NEG_INFINITY, edge),
+                (Sense::AtLeast, false) | (Sense::AtMost, true) => (edge, f64::INFINITY),
+            };
+            if rise != 0.0 {
+                slope.add(first, last, rise * rise);
+            }
+        }
+        slope.zero()
+    }
+}
+
+/// One power `q ≥ 0` for all, in closed form: that which makes `½ Σ ψ(a q − b)²` least, `a ≥ 0`. Of several the least, which
+/// is as little light as serves; where none is asked for, that nearest to 1, the lamps as they are.
+pub(super) fn all_alike(responses: &[f64], right: &[f64], senses: &[Sense]) -> f64 {
+    let rows =
+        || responses.iter().zip(right).zip(senses).map(|((a, b), sense)| (*a, *b, *sense)).filter(|row| row.0 > 0.0);
+    // Beyond the last of the values, less light is better.
+    let last = rows().map(|(a, b, _)| b / a).fold(0.0, f64::max);
+    let mut slope = Slope { start: 0.0, growth: 0.0, changes: Vec::new() };
+    for (a, b, sense) in rows() {
+        slope.start += sense.miss(-b) * a;
+        let (first, end) = match sense {
+            Sense::Exactly => (0.0, f64::INFINITY),
+            Sense::AtLeast => (0.0, b / a),
+            Sense::AtMost => (b / a, f64::INFINITY),
+        };
+        slope.add(first / last, end / last, a * a * last);
+    }
+    let open = slope.start == 0.0 && rows().all(|(_, _, sense)| sense != Sense::Exactly);
+    if !open {
+        return last * slope.zero();
+    }
+    rows().filter(|row| row.2 == Sense::AtMost).map(|(a, b, _)| b / a).fold(1.0, f64::min)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Sense::{AtLeast, AtMost, Exactly};
+    use super::*;
+    use crate::rng::Rng;
+
+    const FREE: f64 = f64::INFINITY;
+
+    #[test]
+    fn closed_forms() {
+        let solve = |matrix: &[f64], right: &[f64], senses: &[Sense], preferred: &[f64]| {
+            let upper = vec![FREE; preferred.len()];
+            Problem { matrix, right, senses, pull: 1e-9, preferred, upper: &upper }.solve().unwrap()
+        };
+        let near = |x: Vec<f64>, expected: &[f64]| {
+            assert!(x.iter().zip(expected).all(|(x, e)| (x - e).abs() < 1e-6), "{x:?}, expected {expected:?}");
+        };
+        // What is preferred stays where it does, and moves to the limit where it does not.
+        near(solve(&[2.0], &[6.0], &[AtLeast], &[5.0]), &[5.0]);
+        near(solve(&[2.0], &[6.0], &[AtLeast], &[1.0]), &[3.0]);
+        near(solve(&[2.0], &[6.0], &[AtMost], &[5.0]), &[3.0]);
+        near(solve(&[2.0], &[6.0], &[AtMost], &[1.0]), &[1.0]);
+        // A limit that one equation breaks: x = 4 by the first, x <= 2 by the second, half way by both.
+        near(solve(&[1.0, 1.0], &[4.0, 2.0], &[Exactly, AtMost], &[0.0]), &[3.0]);
+        near(solve(&[1.0, 1.0], &[4.0, 2.0], &[Exactly, AtLeast], &[0.0]), &[4.0]);
+        // Two desks, each mostly under its own lamp, want at least 5 and 5; the first may not have more than 6.
+        let x = solve(&[1.0, 0.2, 0.2, 1.0, 1.0, 0.2], &[5.0, 5.0, 6.0], &[AtLeast, AtLeast, AtMost], &[0.0; 2]);
+        near(x, &[25.0 / 6.0; 2]);
+        // No response at all.
+        near(solve(&[0.0], &[1.0], &[AtLeast], &[0.7]), &[0.7]);
+    }
+
+    #[test]
+    fn one_power_for_all() {
+        let alike = |rows: &[(f64, f64, Sense)]| {
+            let [a, b] = [0, 1].map(|i| rows.iter().map(|r| [r.0, r.1][i]).collect::<Vec<_>>());
+            all_alike(&a, &b, &rows.iter().map(|r| r.2).collect::<Vec<_>>())
+        };
+        // Least squares, whose misses may differ: q = Σ ab / Σ a².
+        assert!((alike(&[(2.0, 6.0, Exactly), (1.0, 1.0, Exactly)]) - 13.0 / 5.0).abs() < 1e-15);
+        assert_eq!(alike(&[(2.0, 6.0, AtLeast), (1.0, 1.0, AtLeast)]), 3.0);
+        assert_eq!(alike(&[(2.0, 6.0, AtLeast), (1.0, 1.0, AtMost)]), 13.0 / 5.0);
+        assert_eq!(alike(&[(2.0, 6.0, AtLeast), (1.0, 4.0, AtMost)]), 3.0);
+        // Caps alone leave the lamps as they are, or bring them down.
+        assert_eq!(alike(&[(2.0, 6.0, AtMost)]), 1.0);
+        assert_eq!(alike(&[(2.0, 1.0, AtMost), (1.0, 4.0, AtMost)]), 0.5);
+        // Darkness, too much other light, and nothing that responds.
+        assert_eq!(alike(&[(2.0, 0.0, Exactly)]), 0.0);
+        assert_eq!(alike(&[(2.0, -1.0, Exactly)]), 0.0);
+        assert_eq!(alike(&[(2.0, -1.0, AtMost)]), 0.0);
+        assert_eq!(alike(&[(2.0, -1.0, AtLeast)]), 1.0);
+        assert_eq!(alike(&[(0.0, 1.0, Exactly)]), 1.0);
+    }
+
+    /// The function does not fall anywhere from the answer: Karush, Kuhn and Tucker's conditions, at random problems.
+    #[test]
+    fn conditions_of_optimality() {
+        let mut rng = Rng::new(7, &[]);
+        for case in 0..200 {
+            let (m, n) = (1 + rng.below(8), 1 + rng.below(30));
+            let matrix: Vec<f64> = (0..m * n).map(|_| rng.next_f64()).collect();
+            let right: Vec<f64> = (0..m).map(|_| rng.next_f64() * n as f64).collect();
+            let senses: Vec<Sense> = (0..m).map(|_| [Exactly, AtLeast, AtMost][rng.below(3)]).collect();
+            let preferred: Vec<f64> = (0..n).map(|_| rng.next_f64()).collect();
+            let upper: Vec<f64> = (0..n).map(|_| if rng.next_f64() < 0.5 { FREE } else { rng.next_f64() }).collect();
+            let pull = 10f64.powf(-6.0 * rng.next_f64());
+            let problem =
+                Problem { matrix: &matrix, right: &right, senses: &senses, pull, preferred: &preferred, upper: &upper };
+            let x = problem.solve().unwrap();
+            let lambda = pull * dot(&matrix, &matrix) / m as f64;
+            let misses: Vec<f64> = (0..m).map(|i| senses[i].miss(dot(problem.row(i), &x) - right[i])).collect();
+            for j in 0..n {
+                let slope = (0..m).map(|i| matrix[i * n + j] * misses[i]).sum::<f64>() + lambda * (x[j] - preferred[j]);
+                let small = 1e-9 * (lambda + dot(&right, &right).sqrt());
+                let fits = match x[j] {
+                    v if v == upper[j] => slope <= small,
+                    0.0 => slope >= -small,
+                    _ => slope.abs() <= small,
+                };
+                assert!(fits && (0.0..=upper[j]).contains(&x[j]), "case {case}: x {}, slope {slope}", x[j]);
+            }
+        }
+    }
+}
