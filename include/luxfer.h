@@ -2620,6 +2620,92 @@ luxfer_status luxfer_importance_retain(luxfer_importance *importance);
 luxfer_status luxfer_importance_release(luxfer_importance *importance);
 
 /* ====================================================================================================================
+ * Placement
+ *
+ * Where a texture should lie on a surface, so that its target gets most light, least, or just as much as it should: found by
+ * gradient on the map of luxfer_importance, without tracing a path.
+ * ==================================================================================================================== */
+
+/** What a placement should do: a LUXFER_AIM_ value. */
+typedef int32_t luxfer_aim;
+
+/**
+ * What may be, and what is best. A texture is scaled and then turned about the centre of the surface's texture coordinates,
+ * and shifted. Fill it with luxfer_placement_params_init.
+ */
+typedef struct luxfer_placement_params {
+    /** sizeof(luxfer_placement_params), set by luxfer_placement_params_init. */
+    uint32_t struct_size;
+    /** LUXFER_AIM_ value; default LUXFER_AIM_MOST. */
+    luxfer_aim aim;
+    /** The radiance to aim at, in cd/m² per channel, each finite and >= 0; default 0. */
+    float radiance[3];
+    /** Places the search starts from, in [1, 4096]; default 64. */
+    uint32_t starts;
+    /** Smallest offset along u and v of the texture, which has period 1, in [-16, 16]; default -0.5. */
+    double least_offset[2];
+    /** Largest; default 0.5. Where smallest and largest are the same, here and below, nothing changes. */
+    double most_offset[2];
+    /** How often the texture repeats along the surface's u and v, at least, in [1/64, 64]; default 1. */
+    double least_scale[2];
+    /** At most; default 1. */
+    double most_scale[2];
+    /** Smallest rotation in radians, in [-2 pi, 2 pi]; default 0. */
+    double least_rotation;
+    /** Largest; default 0. */
+    double most_rotation;
+    /** Seed of the places; default 1. */
+    uint64_t seed;
+} luxfer_placement_params;
+
+/** The best placement, and what it means to the target. Set struct_size before the call. */
+typedef struct luxfer_placement {
+    /** sizeof(luxfer_placement), set by the caller. */
+    uint32_t struct_size;
+    /** 0. */
+    uint32_t reserved;
+    /** From the surface's texture coordinates to those of the texture, as luxfer_importance_respond takes it. */
+    double placement[9];
+    /** Its offset along u and v. */
+    double offset[2];
+    /** Its scale along u and v. */
+    double scale[2];
+    /** Its rotation in radians. */
+    double rotation;
+    /** Mean radiance of the target under the texture alone, in cd/m² per channel. */
+    double response[3];
+    /** Half-widths of the 95 % confidence intervals of response. */
+    double half_width[3];
+    /** What cells of twice the side change, noise included; the cells themselves are off by about a third of it. */
+    double band_error[3];
+} luxfer_placement;
+
+/** As much luminance for the target as possible. */
+#define LUXFER_AIM_MOST 0
+
+/** As little. */
+#define LUXFER_AIM_LEAST 1
+
+/** The mean radiance of the target that is given, all other light included. */
+#define LUXFER_AIM_RADIANCE 2
+
+/**
+ * Fills *params with the defaults: any offset, at the scale and rotation there are; size is sizeof *params.
+ * LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+ */
+luxfer_status luxfer_placement_params_init(luxfer_placement_params *params, size_t size);
+
+/**
+ * Finds the placement of a texture (linear, in cd/m²; it repeats) that is best for the target. params may be NULL for the
+ * defaults. Takes about a second. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded, LUXFER_INVALID_ARGUMENT if a setting is out of range.
+ */
+luxfer_status luxfer_importance_place(luxfer_importance *importance,
+                                      luxfer_image *texture,
+                                      const luxfer_placement_params *params,
+                                      luxfer_placement *placement);
+
+/* ====================================================================================================================
  * Photometry
  *
  * What lighting design calls a light: its correlated colour temperature, and the glare of a view. These calls return when

@@ -37,6 +37,7 @@ const GROUPS: &[&str] = &[
     "lamps",
     "lamps_results",
     "importance",
+    "placement",
     "photometry",
     "distribution",
     "transfer",
@@ -366,6 +367,9 @@ layouts! {
     luxfer_lamps_response: struct_size reserved mean half_width;
     luxfer_importance_params: struct_size width height quantity paths target_error time_budget_ms reserved seed;
     luxfer_importance_report: struct_size paths response half_width band_error;
+    luxfer_placement_params: struct_size aim radiance starts least_offset most_offset least_scale most_scale
+        least_rotation most_rotation seed;
+    luxfer_placement: struct_size reserved placement offset scale rotation response half_width band_error;
     luxfer_glare_report: struct_size sources ugr background threshold solid_angle;
     luxfer_distribution_report: struct_size planes angles reserved flux lamp_flux watts size;
     luxfer_transfer_params: struct_size max_texels plane_distance white_luminance target rectify features plane lights

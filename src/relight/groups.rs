@@ -18,7 +18,7 @@ use crate::error::{Error, ErrorKind, Result, check_range};
 use glam::DVec3;
 
 /// Luminance of linear RGB ([`crate::image::colour::luminance`]).
-const LUMINANCE: DVec3 = DVec3::new(0.212_639, 0.715_168_7, 0.072_192_3);
+pub(super) const LUMINANCE: DVec3 = DVec3::new(0.212_639, 0.715_168_7, 0.072_192_3);
 
 /// What may change of a group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -9,6 +9,7 @@
 
 use super::bins::{Bins, Division};
 use super::estimate::BATCHES;
+use super::placement::Cells;
 use super::responses::{Estimate, Goal};
 use super::solve::{self, Measured};
 use super::target::Sampler;
@@ -65,7 +66,10 @@ pub struct Response {
 /// Most cells along each side: a map of so many takes 200 MB.
 const MAX_CELLS: usize = 512;
 
-/// Texels looked up along each side of a cell, at most.
+/// Points looked up along each side of a cell: at least so many, fewer where cells are many, and at most so many. Texels
+/// that cells cut would else count too much or too little, all of a periodic pattern alike.
+const LEAST_LOOK_UPS: usize = 16;
+const LOOK_UPS_ACROSS: usize = 1024;
 const MOST_LOOK_UPS: usize = 64;
 
 impl Importance {
@@ -116,6 +120,30 @@ impl Importance {
         (self.width, self.height)
     }
 
+    /// The map at no more than `most` cells along each side, its batches together: what cells mean adds up.
+    pub(super) fn cells(&self, most: usize) -> Cells {
+        let (width, height) = (self.width.min(most), self.height.min(most));
+        let mut importance = vec![DVec3::ZERO; width * height];
+        for batch in &self.batches {
+            for (i, value) in batch.iter().enumerate() {
+                let (x, y) = (i % self.width * width / self.width, i / self.width * height / self.height);
+                importance[y * width + x] += value / BATCHES as f64;
+            }
+        }
+        Cells { width, height, importance }
+    }
+
+    /// The target's mean radiance under all other light.
+    pub(super) fn background(&self) -> DVec3 {
+        self.background.iter().sum::<DVec3>() / BATCHES as f64
+    }
+
+    /// A map that is known.
+    #[cfg(test)]
+    pub(super) fn even(width: usize, height: usize, cells: Vec<DVec3>, background: DVec3) -> Self {
+        Self { width, height, batches: vec![cells; BATCHES], background: vec![background; BATCHES], paths: 0 }
+    }
+
     /// The map as an image of `width × height` cells: the target's mean radiance where a cell emits 1 cd/m².
     pub fn image(&self) -> Result<Image> {
         let mut image = Image::new(self.width, self.height, 3)?;
@@ -157,14 +185,15 @@ impl Importance {
         if !placement.is_finite() {
             return Err(Error::argument(format!("placement is {placement}; it must be finite")));
         }
-        // As many look-ups as a cell has texels: along its sides and as the placement stretches it.
+        // At least as many look-ups as a cell has texels: along its sides and as the placement stretches it.
         let cell = Vec2::new(1.0 / self.width as f32, 1.0 / self.height as f32);
         let texels = Vec2::new(texture.image.width as f32, texture.image.height as f32);
-        let along = |side: Vec2| {
+        let along = |side: Vec2, cells: usize| {
             let length = (placement.transform_vector2(side) * texels).abs().max_element().ceil();
-            (length as usize).clamp(1, MOST_LOOK_UPS)
+            let least = (LOOK_UPS_ACROSS / cells).clamp(4, LEAST_LOOK_UPS);
+            (length as usize).clamp(least, MOST_LOOK_UPS)
         };
-        let (nu, nv) = (along(Vec2::X * cell.x), along(Vec2::Y * cell.y));
+        let (nu, nv) = (along(Vec2::X * cell.x, self.width), along(Vec2::Y * cell.y, self.height));
         let rows = exec::map(self.height, job, |y| {
             let mean = |x: usize| {
                 let mut sum = DVec3::ZERO;

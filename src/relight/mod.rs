@@ -8,17 +8,20 @@
 //! The same paths tell more when their light is sorted by where it came from (`bins`). By lamp, they give the response of
 //! several targets to each of thousands of lamps ([`lamp_responses`]), and a small convex problem gives the powers of
 //! groups of lamps within bounds ([`solve_groups`]). By cell of a surface, they give its [`Importance`]: what any texture
-//! laid there would mean to the target, for one dot product.
+//! laid there would mean to the target, for one dot product, and by its gradient where it should lie ([`Importance::place`]).
 //!
 //! Not modelled here: the photo's camera response beyond sRGB, and fluorescence (a channel never feeds another).
 
+mod band;
 mod bins;
 mod bounded;
+mod descent;
 mod estimate;
 mod groups;
 mod importance;
 mod lamps;
 mod line_search;
+mod placement;
 mod responses;
 mod sided;
 mod solve;
@@ -29,6 +32,7 @@ pub use estimate::BATCHES;
 pub use groups::{Colour, GroupParams, GroupSolution, Outcome, solve_groups};
 pub use importance::{Importance, MapParams, Response};
 pub use lamps::Lamps;
+pub use placement::{Aim, PlaceParams, Placement, Pose};
 pub use responses::{Aspect, Estimate, Goal, Responses, lamp_responses};
 pub use sided::Sense;
 

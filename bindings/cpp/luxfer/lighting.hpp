@@ -9,6 +9,7 @@ namespace luxfer {
 
 using LampsParams = Params<luxfer_lamps_params, luxfer_lamps_params_init>;
 using ImportanceParams = Params<luxfer_importance_params, luxfer_importance_params_init>;
+using PlacementParams = Params<luxfer_placement_params, luxfer_placement_params_init>;
 
 /// Powers of the lamps of an emission that come nearest to several goals. See luxfer_lamps.
 class Lamps : public Handle<luxfer_lamps, luxfer_lamps_retain, luxfer_lamps_release> {
@@ -98,6 +99,11 @@ public:
     Result<luxfer_relight_report> solve(const Image &texture, Numbers<9> placement, Rgb target) const {
         return value<luxfer_relight_report>(luxfer_importance_solve, texture.get(), placement.data(), target.red,
                                             target.green, target.blue);
+    }
+
+    /// Where a texture in cd/m² should lie.
+    Result<luxfer_placement> place(const Image &texture, const luxfer_placement_params &params = PlacementParams()) const {
+        return value<luxfer_placement>(luxfer_importance_place, texture.get(), &params);
     }
 };
 

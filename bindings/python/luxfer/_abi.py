@@ -120,6 +120,9 @@ LUXFER_GROUP_THIRD = 4
 LUXFER_SENSE_EXACTLY = 0
 LUXFER_SENSE_AT_LEAST = 1
 LUXFER_SENSE_AT_MOST = 2
+LUXFER_AIM_MOST = 0
+LUXFER_AIM_LEAST = 1
+LUXFER_AIM_RADIANCE = 2
 LUXFER_DISTRIBUTION_IES = 0
 LUXFER_DISTRIBUTION_LDT = 1
 LUXFER_STAGE_VIEW = 0
@@ -820,6 +823,43 @@ class luxfer_importance_report(Structure):
     result = types.ImportanceReport
 
 
+class luxfer_placement_params(Structure):
+    """What may be, and what is best. A texture is scaled and then turned about the centre of the surface's
+    texture coordinates, and shifted."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("aim", c_int32),
+        ("radiance", c_float * 3),
+        ("starts", c_uint32),
+        ("least_offset", c_double * 2),
+        ("most_offset", c_double * 2),
+        ("least_scale", c_double * 2),
+        ("most_scale", c_double * 2),
+        ("least_rotation", c_double),
+        ("most_rotation", c_double),
+        ("seed", c_uint64),
+    ]
+    enumerations: dict[str, type] = {"aim": types.Aim}
+
+
+class luxfer_placement(Structure):
+    """The best placement, and what it means to the target."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("reserved", c_uint32),
+        ("placement", c_double * 9),
+        ("offset", c_double * 2),
+        ("scale", c_double * 2),
+        ("rotation", c_double),
+        ("response", c_double * 3),
+        ("half_width", c_double * 3),
+        ("band_error", c_double * 3),
+    ]
+    result = types.Placement
+
+
 class luxfer_glare_report(Structure):
     """The glare of a view."""
 
@@ -1205,6 +1245,8 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_importance_solve": (c_int32, [("importance", POINTER(luxfer_importance)), ("texture", POINTER(luxfer_image)), ("placement", POINTER(c_double)), ("red", c_float), ("green", c_float), ("blue", c_float), ("report", POINTER(luxfer_relight_report))]),
     "luxfer_importance_retain": (c_int32, [("importance", POINTER(luxfer_importance))]),
     "luxfer_importance_release": (c_int32, [("importance", POINTER(luxfer_importance))]),
+    "luxfer_placement_params_init": (c_int32, [("params", POINTER(luxfer_placement_params)), ("size", c_size_t)]),
+    "luxfer_importance_place": (c_int32, [("importance", POINTER(luxfer_importance)), ("texture", POINTER(luxfer_image)), ("params", POINTER(luxfer_placement_params)), ("placement", POINTER(luxfer_placement))]),
     "luxfer_colour_temperature": (c_int32, [("context", POINTER(luxfer_context)), ("red", c_double), ("green", c_double), ("blue", c_double), ("kelvin", POINTER(c_double)), ("duv", POINTER(c_double))]),
     "luxfer_colour_of_temperature": (c_int32, [("context", POINTER(luxfer_context)), ("kelvin", c_double), ("duv", c_double), ("rgb", POINTER(c_double))]),
     "luxfer_image_glare": (c_int32, [("image", POINTER(luxfer_image)), ("fov_y", c_double), ("threshold", c_double), ("report", POINTER(luxfer_glare_report))]),

@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Any, cast
 from . import _abi, _params
 from .image import Image, image_of
 from .job import Job, Progress, StageBase
-from .types import ImportanceReport, RelightReport
+from .types import ImportanceReport, Placement, RelightReport
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from .image import ImageLike
     from .scene import Scene
-    from .types import ImportanceParams
+    from .types import ImportanceParams, PlacementParams
 
 
 class Importance(StageBase):
@@ -31,6 +31,8 @@ class Importance(StageBase):
     >>> scale = importance.solve(lamps, (12, 10, 8)).scale
     >>> round(response[0] * scale[0] / 12, 1)
     1.0
+    >>> importance.place(lamps).response[0] >= response[0]
+    True
     """
 
     kind = "importance"
@@ -66,6 +68,12 @@ class Importance(StageBase):
         image, (red, green, blue) = image_of(self._context, texture), (float(v) for v in radiance)
         out = self._read("solve", _abi.luxfer_relight_report, image, _nine(placement), red, green, blue)
         return cast(RelightReport, out)
+
+    def place(self, texture: ImageLike, **params: Unpack[PlacementParams]) -> Placement:
+        """Where a texture in cd/m² should lie: by default at any offset, to bring the target most light."""
+        settings = _params.fill(_abi.luxfer_placement_params, params, [])
+        out = self._read("place", _abi.luxfer_placement, image_of(self._context, texture), settings)
+        return cast(Placement, out)
 
 
 def _nine(placement: Sequence[float] | None) -> Any:

@@ -320,6 +320,17 @@ class Sense(IntEnum):
     """At it or below: a limit against glare."""
 
 
+class Aim(IntEnum):
+    """What a placement should do."""
+
+    MOST = 0
+    """As much luminance for the target as possible."""
+    LEAST = 1
+    """As little."""
+    RADIANCE = 2
+    """The mean radiance of the target that is given, all other light included."""
+
+
 class DistributionFormat(IntEnum):
     """A file format of distributions."""
 
@@ -1272,6 +1283,53 @@ class ImportanceReport:
     """Paths behind the map."""
     response: tuple[float, float, float]
     """Mean radiance of the target under the texture, in cd/m² per channel as the texture's values are."""
+    half_width: tuple[float, float, float]
+    """Half-widths of the 95 % confidence intervals of response."""
+    band_error: tuple[float, float, float]
+    """What cells of twice the side change, noise included; the cells themselves are off by about a third of
+    it."""
+
+
+class PlacementParams(TypedDict, total=False):
+    """What may be, and what is best. A texture is scaled and then turned about the centre of the surface's
+    texture coordinates, and shifted."""
+
+    aim: Aim | str | int
+    """Aim; default Aim.MOST."""
+    radiance: Sequence[float]
+    """The radiance to aim at, in cd/m² per channel, each finite and >= 0; default 0."""
+    starts: int
+    """Places the search starts from, in [1, 4096]; default 64."""
+    least_offset: Sequence[float]
+    """Smallest offset along u and v of the texture, which has period 1, in [-16, 16]; default -0.5."""
+    most_offset: Sequence[float]
+    """Largest; default 0.5. Where smallest and largest are the same, here and below, nothing changes."""
+    least_scale: Sequence[float]
+    """How often the texture repeats along the surface's u and v, at least, in [1/64, 64]; default 1."""
+    most_scale: Sequence[float]
+    """At most; default 1."""
+    least_rotation: float
+    """Smallest rotation in radians, in [-2 pi, 2 pi]; default 0."""
+    most_rotation: float
+    """Largest; default 0."""
+    seed: int
+    """Seed of the places; default 1."""
+
+
+@dataclass(frozen=True)
+class Placement:
+    """The best placement, and what it means to the target."""
+
+    placement: tuple[float, ...]
+    """From the surface's texture coordinates to those of the texture, as luxfer_importance_respond takes it."""
+    offset: tuple[float, float]
+    """Its offset along u and v."""
+    scale: tuple[float, float]
+    """Its scale along u and v."""
+    rotation: float
+    """Its rotation in radians."""
+    response: tuple[float, float, float]
+    """Mean radiance of the target under the texture alone, in cd/m² per channel."""
     half_width: tuple[float, float, float]
     """Half-widths of the 95 % confidence intervals of response."""
     band_error: tuple[float, float, float]

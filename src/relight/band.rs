@@ -1,0 +1,150 @@
+//! Band-limited look-ups of a texture that repeats, with their slopes: cubic B-splines on a pyramid, between whose levels it
+//! is interpolated. Unlike texels and bilinear filters these have slopes everywhere that gradients need.
+
+use crate::error::Result;
+use crate::image::{Image, pyramid};
+use crate::job::Job;
+use glam::{DVec2, DVec3};
+
+pub(super) struct Pyramid {
+    levels: Vec<Level>,
+}
+
+struct Level {
+    width: usize,
+    height: usize,
+    texels: Vec<DVec3>,
+}
+
+/// A value and how it changes along the texture's coordinates and with the level.
+#[derive(Clone, Copy)]
+pub(super) struct Look {
+    pub value: DVec3,
+    pub along_u: DVec3,
+    pub along_v: DVec3,
+    pub along_level: DVec3,
+}
+
+impl Pyramid {
+    /// Negative values count as 0.
+    pub fn new(image: &Image, job: Job) -> Result<Self> {
+        let mut image = image.to_rgb()?;
+        image.data.iter_mut().for_each(|v| *v = v.max(0.0));
+        let mut levels = vec![Level::new(&image)];
+        while image.width.max(image.height) > 1 {
+            image = pyramid::resize(&image, image.width.div_ceil(2), image.height.div_ceil(2), job)?;
+            levels.push(Level::new(&image));
+        }
+        Ok(Self { levels })
+    }
+
+    /// At texture coordinates, filtered so that a texel of level 0 has `2^level` its size.
+    pub fn look_up(&self, uv: DVec2, level: f64) -> Look {
+        let most = (self.levels.len() - 1) as f64;
+        let within = level.clamp(0.0, most);
+        let fine = within as usize;
+        let share = within - fine as f64;
+        let a = self.levels[fine].look_up(uv);
+        if share == 0.0 {
+            return a;
+        }
+        let b = self.levels[fine + 1].look_up(uv);
+        let between = |a: DVec3, b: DVec3| a + (b - a) * share;
+        Look {
+            value: between(a.value, b.value),
+            along_u: between(a.along_u, b.along_u),
+            along_v: between(a.along_v, b.along_v),
+            along_level: b.value - a.value,
+        }
+    }
+}
+
+impl Level {
+    fn new(image: &Image) -> Self {
+        let texels = image.data.chunks_exact(3).map(|p| DVec3::new(p[0].into(), p[1].into(), p[2].into())).collect();
+        Self { width: image.width, height: image.height, texels }
+    }
+
+    fn look_up(&self, uv: DVec2) -> Look {
+        let (x, y) = (Taps::new(uv.x, self.width), Taps::new(uv.y, self.height));
+        let (mut value, mut along_u, mut along_v) = (DVec3::ZERO, DVec3::ZERO, DVec3::ZERO);
+        for j in 0..4 {
+            let row = &self.texels[y.texels[j] * self.width..][..self.width];
+            let (mut sum, mut slope) = (DVec3::ZERO, DVec3::ZERO);
+            for i in 0..4 {
+                let texel = row[x.texels[i]];
+                sum += texel * x.weights[i];
+                slope += texel * x.slopes[i];
+            }
+            value += sum * y.weights[j];
+            along_u += slope * y.weights[j];
+            along_v += sum * y.slopes[j];
+        }
+        Look { value, along_u, along_v, along_level: DVec3::ZERO }
+    }
+}
+
+/// The texels that a cubic B-spline draws on, with its weights and their slopes along the coordinate.
+struct Taps {
+    texels: [usize; 4],
+    weights: [f64; 4],
+    slopes: [f64; 4],
+}
+
+impl Taps {
+    fn new(u: f64, size: usize) -> Self {
+        let position = u.rem_euclid(1.0) * size as f64 - 0.5;
+        let (base, t) = (position.floor(), position - position.floor());
+        let texels = std::array::from_fn(|i| (base as i64 + i as i64 - 1).rem_euclid(size as i64) as usize);
+        let s = 1.0 - t;
+        let weights = [
+            s * s * s / 6.0,
+            (3.0 * t * t * t - 6.0 * t * t + 4.0) / 6.0,
+            (3.0 * s * s * s - 6.0 * s * s + 4.0) / 6.0,
+            t * t * t / 6.0,
+        ];
+        let slopes = [-s * s / 2.0, (3.0 * t * t - 4.0 * t) / 2.0, (4.0 * s - 3.0 * s * s) / 2.0, t * t / 2.0];
+        Self { texels, weights, slopes: slopes.map(|w| w * size as f64) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::job::Monitor;
+    use crate::rng::Rng;
+
+    #[test]
+    fn slopes_are_central_differences_and_splines_keep_what_they_can() {
+        let mut rng = Rng::new(1, &[]);
+        let texel = |x: usize, y: usize| {
+            let mut rng = Rng::new(2, &[x as u64, y as u64]);
+            [rng.next_f32(), rng.next_f32(), rng.next_f32()]
+        };
+        let image = Image::from_fn(24, 15, texel).unwrap();
+        let mean = image.data.chunks_exact(3).map(|p| f64::from(p[0])).sum::<f64>() / (24.0 * 15.0);
+        let monitor = Monitor::default();
+        let pyramid = Pyramid::new(&image, monitor.job()).unwrap();
+        const H: f64 = 1e-6;
+        for _ in 0..100 {
+            let (uv, level) = (DVec2::new(rng.next_f64() * 4.0 - 2.0, rng.next_f64()), rng.next_f64() * 3.0);
+            let look = pyramid.look_up(uv, level);
+            let step = |uv: DVec2, level: f64| pyramid.look_up(uv, level).value;
+            let differences = [
+                (step(uv + DVec2::X * H, level) - step(uv - DVec2::X * H, level)) / (2.0 * H),
+                (step(uv + DVec2::Y * H, level) - step(uv - DVec2::Y * H, level)) / (2.0 * H),
+                (step(uv, level + H) - step(uv, level - H)) / (2.0 * H),
+            ];
+            for (slope, difference) in [look.along_u, look.along_v, look.along_level].into_iter().zip(differences) {
+                assert!((slope - difference).abs().max_element() < 1e-5, "{slope} {difference}");
+            }
+            // It repeats, and the last level is the mean.
+            assert!((look.value - step(uv + 1.0, level)).abs().max_element() < 1e-9);
+            assert!((step(uv, 99.0).x - mean).abs() < 1e-6);
+        }
+        // A plane of one colour stays as it is.
+        let flat = Pyramid::new(&Image::from_fn(5, 3, |_, _| [0.7]).unwrap(), monitor.job()).unwrap();
+        let look = flat.look_up(DVec2::new(0.3, 0.9), 0.4);
+        assert!((look.value - f64::from(0.7f32)).abs().max_element() < 1e-7 && look.along_u.abs().max_element() < 1e-6);
+    }
+}
