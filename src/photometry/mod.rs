@@ -3,11 +3,13 @@
 //! [`temperature`] names a colour by its correlated temperature and back, and finds the blackbody light that comes nearest
 //! to a target. [`glare`] rates the discomfort glare of a luminance image (UGR, CIE 117). [`luminaire`] is a measured
 //! luminous intensity distribution, read from and written to IES LM-63 ([`ies`]) and EULUMDAT ([`ldt`]). [`presets`] has
-//! what EN 12464-1 asks of common rooms.
+//! what EN 12464-1 asks of common rooms. [`false_colour`] shows luminance and illuminance by colours with a scale.
 //!
 //! Illuminance itself is calculated by `render::illuminance`. Not modelled: spectra and colour rendering, maintenance.
 
+pub mod false_colour;
 pub mod glare;
+mod glyphs;
 pub mod ies;
 pub mod ldt;
 mod lines;

@@ -14,11 +14,15 @@ use super::Reach;
 use super::estimate::{BATCHES, STUDENT_T, mean, pseudo_values, standard_error};
 use super::responses::{Aspect, Estimate, Goal, Responses};
 use super::sided::{self, Problem, Sense};
+use super::steps::Terms;
 use crate::error::{Error, ErrorKind, Result, check_range};
 use glam::DVec3;
 
 /// Luminance of linear RGB ([`crate::image::colour::luminance`]).
 pub(super) const LUMINANCE: DVec3 = DVec3::new(0.212_639, 0.715_168_7, 0.072_192_3);
+
+/// Most levels that a group can be dimmed to.
+pub const MAX_LEVELS: usize = 4096;
 
 /// What may change of a group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,6 +38,9 @@ pub struct GroupParams {
     pub colour: Colour,
     /// Largest multiplier of each group, ≥ 0, infinite for none; empty if none has a bound.
     pub most: Vec<f64>,
+    /// Multipliers that there are, each ≥ 0, at most [`MAX_LEVELS`]; empty if all are. Groups get those that together are
+    /// best for the goals ([`super::steps`]); intervals stay those of the powers without steps.
+    pub levels: Vec<f64>,
     /// How much missing the goals weighs against lamps that differ, in `[1e-9, 1e3]`: small values meet the goals, large
     /// ones keep the lamps equal.
     pub evenness: f64,
@@ -43,7 +50,7 @@ pub struct GroupParams {
 
 impl Default for GroupParams {
     fn default() -> Self {
-        Self { colour: Colour::Kept, most: Vec::new(), evenness: 1e-6, tolerance: 0.01 }
+        Self { colour: Colour::Kept, most: Vec::new(), levels: Vec::new(), evenness: 1e-6, tolerance: 0.01 }
     }
 }
 
@@ -96,6 +103,7 @@ pub fn solve_groups(responses: &Responses, goals: &[Goal], params: &GroupParams)
             }))
         })
         .collect();
+    let whole = if params.levels.is_empty() { whole } else { system.stepped(&everything, &whole) };
     let outcomes: Vec<Outcome> = (0..goals.len()).map(|goal| system.outcome(goal, &whole)).collect();
     let unreachable = system.explain(&outcomes, &whole);
     Ok(GroupSolution { scale: whole, half_width, outcomes, unreachable })
@@ -132,13 +140,37 @@ fn check(responses: &Responses, goals: &[Goal], params: &GroupParams) -> Result<
             responses.lamps()
         )));
     }
-    params.most.iter().try_for_each(|&most| check_range("most", most, 0.0, f64::INFINITY).map(drop))
+    params.most.iter().try_for_each(|&most| check_range("most", most, 0.0, f64::INFINITY).map(drop))?;
+    if params.levels.len() > MAX_LEVELS {
+        return Err(Error::argument(format!("there are {} levels; at most {MAX_LEVELS} may be", params.levels.len())));
+    }
+    params.levels.iter().try_for_each(|&level| check_range("level", level, 0.0, f64::MAX).map(drop))
 }
 
 struct System<'a> {
     responses: &'a Responses,
     goals: &'a [Goal<'a>],
     params: &'a GroupParams,
+}
+
+/// What the goals say of the powers, row after row.
+#[derive(Default)]
+struct Equations {
+    groups: usize,
+    matrix: Vec<f64>,
+    right: Vec<f64>,
+    senses: Vec<Sense>,
+}
+
+impl Equations {
+    fn solve(&self, upper: &[f64], evenness: f64) -> Result<Vec<f64>> {
+        // Equal lamps that come nearest, where the goals leave it open.
+        let together: Vec<f64> = self.matrix.chunks_exact(self.groups).map(|row| row.iter().sum()).collect();
+        let equal = sided::all_alike(&together, &self.right, &self.senses);
+        let preferred: Vec<f64> = upper.iter().map(|u| equal.min(*u)).collect();
+        let Self { matrix, right, senses, .. } = self;
+        Problem { matrix, right, senses, pull: evenness, preferred: &preferred, upper }.solve()
+    }
 }
 
 /// Mean responses.
@@ -183,26 +215,43 @@ impl System<'_> {
     }
 
     fn solve(&self, measured: &Measured) -> Result<Vec<DVec3>> {
-        let groups = self.responses.lamps();
-        let infinite = vec![f64::INFINITY; groups];
-        let upper = if self.params.most.is_empty() { &infinite } else { &self.params.most };
+        let upper = self.upper();
+        self.by_channels(|channels| self.equations(measured, channels).solve(&upper, self.params.evenness))
+    }
+
+    /// The powers in steps.
+    fn stepped(&self, measured: &Measured, whole: &[DVec3]) -> Vec<DVec3> {
+        let upper = self.upper();
+        let mut levels = self.params.levels.clone();
+        levels.sort_by(f64::total_cmp);
+        let round = |channels: &[usize]| {
+            let x: Vec<f64> = whole.iter().map(|x| x[channels[0]]).collect();
+            let Equations { matrix, right, senses, .. } = &self.equations(measured, channels);
+            Ok(Terms { matrix, right, senses }.round(&x, &levels, &upper))
+        };
+        // Rounding cannot fail.
+        self.by_channels(round).unwrap_or_else(|_| whole.to_vec())
+    }
+
+    /// Largest power of each group.
+    fn upper(&self) -> Vec<f64> {
+        if self.params.most.is_empty() { vec![f64::INFINITY; self.responses.lamps()] } else { self.params.most.clone() }
+    }
+
+    /// What a solution for some channels says of all.
+    fn by_channels(&self, solve: impl Fn(&[usize]) -> Result<Vec<f64>>) -> Result<Vec<DVec3>> {
         match self.params.colour {
-            Colour::Kept => {
-                let x = self.solve_channels(measured, upper, &[0, 1, 2])?;
-                Ok(x.into_iter().map(DVec3::splat).collect())
-            }
+            Colour::Kept => Ok(solve(&[0, 1, 2])?.into_iter().map(DVec3::splat).collect()),
             Colour::Free => {
-                let [r, g, b] = [0, 1, 2].map(|c| self.solve_channels(measured, upper, &[c]));
-                let (r, g, b) = (r?, g?, b?);
-                Ok((0..groups).map(|i| DVec3::new(r[i], g[i], b[i])).collect())
+                let (r, g, b) = (solve(&[0])?, solve(&[1])?, solve(&[2])?);
+                Ok((0..r.len()).map(|i| DVec3::new(r[i], g[i], b[i])).collect())
             }
         }
     }
 
-    /// One problem of all goals in some channels.
-    fn solve_channels(&self, measured: &Measured, upper: &[f64], channels: &[usize]) -> Result<Vec<f64>> {
-        let groups = self.responses.lamps();
-        let (mut matrix, mut right, mut senses) = (Vec::new(), Vec::new(), Vec::new());
+    /// All goals in some channels.
+    fn equations(&self, measured: &Measured, channels: &[usize]) -> Equations {
+        let mut equations = Equations { groups: self.responses.lamps(), ..Equations::default() };
         for ((goal, row), background) in self.goals.iter().zip(&measured.rows).zip(&measured.background) {
             let target = goal.target.as_dvec3();
             let terms: Vec<(DVec3, Sense)> = match goal.aspect {
@@ -214,16 +263,12 @@ impl System<'_> {
             let size = if bright > 0.0 { bright } else { row.iter().sum::<DVec3>().max_element() };
             let weight = if size > 0.0 { goal.weight / size } else { 0.0 };
             for (part, sense) in terms {
-                matrix.extend(row.iter().map(|r| r.dot(part) * weight));
-                right.push((target - background).dot(part) * weight);
-                senses.push(sense);
+                equations.matrix.extend(row.iter().map(|r| r.dot(part) * weight));
+                equations.right.push((target - background).dot(part) * weight);
+                equations.senses.push(sense);
             }
         }
-        let together: Vec<f64> = matrix.chunks_exact(groups).map(|row| row.iter().sum()).collect();
-        let equal = sided::all_alike(&together, &right, &senses);
-        let preferred: Vec<f64> = upper.iter().map(|u| equal.min(*u)).collect();
-        let pull = self.params.evenness;
-        Problem { matrix: &matrix, right: &right, senses: &senses, pull, preferred: &preferred, upper }.solve()
+        equations
     }
 
     fn outcome(&self, goal: usize, scale: &[DVec3]) -> Outcome {

@@ -7,7 +7,8 @@
 //!
 //! The same paths tell more when their light is sorted by where it came from (`bins`). By lamp, they give the response of
 //! several targets to each of thousands of lamps ([`lamp_responses`]), and a small convex problem gives the powers of
-//! groups of lamps within bounds ([`solve_groups`]). By cell of a surface, they give its [`Importance`]: what any texture
+//! groups of lamps within bounds ([`solve_groups`]), or in steps that they can be dimmed by. [`mix_primaries`] makes a
+//! colour from the LEDs there are. By cell of a surface, they give its [`Importance`]: what any texture
 //! laid there would mean to the target, for one dot product, and by its gradient where it should lie ([`Importance::place`]).
 //!
 //! Not modelled here: the photo's camera response beyond sRGB, and fluorescence (a channel never feeds another).
@@ -22,9 +23,11 @@ mod importance;
 mod lamps;
 mod line_search;
 mod placement;
+mod primaries;
 mod responses;
 mod sided;
 mod solve;
+mod steps;
 mod target;
 mod transport;
 
@@ -33,6 +36,7 @@ pub use groups::{Colour, GroupParams, GroupSolution, Outcome, solve_groups};
 pub use importance::{Importance, MapParams, Response};
 pub use lamps::Lamps;
 pub use placement::{Aim, PlaceParams, Placement, Pose};
+pub use primaries::{MAX_PRIMARIES, Mixture, mix_primaries};
 pub use responses::{Aspect, Estimate, Goal, Responses, lamp_responses};
 pub use sided::Sense;
 

@@ -197,6 +197,30 @@ fn limits_count_on_one_side() {
     assert_eq!(solve_groups(&responses, &goals, &GroupParams::default()).unwrap_err().kind, ErrorKind::InvalidArgument);
 }
 
+/// With steps the powers are levels, and the goal is missed by no more than the steps are wide; without enough of them the
+/// outcome says so.
+#[test]
+fn powers_in_steps() {
+    let places: Vec<[usize; 2]> = (0..16).map(|i| [1 + 4 * (i % 4), 1 + 4 * (i / 4)]).collect();
+    let (world, lamps) = lamp_room(&places, &[1.0; 16]);
+    let goals = [goal(Place::Surface(FLOOR), Vec3::splat(20.0)), goal(desk(1.0, 1.0), Vec3::splat(25.0))];
+    let responses = respond(&world, &lamps, &goals);
+    let solve = |levels: &[f64]| {
+        let params = GroupParams { levels: levels.to_vec(), tolerance: 0.02, ..GroupParams::default() };
+        solve_groups(&responses, &goals, &params).unwrap()
+    };
+    let free = solve(&[]);
+    let most = free.scale.iter().map(|x| x.x).fold(0.0, f64::max);
+    let levels: Vec<f64> = (0..=10).rev().map(|i| most * 0.1 * f64::from(i)).collect();
+    let stepped = solve(&levels);
+    assert!(stepped.scale.iter().all(|x| levels.contains(&x.x) && *x == DVec3::splat(x.x)), "{stepped:?}");
+    assert!(stepped.unreachable.is_none() && stepped.half_width == free.half_width, "{stepped:?}");
+    let coarse = solve(&[0.0, 40.0 * most]);
+    assert!(coarse.unreachable.is_some(), "{coarse:?}");
+    let params = GroupParams { levels: vec![-1.0], ..GroupParams::default() };
+    assert_eq!(solve_groups(&responses, &goals, &params).unwrap_err().kind, ErrorKind::InvalidArgument);
+}
+
 /// Colours that are free are solved channel by channel, as the closed form does.
 #[test]
 fn free_colours_meet_a_coloured_goal() {

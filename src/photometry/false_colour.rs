@@ -1,0 +1,314 @@
+//! False colour: a luminance or illuminance image as colours whose order the eye sees, with a scale bar that says what they
+//! mean.
+//!
+//! The colours run from dark violet over red to light yellow in OKLab (Ottosson 2020): their lightness grows evenly with the
+//! value, so that what is brighter is more, also for the colour-blind and on grey paper, and their hue tells steps apart.
+
+use super::glyphs::{self, draw};
+use crate::error::{Error, Result, check_range};
+use crate::image::{Image, colour};
+use glam::Vec3;
+
+/// How values are spread over the colours.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scale {
+    Linear,
+    /// Decades are equally wide.
+    Logarithmic,
+}
+
+/// What the values are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unit {
+    /// Luminance, in cd/m².
+    Luminance,
+    /// Illuminance, in lux.
+    Illuminance,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct Params {
+    pub scale: Scale,
+    pub unit: Unit,
+    /// Value of the darkest colour, ≥ 0; > 0 on a logarithmic scale, where 0 stands for a thousandth of the largest.
+    pub least: f64,
+    /// Value of the lightest colour, > `least`; 0 stands for the largest value of the image.
+    pub most: f64,
+    /// Whether the scale bar is drawn beside the image, which then is wider.
+    pub bar: bool,
+}
+
+impl Default for Params {
+    fn default() -> Self {
+        Self { scale: Scale::Linear, unit: Unit::Luminance, least: 0.0, most: 0.0, bar: true }
+    }
+}
+
+/// What has no value: a mesh's map between its triangles.
+const NOTHING: Vec3 = Vec3::splat(0.05);
+const PAPER: Vec3 = Vec3::splat(1.0);
+const INK: Vec3 = Vec3::ZERO;
+
+/// Linear RGB of a share of the scale, in `[0, 1]`.
+pub fn colour_of(share: f64) -> Vec3 {
+    let t = share.clamp(0.0, 1.0) as f32;
+    let lightness = 0.22 + 0.73 * t;
+    // Chroma as large as sRGB has along the way: none at the ends, most at the reds.
+    let chroma = 0.19 * (4.0 * t * (1.0 - t)).sqrt() * (1.0 - 0.25 * t) + 0.03 + 0.05 * t;
+    let hue = (-75.0 + 180.0 * t).to_radians();
+    let wanted = oklab_to_linear(lightness, chroma * hue.cos(), chroma * hue.sin());
+    // What is out of gamut loses chroma, never lightness: by a search, since the gamut has no simple form.
+    if inside(wanted) {
+        return wanted.clamp(Vec3::ZERO, Vec3::ONE);
+    }
+    let (mut low, mut high) = (0.0, chroma);
+    for _ in 0..24 {
+        let middle = 0.5 * (low + high);
+        let fits = inside(oklab_to_linear(lightness, middle * hue.cos(), middle * hue.sin()));
+        if fits { low = middle } else { high = middle }
+    }
+    oklab_to_linear(lightness, low * hue.cos(), low * hue.sin()).clamp(Vec3::ZERO, Vec3::ONE)
+}
+
+fn inside(rgb: Vec3) -> bool {
+    rgb.min_element() >= -1e-4 && rgb.max_element() <= 1.0 + 1e-4
+}
+
+/// Ottosson 2020, "A perceptual color space for image processing".
+fn oklab_to_linear(lightness: f32, a: f32, b: f32) -> Vec3 {
+    let l = lightness + 0.396_337_78 * a + 0.215_803_76 * b;
+    let m = lightness - 0.105_561_346 * a - 0.063_854_17 * b;
+    let s = lightness - 0.089_484_18 * a - 1.291_485_5 * b;
+    let (l, m, s) = (l * l * l, m * m * m, s * s * s);
+    Vec3::new(
+        4.076_741_7 * l - 3.307_711_6 * m + 0.230_969_94 * s,
+        -1.268_438 * l + 2.609_757_4 * m - 0.341_319_38 * s,
+        -0.004_196_086_3 * l - 0.703_418_6 * m + 1.707_614_7 * s,
+    )
+}
+
+/// The image in false colour, linear RGB. Its luminance counts where it has three channels, its values where it has one.
+///
+/// # Errors
+/// A range that is none; an image without a value above 0 where the range is to come from it.
+pub fn render(image: &Image, params: &Params) -> Result<Image> {
+    let value = |x: usize, y: usize| match image.channels {
+        1 => image.pixel(x, y)[0],
+        _ => colour::luminance(image.rgb(x, y)),
+    };
+    let range = Range::new(params, || {
+        let all = (0..image.height).flat_map(|y| (0..image.width).map(move |x| (x, y)));
+        all.map(|(x, y)| value(x, y)).filter(|v| v.is_finite()).fold(0.0, f32::max)
+    })?;
+    // 256 steps are finer than the eye.
+    let table: Vec<Vec3> = (0..256).map(|i| colour_of(f64::from(i) / 255.0)).collect();
+    let seen = |x: usize, y: usize| {
+        let share = range.share(f64::from(value(x, y)));
+        if share.is_nan() { NOTHING } else { table[(share * 255.0).round() as usize] }
+    };
+    if !params.bar {
+        return Image::from_fn(image.width, image.height, |x, y| seen(x, y).to_array());
+    }
+    // Letters as high as a twenty-fourth of the image, in whole pixels.
+    let dot = (image.height / (24 * glyphs::HEIGHT)).max(1);
+    let bar = Bar::new(&range, params.unit, dot, image.height);
+    let mut out = Image::from_fn(image.width + bar.width, image.height, |x, y| {
+        (if x < image.width { seen(x, y) } else { bar.background(x - image.width, y, &table) }).to_array()
+    })?;
+    bar.label(&mut out, image.width);
+    Ok(out)
+}
+
+struct Range {
+    scale: Scale,
+    least: f64,
+    most: f64,
+}
+
+impl Range {
+    fn new(params: &Params, largest: impl FnOnce() -> f32) -> Result<Self> {
+        check_range("least", params.least, 0.0, f64::from(f32::MAX))?;
+        check_range("most", params.most, 0.0, f64::from(f32::MAX))?;
+        let most = if params.most > 0.0 { params.most } else { f64::from(largest()) };
+        let least = match params.scale {
+            Scale::Logarithmic if params.least == 0.0 => most / 1e3,
+            _ => params.least,
+        };
+        if !(most > least) {
+            return Err(Error::argument(format!(
+                "the scale goes from {least} to {most}; the second must be larger: set least and most, or give an image \
+                 with light"
+            )));
+        }
+        Ok(Self { scale: params.scale, least, most })
+    }
+
+    /// Where a value lies on the scale, in `[0, 1]`; NaN stays.
+    fn share(&self, value: f64) -> f64 {
+        let share = match self.scale {
+            Scale::Linear => (value - self.least) / (self.most - self.least),
+            // Nothing is at the dark end.
+            Scale::Logarithmic if value <= 0.0 => 0.0,
+            Scale::Logarithmic => (value / self.least).ln() / (self.most / self.least).ln(),
+        };
+        share.clamp(0.0, 1.0)
+    }
+
+    /// Values to be named, no more than `count`: 1, 2 and 5 times powers of ten.
+    fn ticks(&self, count: usize) -> Vec<f64> {
+        let nice = |exponent: i32, digit: f64| digit * 10f64.powi(exponent);
+        let exponents =
+            (self.least.max(self.most / 1e6).log10().floor() as i32 - 1)..=(self.most.log10().ceil() as i32);
+        let within = |v: &f64| *v >= self.least * (1.0 - 1e-9) && *v <= self.most * (1.0 + 1e-9);
+        match self.scale {
+            Scale::Linear => {
+                // The smallest nice step that is wide enough.
+                let wide = (self.most - self.least) / count.max(1) as f64;
+                let exponent = wide.log10().floor() as i32;
+                let steps = [(exponent, 1.0), (exponent, 2.0), (exponent, 5.0), (exponent + 1, 1.0)];
+                let step = steps.map(|(e, d)| nice(e, d)).into_iter().find(|s| *s >= wide * (1.0 - 1e-9));
+                let step = step.unwrap_or(wide);
+                let first = (self.least / step * (1.0 - 1e-12)).ceil();
+                (0..=count).map(|i| (first + i as f64) * step).filter(within).collect()
+            }
+            Scale::Logarithmic => {
+                let all = |digits: &'static [f64], every: usize| -> Vec<f64> {
+                    let decades = exponents.clone().filter(|e| e.rem_euclid(every as i32) == 0);
+                    decades.flat_map(|e| digits.iter().map(move |d| nice(e, *d))).filter(within).collect()
+                };
+                let choices = [(&[1.0, 2.0, 5.0][..], 1), (&[1.0][..], 1), (&[1.0][..], 2), (&[1.0][..], 4)];
+                let choices = choices.map(|(digits, every)| all(digits, every));
+                choices.into_iter().find(|ticks| ticks.len() <= count).unwrap_or_default()
+            }
+        }
+    }
+}
+
+/// The scale bar: a strip of colours on paper, with ticks, numbers and the unit above.
+struct Bar {
+    /// Pixels per dot of a letter.
+    dot: usize,
+    width: usize,
+    top: usize,
+    bottom: usize,
+    left: usize,
+    right: usize,
+    unit: &'static str,
+    /// The row of each tick, and its text.
+    ticks: Vec<(usize, String)>,
+}
+
+impl Bar {
+    fn new(range: &Range, unit: Unit, dot: usize, height: usize) -> Self {
+        let line = (glyphs::HEIGHT + 2) * dot;
+        let (top, bottom) = ((2 * line).min(height / 3), height - line.min(height / 3));
+        let unit = match unit {
+            Unit::Luminance => "cd/m2",
+            Unit::Illuminance => "lx",
+        };
+        let count = (bottom - top) / (2 * line);
+        let row =
+            |value: f64| bottom - 1 - (range.share(value) * (bottom - top).saturating_sub(1) as f64).round() as usize;
+        let ticks: Vec<(usize, String)> = range.ticks(count).iter().map(|&v| (row(v), text(v))).collect();
+        let letters = ticks.iter().map(|t| t.1.len() + 1).chain([unit.len()]).max().unwrap_or(0);
+        let (left, right) = (2 * dot, 8 * dot);
+        Self { dot, width: right + (letters * glyphs::ADVANCE + 3) * dot, top, bottom, left, right, unit, ticks }
+    }
+
+    fn background(&self, x: usize, y: usize, table: &[Vec3]) -> Vec3 {
+        if !(self.top..self.bottom).contains(&y) || !(self.left..self.right + self.dot).contains(&x) {
+            return PAPER;
+        }
+        if x >= self.right {
+            let ticked = self.ticks.iter().any(|(row, _)| y.abs_diff(*row) <= self.dot / 2);
+            return if ticked { INK } else { PAPER };
+        }
+        let height = (self.bottom - self.top).saturating_sub(1).max(1);
+        table[(self.bottom - 1 - y) * 255 / height]
+    }
+
+    fn label(&self, out: &mut Image, from: usize) {
+        let half = glyphs::HEIGHT * self.dot / 2;
+        draw(out, self.unit, [from + self.left, self.top / 2 - half.min(self.top / 2)], self.dot, INK);
+        for (row, text) in &self.ticks {
+            draw(out, text, [from + self.right + 3 * self.dot, row.saturating_sub(half)], self.dot, INK);
+        }
+    }
+}
+
+/// A number as short as it can be said, with an exponent where it would have many zeros.
+fn text(value: f64) -> String {
+    let rounded: f64 = format!("{value:.3e}").parse().unwrap_or(value);
+    if rounded == 0.0 || (1e-3..1e6).contains(&rounded) { rounded.to_string() } else { format!("{rounded:e}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Lightness grows evenly in CIELAB too, which the map was not made in; no two neighbours are alike.
+    #[test]
+    fn colours_are_in_perceptual_order() {
+        let lightness: Vec<f32> = (0..=32).map(|i| colour::linear_to_lab(colour_of(f64::from(i) / 32.0)).x).collect();
+        let steps: Vec<f32> = lightness.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        let mean = (lightness[32] - lightness[0]) / 32.0;
+        assert!(lightness[0] < 12.0 && lightness[32] > 90.0, "{lightness:?}");
+        assert!(steps.iter().all(|s| (0.5 * mean..1.6 * mean).contains(s)), "{steps:?}");
+        let hues = [0.0, 0.33, 0.67, 1.0].map(colour_of);
+        assert!(hues[0].z > hues[0].y && hues[1].x > hues[1].y && hues[3].x > hues[3].z, "{hues:?}");
+    }
+
+    #[test]
+    fn values_get_the_colour_of_their_place_on_the_scale() {
+        let image = Image::from_fn(4, 1, |x, _| [[1.0, 10.0, 100.0, f32::NAN][x]]).unwrap();
+        let plain = Params { bar: false, ..Params::default() };
+        let at = |params: &Params, x| render(&image, params).unwrap().rgb(x, 0);
+        let close = |a: Vec3, share: f64| (a - colour_of(share)).abs().max_element() < 0.01;
+        assert!(close(at(&plain, 2), 1.0) && close(at(&plain, 1), 0.1) && at(&plain, 3) == NOTHING);
+        let log = Params { scale: Scale::Logarithmic, least: 1.0, most: 1e4, ..plain.clone() };
+        assert!(close(at(&log, 0), 0.0) && close(at(&log, 1), 0.25) && close(at(&log, 2), 0.5));
+        // Colour images count by their luminance.
+        let green = Image::from_fn(1, 1, |_, _| [0.0, 100.0, 0.0]).unwrap();
+        let shown = render(&green, &Params { most: 143.033_74, ..plain.clone() }).unwrap().rgb(0, 0);
+        assert!(close(shown, 0.5), "{shown}");
+        // A range must be one.
+        let dark = Image::new(2, 2, 1).unwrap();
+        for (image, params) in [
+            (&dark, plain.clone()),
+            (&image, Params { least: 5.0, most: 5.0, ..plain.clone() }),
+            (&image, Params { least: -1.0, ..plain.clone() }),
+            (&image, Params { most: f64::NAN, ..plain.clone() }),
+        ] {
+            assert!(render(image, &params).is_err(), "{params:?}");
+        }
+    }
+
+    #[test]
+    fn ticks_are_round_numbers() {
+        let range = |scale, least, most| Range { scale, least, most };
+        assert_eq!(range(Scale::Linear, 0.0, 1000.0).ticks(5), [0.0, 200.0, 400.0, 600.0, 800.0, 1000.0]);
+        assert_eq!(range(Scale::Linear, 120.0, 310.0).ticks(4), [150.0, 200.0, 250.0, 300.0]);
+        assert_eq!(range(Scale::Logarithmic, 1.0, 1000.0).ticks(12).len(), 10);
+        assert_eq!(range(Scale::Logarithmic, 1.0, 1000.0).ticks(5), [1.0, 10.0, 100.0, 1000.0]);
+        assert_eq!([0.0, 0.5, 1500.0, 2e7, 1e-5].map(text), ["0", "0.5", "1500", "2e7", "1e-5"]);
+    }
+
+    /// The bar stands beside the image: dark below, light above, with ink in its letters; images of any size have one.
+    #[test]
+    fn the_bar_is_drawn() {
+        let image = Image::from_fn(200, 300, |x, y| [(x * y) as f32]).unwrap();
+        let shown = render(&image, &Params { unit: Unit::Illuminance, ..Params::default() }).unwrap();
+        assert!(shown.width > 220 && shown.height == 300);
+        let strip: Vec<f32> = (0..300).map(|y| colour::luminance(shown.rgb(204, y))).collect();
+        let (low, high) = (strip[280], strip[60]);
+        assert!(low < 0.1 && high > 0.5, "{low} {high}");
+        let ink =
+            (0..300).flat_map(|y| (210..shown.width).map(move |x| (x, y))).filter(|&(x, y)| shown.rgb(x, y) == INK);
+        assert!(ink.count() > 100);
+        for (width, height) in [(1, 1), (3, 2), (1, 40)] {
+            let small = Image::from_fn(width, height, |_, _| [1.0]).unwrap();
+            let shown = render(&small, &Params::default()).unwrap();
+            assert_eq!(shown.height, height);
+        }
+    }
+}

@@ -1,0 +1,144 @@
+//! Powers in steps: drivers that dim to a few levels only.
+//!
+//! Rounding every group for itself adds up: with lamps that are alike, all are wrong to the same side. Here each group in turn
+//! gets the level that is best for the goals beside what the others have, by the same sum of squares that the powers were
+//! solved with; again and again until none changes (coordinate descent), from two starts of which the better end counts. Along one group the sum is convex, so its best level
+//! is found by going from level to level while it falls.
+
+use super::bounded::dot;
+use super::sided::Sense;
+
+/// The goals' terms: as in [`super::sided::Problem`].
+pub(super) struct Terms<'a> {
+    pub matrix: &'a [f64],
+    pub right: &'a [f64],
+    pub senses: &'a [Sense],
+}
+
+/// Rounds over all groups, of which a few suffice.
+const ROUNDS: usize = 100;
+/// A gain, relative to the goals, that is rounding only.
+const ROUNDING: f64 = 1e-14;
+
+/// Powers on their way to levels, and the light of each term under them.
+#[derive(Clone)]
+struct State {
+    powers: Vec<f64>,
+    chosen: Vec<usize>,
+    light: Vec<f64>,
+}
+
+impl Terms<'_> {
+    /// The levels (rising, not empty) of groups whose powers without steps are `x`, none above its bound unless the lowest is.
+    pub fn round(&self, x: &[f64], levels: &[f64], upper: &[f64]) -> Vec<f64> {
+        let most: Vec<usize> = upper.iter().map(|u| levels.partition_point(|l| l <= u).max(1) - 1).collect();
+        let nearest = |j: usize| {
+            let off = |l: usize| (levels[l] - x[j]).abs();
+            (0..=most[j]).min_by(|&a, &b| off(a).total_cmp(&off(b))).unwrap_or(0)
+        };
+        let chosen: Vec<usize> = (0..x.len()).map(nearest).collect();
+        let light = self.matrix.chunks_exact(x.len()).map(|row| dot(row, x)).collect();
+        // From the nearest levels of all; and group after group beside powers that have no steps yet.
+        let after = State { powers: x.to_vec(), chosen, light };
+        let mut at_once = after.clone();
+        (0..x.len()).for_each(|j| self.set(&mut at_once, j, after.chosen[j], levels));
+        let [a, b] = [at_once, after].map(|start| self.descend(start, levels, &most));
+        if self.sum(&a, 0, 0.0) <= self.sum(&b, 0, 0.0) { a.powers } else { b.powers }
+    }
+
+    fn descend(&self, mut state: State, levels: &[f64], most: &[usize]) -> State {
+        let small = ROUNDING * dot(self.right, self.right);
+        for round in 0..ROUNDS {
+            let mut changed = false;
+            for j in 0..state.powers.len() {
+                let sum = |l: usize| self.sum(&state, j, levels[l] - state.powers[j]);
+                let mut best = (state.chosen[j], sum(state.chosen[j]));
+                for up in [true, false] {
+                    while let Some(next) = if up { best.0.checked_add(1) } else { best.0.checked_sub(1) } {
+                        let there = if next <= most[j] { sum(next) } else { break };
+                        if there >= best.1 - small {
+                            break;
+                        }
+                        best = (next, there);
+                    }
+                }
+                changed |= round == 0 || best.0 != state.chosen[j];
+                self.set(&mut state, j, best.0, levels);
+            }
+            if !changed {
+                break;
+            }
+        }
+        state
+    }
+
+    fn set(&self, state: &mut State, j: usize, level: usize, levels: &[f64]) {
+        let (n, change) = (state.powers.len(), levels[level] - state.powers[j]);
+        state.light.iter_mut().enumerate().for_each(|(i, l)| *l += self.matrix[i * n + j] * change);
+        (state.powers[j], state.chosen[j]) = (levels[level], level);
+    }
+
+    /// The sum of squares when group `j` is changed.
+    fn sum(&self, state: &State, j: usize, change: f64) -> f64 {
+        let n = state.powers.len();
+        let light = |i: usize| state.light[i] + self.matrix[i * n + j] * change;
+        (0..self.right.len()).map(|i| self.senses[i].miss(light(i) - self.right[i]).powi(2)).sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rng::Rng;
+
+    const FREE: f64 = f64::INFINITY;
+
+    fn cost(terms: &Terms, x: &[f64]) -> f64 {
+        let light: Vec<f64> = terms.matrix.chunks_exact(x.len()).map(|r| dot(r, x)).collect();
+        light.iter().zip(terms.right).zip(terms.senses).map(|((l, b), s)| s.miss(l - b).powi(2)).sum()
+    }
+
+    #[test]
+    fn lamps_that_are_alike_share_the_rounding() {
+        // Ten lamps at 0.24 of 1: on and off only, two or three of them must be on.
+        let terms = Terms { matrix: &[1.0; 10], right: &[2.4], senses: &[Sense::Exactly] };
+        let on = terms.round(&[0.24; 10], &[0.0, 1.0], &[FREE; 10]).iter().sum::<f64>();
+        assert_eq!(on, 2.0);
+        let terms = Terms { senses: &[Sense::AtLeast], ..terms };
+        assert_eq!(terms.round(&[0.24; 10], &[0.0, 1.0], &[FREE; 10]).iter().sum::<f64>(), 3.0);
+        // One alone goes to the nearest level, and keeps its bound.
+        let terms = Terms { matrix: &[2.0], right: &[1.5], senses: &[Sense::Exactly] };
+        assert_eq!(terms.round(&[0.75], &[0.0, 0.5, 0.7, 1.0], &[FREE]), [0.7]);
+        assert_eq!(terms.round(&[0.5], &[0.0, 0.5, 0.7, 1.0], &[0.6]), [0.5]);
+        assert_eq!(terms.round(&[0.1], &[0.2, 0.5], &[0.1]), [0.2]);
+    }
+
+    /// Against all combinations: never worse than rounding each for itself, no single change helps, mostly the best.
+    #[test]
+    fn joint_choices_against_all_combinations() {
+        let mut rng = Rng::new(11, &[]);
+        let levels = [0.0, 0.25, 0.5, 0.75, 1.0];
+        let mut gaps = Vec::new();
+        for _ in 0..60 {
+            let (m, n) = (2, 5);
+            let matrix: Vec<f64> = (0..m * n).map(|_| rng.next_f64()).collect();
+            let x: Vec<f64> = (0..n).map(|_| rng.next_f64()).collect();
+            let right: Vec<f64> = matrix.chunks_exact(n).map(|r| dot(r, &x)).collect();
+            let terms = Terms { matrix: &matrix, right: &right, senses: &[Sense::Exactly; 2] };
+            let found = terms.round(&x, &levels, &[FREE; 5]);
+            let reached = cost(&terms, &found);
+            let rounded: Vec<f64> = x.iter().map(|x| (x * 4.0).round() / 4.0).collect();
+            assert!(reached <= cost(&terms, &rounded) + 1e-12);
+            for j in 0..n {
+                for level in levels {
+                    let mut other = found.clone();
+                    other[j] = level;
+                    assert!(cost(&terms, &other) >= reached - 1e-12);
+                }
+            }
+            gaps.push((reached.sqrt(), cost(&terms, &rounded).sqrt()));
+        }
+        let mean = |i: usize| gaps.iter().map(|g| [g.0, g.1][i]).sum::<f64>() / gaps.len() as f64;
+        assert!(mean(0) < 0.6 * mean(1), "{} {}", mean(0), mean(1));
+    }
+}
