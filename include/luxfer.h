@@ -2378,6 +2378,16 @@ luxfer_status luxfer_lamps_set_sense(luxfer_lamps *lamps,
                                      luxfer_sense green,
                                      luxfer_sense blue);
 
+/**
+ * Sets the multipliers that the lamps' drivers can be dimmed to, each finite and >= 0, in any order; count is at most 4096, 0
+ * for drivers that have no steps. The groups then get the levels that together are best for the goals, and half-widths
+ * stay those of powers without steps. Any thread.
+ * LUXFER_INVALID_ARGUMENT if a level is not finite or negative, or there are too many.
+ */
+luxfer_status luxfer_lamps_set_levels(luxfer_lamps *lamps,
+                                      const double *levels,
+                                      uint32_t count);
+
 /** Forgets the goals. Any thread. */
 luxfer_status luxfer_lamps_clear_goals(luxfer_lamps *lamps);
 
@@ -2762,6 +2772,180 @@ luxfer_status luxfer_image_glare(luxfer_image *image,
                                  luxfer_glare_report *report);
 
 /* ====================================================================================================================
+ * False colour
+ *
+ * A luminance or illuminance image as colours whose order the eye sees, with a scale bar.
+ * ==================================================================================================================== */
+
+/** How values are spread over the colours: a LUXFER_SCALE_ value. */
+typedef int32_t luxfer_scale;
+
+/** What the values of an image are: a LUXFER_UNIT_ value. */
+typedef int32_t luxfer_unit;
+
+/** Settings of a false colour image. Fill them with luxfer_false_colour_params_init. */
+typedef struct luxfer_false_colour_params {
+    /** sizeof(luxfer_false_colour_params), set by luxfer_false_colour_params_init. */
+    uint32_t struct_size;
+    /** LUXFER_SCALE_ value; default LUXFER_SCALE_LINEAR. */
+    luxfer_scale scale;
+    /** LUXFER_UNIT_ value, written above the bar; default LUXFER_UNIT_LUMINANCE. */
+    luxfer_unit unit;
+    /** 1: draw the scale bar beside the image, which then is wider; 0: none; default 1. */
+    uint32_t bar;
+    /**
+     * Value of the darkest colour, >= 0; on a logarithmic scale 0 stands for a thousandth of the largest; default 0.
+     */
+    double least;
+    /** Value of the lightest colour, more than least; 0 stands for the largest value of the image; default 0. */
+    double most;
+} luxfer_false_colour_params;
+
+/** Evenly. */
+#define LUXFER_SCALE_LINEAR 0
+
+/** Decades are equally wide. */
+#define LUXFER_SCALE_LOGARITHMIC 1
+
+/** Luminance in cd/m². */
+#define LUXFER_UNIT_LUMINANCE 0
+
+/** Illuminance in lux. */
+#define LUXFER_UNIT_ILLUMINANCE 1
+
+/**
+ * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+ */
+luxfer_status luxfer_false_colour_params_init(luxfer_false_colour_params *params,
+                                              size_t size);
+
+/**
+ * Shows an image (1 channel, or linear RGB, of which the luminance counts) in false colour: linear RGB, grey where a value is
+ * NaN. params may be NULL for the defaults. Takes some milliseconds for each megapixel. The caller releases *shown. Any
+ * thread.
+ * LUXFER_INVALID_ARGUMENT if the range is none, or the image has no light to take it from; LUXFER_OUT_OF_MEMORY beyond the
+ * memory budget.
+ */
+luxfer_status luxfer_image_false_colour(luxfer_image *image,
+                                        const luxfer_false_colour_params *params,
+                                        luxfer_image **shown);
+
+/* ====================================================================================================================
+ * Lighting design
+ *
+ * What luminaires can make of a light that was found: the drives of their LEDs, the blackbody that comes nearest; what it takes
+ * in power; and what a standard asks for. These calls return when they are done.
+ * ==================================================================================================================== */
+
+/** A light mixed from primaries. Set struct_size before the call. */
+typedef struct luxfer_mixture {
+    /** sizeof(luxfer_mixture), set by the caller. */
+    uint32_t struct_size;
+    /** 1 if it is the colour asked for; 0 if that is out of reach, and this the nearest. */
+    uint32_t reached;
+    /** The linear colour it is. */
+    double colour[3];
+    /** CIEDE2000 difference from the colour asked for, seen at the exposure that shows that as a middle grey. */
+    double delta_e;
+} luxfer_mixture;
+
+/** The blackbody light that suits a target. Set struct_size before the call. */
+typedef struct luxfer_temperature_fit {
+    /** sizeof(luxfer_temperature_fit), set by the caller. */
+    uint32_t struct_size;
+    /** 0. */
+    uint32_t reserved;
+    /** Correlated colour temperature, in [1000, 20000] kelvin. */
+    double kelvin;
+    /** Luminance of the emission, >= 0, where responses are those to 1 cd/m² of white. */
+    double luminance;
+    /** Mean radiance of the target under it and all other light, in cd/m². */
+    double achieved[3];
+    /** CIEDE2000 difference of that from the target, seen at the exposure that shows the target as a middle grey. */
+    double delta_e;
+} luxfer_temperature_fit;
+
+/**
+ * What EN 12464-1 asks of a place, as makers of luminaires quote it. The standard itself is what counts. Set struct_size
+ * before the call.
+ */
+typedef struct luxfer_preset {
+    /** sizeof(luxfer_preset), set by the caller. */
+    uint32_t struct_size;
+    /** Year of the edition of the standard. */
+    uint32_t edition;
+    /** Least mean illuminance of the task area, in lux. */
+    double illuminance;
+    /** Largest unified glare rating. */
+    double glare;
+    /** Least uniformity U0 of the task area. */
+    double uniformity;
+    /** Least colour rendering index. */
+    double rendering;
+    /** Least mean illuminance of the walls, in lux; 0 where none is asked for. */
+    double walls;
+    /** Least mean illuminance of the ceiling, in lux; 0 where none is asked for. */
+    double ceiling;
+} luxfer_preset;
+
+/**
+ * Mixes a linear RGB colour, three numbers that are finite and >= 0, from the LEDs of a luminaire: primaries holds the linear RGB
+ * of each at a drive of 1, negative where it is out of gamut; count is in [1, 64]. drives receives count numbers in
+ * [0, most]; most may be infinite. Of several mixtures it is the one of least squared drives. Any thread.
+ * LUXFER_DEGENERATE if all primaries are black, LUXFER_INVALID_ARGUMENT if a number is out of range.
+ */
+luxfer_status luxfer_mix_primaries(luxfer_context *context,
+                                   const double *primaries,
+                                   uint32_t count,
+                                   double most,
+                                   const double *colour,
+                                   double *drives,
+                                   luxfer_mixture *mixture);
+
+/**
+ * Finds the temperature and strength of blackbody light that bring a target nearest to a mean radiance. response, background
+ * and target hold three channels each: what luxfer_relight_get_report or luxfer_importance_respond tell for a white
+ * emission, what other lights bring, and what is wanted. Any thread.
+ * LUXFER_UNREACHABLE if no channel responds, LUXFER_INVALID_ARGUMENT if a number is not finite.
+ */
+luxfer_status luxfer_fit_temperature(luxfer_context *context,
+                                     const double *response,
+                                     const double *background,
+                                     const double *target,
+                                     luxfer_temperature_fit *fit);
+
+/**
+ * Tells the electric power per floor area, in W/m², that a luminous flux takes: flux in lumens, >= 0, efficacy of the
+ * luminaires in lumens per watt and area in m², both > 0. Any thread.
+ * LUXFER_INVALID_ARGUMENT if a number is out of range.
+ */
+luxfer_status luxfer_power_density(luxfer_context *context,
+                                   double flux,
+                                   double efficacy,
+                                   double area,
+                                   double *density);
+
+/** Tells the number of presets. Any thread. */
+luxfer_status luxfer_preset_count(luxfer_context *context, uint32_t *count);
+
+/**
+ * Tells what a preset asks for. Any thread.
+ * LUXFER_NOT_FOUND if there is no such preset.
+ */
+luxfer_status luxfer_preset_get(luxfer_context *context, uint32_t index, luxfer_preset *preset);
+
+/**
+ * Copies the name of a preset, such as "office: filing, copying", zero-terminated, into buffer of capacity bytes, cut if it is
+ * longer. *needed, unless NULL, receives the capacity for all of it. Any thread.
+ * LUXFER_NOT_FOUND if there is no such preset.
+ */
+luxfer_status luxfer_preset_name(luxfer_context *context,
+                                 uint32_t index,
+                                 char *buffer,
+                                 size_t capacity,
+                                 size_t *needed);
+
+/* ====================================================================================================================
  * Luminous intensity distributions
  *
  * What a luminaire sends out in which direction, from and to IES (LM-63) and EULUMDAT files. These calls return when they
@@ -3125,6 +3309,10 @@ typedef struct luxfer_fixture {
     double area;
     /** Luminous flux in lumens. */
     double flux;
+    /** Correlated colour temperature in kelvin; 0 for a lamp that is off. */
+    double cct;
+    /** Distance from the blackbody in the CIE 1960 diagram. */
+    double duv;
 } luxfer_fixture;
 
 /** The ten channels of the features. */
@@ -3219,7 +3407,7 @@ luxfer_status luxfer_transfer_get_fixture(luxfer_transfer *transfer,
 
 /**
  * Writes the luminaire schedule, every lamp of the lit scene, to a file whose name ends in .csv or .json: position, normal,
- * axis, size, area, luminance and flux, their units in the names of the columns; in .json also the corners of the outline
+ * axis, size, area, luminance, flux and colour temperature, their units in the names of the columns; in .json also the corners of the outline
  * in metres, as "outline_m". Any thread.
  * LUXFER_NOT_READY before the stage RELIGHT has ended; LUXFER_INVALID_ARGUMENT for another ending; LUXFER_IO if
  * the file cannot be written.

@@ -39,6 +39,8 @@ const GROUPS: &[&str] = &[
     "importance",
     "placement",
     "photometry",
+    "false_colour",
+    "design",
     "distribution",
     "transfer",
     "transfer_results",
@@ -371,6 +373,10 @@ layouts! {
         least_rotation most_rotation seed;
     luxfer_placement: struct_size reserved placement offset scale rotation response half_width band_error;
     luxfer_glare_report: struct_size sources ugr background threshold solid_angle;
+    luxfer_false_colour_params: struct_size scale unit bar least most;
+    luxfer_mixture: struct_size reached colour delta_e;
+    luxfer_temperature_fit: struct_size reserved kelvin luminance achieved delta_e;
+    luxfer_preset: struct_size edition illuminance glare uniformity rendering walls ceiling;
     luxfer_distribution_report: struct_size planes angles reserved flux lamp_flux watts size;
     luxfer_transfer_params: struct_size max_texels plane_distance white_luminance target rectify features plane lights
         emission relight render;
@@ -386,5 +392,5 @@ layouts! {
         broken_source broken_target;
     luxfer_stylize_round: struct_size passes energy;
     luxfer_stylize_pass: struct_size reserved knee coverage gained;
-    luxfer_fixture: struct_size position normal axis radiance reserved size area flux;
+    luxfer_fixture: struct_size position normal axis radiance reserved size area flux cct duv;
 }

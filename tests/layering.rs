@@ -29,8 +29,20 @@ const ARROWS: &[(&str, &[&str])] = &[
     (
         "transfer",
         &[
-            "error", "job", "exec", "rng", "image", "geometry", "scene", "render", "features", "segment", "rectify",
-            "emission", "relight",
+            "error",
+            "job",
+            "exec",
+            "rng",
+            "image",
+            "geometry",
+            "scene",
+            "render",
+            "features",
+            "segment",
+            "rectify",
+            "emission",
+            "relight",
+            "photometry",
         ],
     ),
 ];

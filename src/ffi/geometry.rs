@@ -76,12 +76,17 @@ fn corners(place: *const f64, name: &str) -> Result<[DVec2; 4]> {
 
 /// `N` numbers of the caller's, at any alignment.
 pub(super) fn numbers<const N: usize>(place: *const f64, name: &str) -> Result<[f64; N]> {
-    let bytes = bytes(place.cast(), N * size_of::<f64>(), name)?;
-    let mut numbers = [0.0; N];
-    for (number, raw) in numbers.iter_mut().zip(bytes.chunks_exact(size_of::<f64>())) {
+    let list = list(place, N, name)?;
+    Ok(std::array::from_fn(|i| list[i]))
+}
+
+/// `count` numbers of the caller's, at any alignment.
+pub(super) fn list(place: *const f64, count: usize, name: &str) -> Result<Vec<f64>> {
+    let bytes = bytes(place.cast(), count.saturating_mul(size_of::<f64>()), name)?;
+    let number = |raw: &[u8]| {
         let mut word = [0; size_of::<f64>()];
         word.copy_from_slice(raw);
-        *number = f64::from_ne_bytes(word);
-    }
-    Ok(numbers)
+        f64::from_ne_bytes(word)
+    };
+    Ok(bytes.chunks_exact(size_of::<f64>()).map(number).collect())
 }

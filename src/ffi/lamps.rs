@@ -5,6 +5,7 @@
 //! once.
 
 use super::context::luxfer_context;
+use super::geometry::list;
 use super::guard::{enter, guard};
 use super::handle::{self, Handle, Owned, tag};
 use super::illuminance::luxfer_illuminance_grid;
@@ -17,8 +18,8 @@ use super::stage::{Stage, need};
 use super::status::luxfer_status;
 use crate::error::{Error, ErrorKind, Result};
 use crate::relight::{
-    self, Aspect, Colour, Goal, GroupParams, GroupSolution, Lamps, Place, Quantity, Responses, Sense, lamp_responses,
-    solve_groups,
+    self, Aspect, Colour, Goal, GroupParams, GroupSolution, Lamps, MAX_LEVELS, Place, Quantity, Responses, Sense,
+    lamp_responses, solve_groups,
 };
 use crate::scene::Scene;
 use glam::Vec3;
@@ -109,6 +110,8 @@ unsafe impl Versioned for luxfer_lamps_params {
 pub(super) struct Inputs {
     emission: Option<(Arc<SceneObject>, u32)>,
     goals: Vec<Aim>,
+    /// Multipliers that the drivers have; empty for all.
+    levels: Vec<f64>,
 }
 
 /// A goal as the host has set it.
@@ -178,7 +181,8 @@ pub unsafe extern "C" fn luxfer_lamps_set_scene(
             return Err(missing("material", material, materials));
         }
         stage.change(|inputs| {
-            *inputs = Inputs { emission: Some((scene, material)), goals: Vec::new() };
+            inputs.emission = Some((scene, material));
+            inputs.goals.clear();
             Ok(())
         })
     })
@@ -274,6 +278,33 @@ fn sense(value: luxfer_sense) -> Result<Sense> {
     }
 }
 
+/// Sets the multipliers that the lamps' drivers can be dimmed to, each finite and >= 0, in any order; count is at most 4096, 0
+/// for drivers that have no steps. The groups then get the levels that together are best for the goals, and half-widths
+/// stay those of powers without steps. Any thread.
+/// LUXFER_INVALID_ARGUMENT if a level is not finite or negative, or there are too many.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_lamps_set_levels(
+    lamps: *mut luxfer_lamps,
+    levels: *const f64,
+    count: u32,
+) -> luxfer_status {
+    enter(lamps, |stage| {
+        if count as usize > MAX_LEVELS {
+            return Err(Error::argument(format!("count is {count}; it must be at most {MAX_LEVELS}")));
+        }
+        let levels = if count == 0 { Vec::new() } else { list(levels, count as usize, "levels")? };
+        for (i, level) in levels.iter().enumerate() {
+            if !(*level >= 0.0 && level.is_finite()) {
+                return Err(Error::argument(format!("level {i} is {level}; it must be finite and not negative")));
+            }
+        }
+        stage.change(|inputs| {
+            inputs.levels = levels;
+            Ok(())
+        })
+    })
+}
+
 /// Forgets the goals. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_clear_goals(lamps: *mut luxfer_lamps) -> luxfer_status {
@@ -316,7 +347,11 @@ pub unsafe extern "C" fn luxfer_lamps_start(
             let goals: Vec<Goal> = inputs.goals.iter().zip(&triangles).map(|(aim, t)| aim.goal(t)).collect();
             let tracing = params.tracing();
             let responses = lamp_responses(&world, material as usize, &lamps, &goals, &tracing, job.part(0.1, 0.95))?;
-            let solution = solve_groups(&responses.grouped(&group_of, groups)?, &goals, &params.solving(groups))?;
+            let solution = solve_groups(
+                &responses.grouped(&group_of, groups)?,
+                &goals,
+                &params.solving(groups, inputs.levels.clone()),
+            )?;
             let targets = inputs.goals.iter().map(|aim| aim.target).collect();
             let material = material as usize;
             Ok(Output { scene, material, lamps, group_of, responses, targets, solution })
@@ -363,10 +398,11 @@ impl luxfer_lamps_params {
         }
     }
 
-    fn solving(&self, groups: usize) -> GroupParams {
+    fn solving(&self, groups: usize, levels: Vec<f64>) -> GroupParams {
         GroupParams {
             colour: if self.free_colour == 1 { Colour::Free } else { Colour::Kept },
             most: vec![self.most; groups],
+            levels,
             evenness: self.evenness,
             tolerance: self.tolerance,
         }

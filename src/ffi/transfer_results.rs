@@ -168,15 +168,19 @@ pub struct luxfer_fixture {
     pub area: f64,
     /// Luminous flux in lumens.
     pub flux: f64,
+    /// Correlated colour temperature in kelvin; 0 for a lamp that is off.
+    pub cct: f64,
+    /// Distance from the blackbody in the CIE 1960 diagram.
+    pub duv: f64,
 }
 
 // SAFETY: plain numbers.
 unsafe impl Versioned for luxfer_fixture {
     const NAME: &'static str = "luxfer_fixture";
-    const SIZES: &'static [usize] = &[88];
+    const SIZES: &'static [usize] = &[104];
     fn defaults() -> Self {
         Self {
-            struct_size: 88,
+            struct_size: 104,
             position: [0.0; 3],
             normal: [0.0; 3],
             axis: [0.0; 3],
@@ -185,6 +189,8 @@ unsafe impl Versioned for luxfer_fixture {
             size: [0.0; 2],
             area: 0.0,
             flux: 0.0,
+            cct: 0.0,
+            duv: 0.0,
         }
     }
 }
@@ -324,6 +330,8 @@ pub unsafe extern "C" fn luxfer_transfer_get_fixture(
             size: lamp.size.to_array(),
             area: lamp.area,
             flux: lamp.flux,
+            cct: lamp.cct,
+            duv: lamp.duv,
             ..luxfer_fixture::defaults()
         });
         Ok(())
@@ -331,7 +339,7 @@ pub unsafe extern "C" fn luxfer_transfer_get_fixture(
 }
 
 /// Writes the luminaire schedule, every lamp of the lit scene, to a file whose name ends in .csv or .json: position, normal,
-/// axis, size, area, luminance and flux, their units in the names of the columns; in .json also the corners of the outline
+/// axis, size, area, luminance, flux and colour temperature, their units in the names of the columns; in .json also the corners of the outline
 /// in metres, as "outline_m". Any thread.
 /// LUXFER_NOT_READY before the stage RELIGHT has ended; LUXFER_INVALID_ARGUMENT for another ending; LUXFER_IO if
 /// the file cannot be written.

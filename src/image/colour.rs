@@ -53,6 +53,17 @@ pub fn linear_to_lab(rgb: Vec3) -> Vec3 {
     DVec3::new(116.0 * fy - 16.0, 500.0 * (fx - fy), 200.0 * (fy - fz)).as_vec3()
 }
 
+/// CIEDE2000 difference of a linear light from another that is wanted, seen at the exposure that shows that as a middle grey;
+/// 0 where it is black.
+pub fn delta_e_from(wanted: DVec3, light: DVec3) -> f64 {
+    let luminance = f64::from(luminance(wanted.as_vec3()));
+    if !(luminance > 0.0) {
+        return 0.0;
+    }
+    let seen = |light: DVec3| linear_to_lab((light * (0.18 / luminance)).as_vec3());
+    delta_e_2000(seen(wanted), seen(light))
+}
+
 /// CIEDE2000 difference of two CIELAB colours.
 pub fn delta_e_2000(a: Vec3, b: Vec3) -> f64 {
     let (a, b) = (a.as_dvec3(), b.as_dvec3());

@@ -92,31 +92,31 @@ fn oklab_to_linear(lightness: f32, a: f32, b: f32) -> Vec3 {
 /// # Errors
 /// A range that is none; an image without a value above 0 where the range is to come from it.
 pub fn render(image: &Image, params: &Params) -> Result<Image> {
-    let value = |x: usize, y: usize| match image.channels {
-        1 => image.pixel(x, y)[0],
-        _ => colour::luminance(image.rgb(x, y)),
-    };
-    let range = Range::new(params, || {
-        let all = (0..image.height).flat_map(|y| (0..image.width).map(move |x| (x, y)));
-        all.map(|(x, y)| value(x, y)).filter(|v| v.is_finite()).fold(0.0, f32::max)
-    })?;
+    let range = Range::new(params, image)?;
     // 256 steps are finer than the eye.
     let table: Vec<Vec3> = (0..256).map(|i| colour_of(f64::from(i) / 255.0)).collect();
     let seen = |x: usize, y: usize| {
-        let share = range.share(f64::from(value(x, y)));
+        let share = range.share(f64::from(value(image, x, y)));
         if share.is_nan() { NOTHING } else { table[(share * 255.0).round() as usize] }
     };
     if !params.bar {
         return Image::from_fn(image.width, image.height, |x, y| seen(x, y).to_array());
     }
-    // Letters as high as a twenty-fourth of the image, in whole pixels.
-    let dot = (image.height / (24 * glyphs::HEIGHT)).max(1);
-    let bar = Bar::new(&range, params.unit, dot, image.height);
+    let bar = Bar::new(&range, params.unit, image.height);
     let mut out = Image::from_fn(image.width + bar.width, image.height, |x, y| {
         (if x < image.width { seen(x, y) } else { bar.background(x - image.width, y, &table) }).to_array()
     })?;
     bar.label(&mut out, image.width);
     Ok(out)
+}
+
+/// By how many pixels the scale bar widens an image; 0 without one.
+pub fn bar_width(image: &Image, params: &Params) -> Result<usize> {
+    Ok(if params.bar { Bar::new(&Range::new(params, image)?, params.unit, image.height).width } else { 0 })
+}
+
+fn value(image: &Image, x: usize, y: usize) -> f32 {
+    if image.channels == 1 { image.pixel(x, y)[0] } else { colour::luminance(image.rgb(x, y)) }
 }
 
 struct Range {
@@ -126,10 +126,14 @@ struct Range {
 }
 
 impl Range {
-    fn new(params: &Params, largest: impl FnOnce() -> f32) -> Result<Self> {
+    fn new(params: &Params, image: &Image) -> Result<Self> {
         check_range("least", params.least, 0.0, f64::from(f32::MAX))?;
         check_range("most", params.most, 0.0, f64::from(f32::MAX))?;
-        let most = if params.most > 0.0 { params.most } else { f64::from(largest()) };
+        let largest = || {
+            let all = (0..image.height).flat_map(|y| (0..image.width).map(move |x| value(image, x, y)));
+            f64::from(all.filter(|v| v.is_finite()).fold(0.0, f32::max))
+        };
+        let most = if params.most > 0.0 { params.most } else { largest() };
         let least = match params.scale {
             Scale::Logarithmic if params.least == 0.0 => most / 1e3,
             _ => params.least,
@@ -199,7 +203,9 @@ struct Bar {
 }
 
 impl Bar {
-    fn new(range: &Range, unit: Unit, dot: usize, height: usize) -> Self {
+    fn new(range: &Range, unit: Unit, height: usize) -> Self {
+        // Letters as high as a twenty-fourth of the image, in whole pixels.
+        let dot = (height / (24 * glyphs::HEIGHT)).max(1);
         let line = (glyphs::HEIGHT + 2) * dot;
         let (top, bottom) = ((2 * line).min(height / 3), height - line.min(height / 3));
         let unit = match unit {

@@ -77,6 +77,10 @@ pub struct Fit {
     pub kelvin: f64,
     /// What to multiply [`blackbody`] of it with, ≥ 0: the luminance of the emission, where its strength was 1 cd/m².
     pub luminance: f64,
+    /// The target's mean radiance under it and the other lights.
+    pub achieved: DVec3,
+    /// CIEDE2000 difference of that from what is wanted, seen at the exposure that shows that as a middle grey.
+    pub delta_e: f64,
 }
 
 /// Finds temperature and strength of blackbody light for a target of mean radiance `target`, which has `background` from
@@ -94,7 +98,9 @@ pub fn fit(response: DVec3, background: DVec3, target: DVec3) -> Option<Fit> {
         return None;
     }
     let kelvin = 1e6 / search(|mired| at(1e6 / mired).1);
-    Some(Fit { kelvin, luminance: at(kelvin).0 })
+    let luminance = at(kelvin).0;
+    let achieved = background + response * blackbody(kelvin) * luminance;
+    Some(Fit { kelvin, luminance, achieved, delta_e: colour::delta_e_from(target, achieved) })
 }
 
 /// Where a function of the mired is least: a scan, then golden sections about the least.
@@ -177,6 +183,10 @@ mod tests {
         let target = background + response * blackbody(3500.0) * 800.0;
         let fit = fit(response, background, target).unwrap();
         assert!((fit.kelvin / 3500.0 - 1.0).abs() < 1e-6 && (fit.luminance / 800.0 - 1.0).abs() < 1e-6, "{fit:?}");
+        assert!((fit.achieved - target).abs().max_element() < 1e-3 && fit.delta_e < 1e-3, "{fit:?}");
+        // Green is no blackbody: the nearest is told with its difference.
+        let green = super::fit(DVec3::ONE, DVec3::ZERO, DVec3::new(0.2, 1.0, 0.2)).unwrap();
+        assert!(green.delta_e > 10.0 && green.luminance > 0.0, "{green:?}");
         // Other lights are brighter: off.
         assert_eq!(super::fit(response, background, DVec3::ZERO).unwrap().luminance, 0.0);
         assert_eq!(super::fit(DVec3::ZERO, background, target), None);

@@ -32,7 +32,7 @@ mod target;
 mod transport;
 
 pub use estimate::BATCHES;
-pub use groups::{Colour, GroupParams, GroupSolution, Outcome, solve_groups};
+pub use groups::{Colour, GroupParams, GroupSolution, MAX_LEVELS, Outcome, solve_groups};
 pub use importance::{Importance, MapParams, Response};
 pub use lamps::Lamps;
 pub use placement::{Aim, PlaceParams, Placement, Pose};

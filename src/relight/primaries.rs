@@ -63,19 +63,9 @@ pub fn mix_primaries(primaries: &[DVec3], most: f64, wanted: DVec3) -> Result<Mi
         upper: &upper,
     };
     let drives = problem.solve()?;
-    let colour: DVec3 = primaries.iter().zip(&drives).map(|(p, d)| *p * *d).sum();
-    let reached = (colour - wanted).length() <= REACHED * wanted.length();
-    Ok(Mixture { delta_e: difference(colour, wanted), drives, colour, reached })
-}
-
-/// CIEDE2000 at the exposure that shows `wanted` as a middle grey; 0 where that is black.
-fn difference(colour: DVec3, wanted: DVec3) -> f64 {
-    let luminance = f64::from(colour::luminance(wanted.as_vec3()));
-    if !(luminance > 0.0) {
-        return 0.0;
-    }
-    let seen = |light: DVec3| colour::linear_to_lab((light * (0.18 / luminance)).as_vec3());
-    colour::delta_e_2000(seen(wanted), seen(colour))
+    let mixed: DVec3 = primaries.iter().zip(&drives).map(|(p, d)| *p * *d).sum();
+    let reached = (mixed - wanted).length() <= REACHED * wanted.length();
+    Ok(Mixture { delta_e: colour::delta_e_from(wanted, mixed), drives, colour: mixed, reached })
 }
 
 #[cfg(test)]

@@ -95,18 +95,12 @@ impl Channel {
 }
 
 /// How far the target's colour may be off: Student's quantile of the root mean square difference that deviations as large
-/// as the standard error make, channels together as they came. That bounds 95 % of errors, whichever way they lie.
+/// as the standard error make, channels together as they came. That bounds 95 % of errors, whichever way they lie. Seen at the exposure that shows the
+/// target as a middle grey.
 fn colour_interval(answers: &[Answer; 3], response: DVec3, target: DVec3) -> f64 {
-    // As it is seen at the exposure that shows the target as a middle grey.
-    let luminance = f64::from(colour::luminance(target.as_vec3()));
-    if !(luminance > 0.0) {
-        return 0.0;
-    }
-    let seen = |light: DVec3| colour::linear_to_lab((light * (0.18 / luminance)).as_vec3());
-    let reference = seen(target);
     let squares = (0..BATCHES).map(|b| {
         let deviation = DVec3::from(std::array::from_fn(|c| answers[c].deviations[b])) / (BATCHES as f64 - 1.0).sqrt();
-        colour::delta_e_2000(reference, seen(target + deviation * response)).powi(2)
+        colour::delta_e_from(target, target + deviation * response).powi(2)
     });
     STUDENT_T * (squares.sum::<f64>() / BATCHES as f64).sqrt()
 }

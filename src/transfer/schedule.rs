@@ -5,6 +5,7 @@ use super::{LitScene, Results, Transfer};
 use crate::emission::Emission;
 use crate::error::Result;
 use crate::image::colour::luminance;
+use crate::photometry::temperature;
 use glam::{DVec2, Vec3};
 use std::f64::consts::PI;
 
@@ -25,6 +26,10 @@ pub struct Fixture {
     pub radiance: Vec3,
     /// Luminous flux in lumens: a Lambertian lamp sends out π × luminance × area.
     pub flux: f64,
+    /// Correlated colour temperature in kelvin, and distance from the blackbody locus
+    /// ([`crate::photometry::temperature::Temperature`]); 0 for a lamp that is off.
+    pub cct: f64,
+    pub duv: f64,
     /// Corners of the outline in metres.
     pub outline: Vec<Vec3>,
 }
@@ -57,6 +62,7 @@ fn fixture(emission: &Emission, lit: &LitScene, lamp: &crate::emission::Luminair
     let axis = DVec2::from_angle(lamp.orientation);
     let area = lamp.area * texel.x * texel.y;
     let radiance = lamp.colour * strength;
+    let temperature = temperature::of_rgb(radiance.as_dvec3());
     Fixture {
         position: on_surface(lamp.centre),
         normal: surface.normal,
@@ -65,6 +71,8 @@ fn fixture(emission: &Emission, lit: &LitScene, lamp: &crate::emission::Luminair
         area,
         radiance,
         flux: PI * f64::from(luminance(radiance)) * area,
+        cct: temperature.map_or(0.0, |t| t.kelvin),
+        duv: temperature.map_or(0.0, |t| t.duv),
         outline: lamp.outline.iter().map(|&corner| on_surface(corner)).collect(),
     }
 }

@@ -6,7 +6,7 @@ use super::Fixture;
 use glam::Vec3;
 use std::fmt::Write;
 
-const COLUMNS: [&str; 16] = [
+const COLUMNS: [&str; 18] = [
     "x_m",
     "y_m",
     "z_m",
@@ -23,13 +23,15 @@ const COLUMNS: [&str; 16] = [
     "green_cd_m2",
     "blue_cd_m2",
     "flux_lm",
+    "cct_k",
+    "duv",
 ];
 
-fn row(fixture: &Fixture) -> [f64; 16] {
+fn row(fixture: &Fixture) -> [f64; 18] {
     let [p, n, a, r] =
         [fixture.position, fixture.normal, fixture.axis, fixture.radiance].map(|v: Vec3| v.as_dvec3().to_array());
     let size = fixture.size;
-    let tail = [size.x, size.y, fixture.area, r[0], r[1], r[2], fixture.flux];
+    let tail = [size.x, size.y, fixture.area, r[0], r[1], r[2], fixture.flux, fixture.cct, fixture.duv];
     std::array::from_fn(|i| match i / 3 {
         0 => p[i],
         1 => n[i - 3],
@@ -86,6 +88,8 @@ mod tests {
             area: 0.36,
             radiance: Vec3::new(5000.0, 4000.0, 1.0 / 3.0),
             flux: 4321.123456789,
+            cct: 3000.0,
+            duv: -0.0012,
             outline: vec![Vec3::ZERO, Vec3::X, Vec3::Z],
         }
     }
@@ -96,7 +100,7 @@ mod tests {
         let lines: Vec<&str> = csv.lines().collect();
         assert_eq!(lines.len(), 3);
         assert!(lines.iter().all(|l| l.split(',').count() == COLUMNS.len()), "{csv}");
-        assert_eq!(lines[1], "0.1,2.5,-1,0,-1,0,1,0,0,1.2,0.3,0.36,5000,4000,0.3333333,4321.123");
+        assert_eq!(lines[1], "0.1,2.5,-1,0,-1,0,1,0,0,1.2,0.3,0.36,5000,4000,0.3333333,4321.123,3000,-0.0012");
         assert!(lines[2].split(',').all(|v| v.parse::<f64>().is_ok()));
         assert_eq!(to_csv(&[]).lines().count(), 1);
     }

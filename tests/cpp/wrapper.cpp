@@ -375,6 +375,18 @@ void lights_have_names() {
     CHECK(rgb[0] > 0.99 && rgb[0] < 1.01 && rgb[2] > 0.99 && rgb[2] < 1.01);
     CHECK_ERROR(luxfer::colour_temperature(context, 0, 0, 0), LUXFER_DEGENERATE);
     CHECK(ok(luxfer::glare(new_image(context), 1)).threshold >= 0);
+    const auto mixture = ok(luxfer::mix_primaries(context, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {0.5, 0.25, 2}, 1));
+    CHECK(mixture.light.reached == 0 && mixture.drives.size() == 3 && mixture.drives[2] == 1);
+    CHECK_ERROR(luxfer::mix_primaries(context, {}, {1, 1, 1}), LUXFER_INVALID_ARGUMENT);
+    const auto fit = ok(luxfer::fit_temperature(context, {1, 1, 1}, {0, 0, 0}, {9, 9, 9}));
+    CHECK(fit.kelvin > 6000 && fit.kelvin < 7000 && fit.luminance > 8 && fit.delta_e < 5);
+    CHECK(ok(luxfer::power_density(context, 1200, 120, 10)) == 1);
+    CHECK(ok(luxfer::preset_count(context)) > 1 && ok(luxfer::preset(context, 0)).illuminance == 500);
+    CHECK(ok(luxfer::preset_name(context, 0)).find("office") == 0);
+    CHECK_ERROR(luxfer::preset(context, 1000), LUXFER_NOT_FOUND);
+    luxfer::FalseColourParams range;
+    range.most = 10;
+    CHECK(ok(ok(luxfer::false_colour(new_image(context), range)).size()).width > ok(new_image(context).size()).width);
     const char *panel = "IESNA:LM-63-2002\n[LUMINAIRE] Panel\nTILT=NONE\n"
                         "1 -1 1 3 1 1 2 0.6 0.6 0\n1 1 30\n0 45 90\n0\n1000 707 0\n";
     const auto file = ok(luxfer::Distribution::load(context, panel, LUXFER_DISTRIBUTION_IES));
@@ -403,6 +415,7 @@ void stages_say_what_they_lack() {
     CHECK_ERROR(lamps.start(), LUXFER_INVALID_OPERATION);
     CHECK_ERROR(lamps.add_mesh(0, LUXFER_QUANTITY_OUTGOING, {1, 1, 1}), LUXFER_INVALID_OPERATION);
     CHECK_ERROR(lamps.set_sense(0, LUXFER_SENSE_AT_LEAST), LUXFER_NOT_FOUND);
+    CHECK_ERROR(lamps.set_levels({0, 0.5, -1}), LUXFER_INVALID_ARGUMENT);
     CHECK_ERROR(importance.start(), LUXFER_INVALID_OPERATION);
     CHECK_ERROR(guides.start(), LUXFER_INVALID_OPERATION);
     CHECK_ERROR(rectify.report(), LUXFER_NOT_READY);

@@ -174,6 +174,11 @@ class Rendering(Case):
             self.assertAlmostEqual(found, lux, delta=0.02 * lux)
         scaled = lamps.texture.numpy()
         np.testing.assert_allclose(scaled[3, 2], lamps.lamp(0).scale, rtol=1e-5)
+        # Drivers with steps: every lamp at one of them, and the desks near enough.
+        lamps.set_levels(np.linspace(0, 2 * max(lamps.lamp(i).scale[0] for i in (0, 1)), 41))
+        report = lamps.run(paths=1 << 14, tolerance=0.05).report
+        self.assertEqual(report.met, 1, lamps.reason)
+        lamps.set_levels([])
         # Limits: neither desk may have less, and what they have more is theirs.
         for goal in (0, 1):
             lamps.set_sense(goal, "at-least")

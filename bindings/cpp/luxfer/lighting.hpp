@@ -9,6 +9,7 @@ namespace luxfer {
 
 using LampsParams = Params<luxfer_lamps_params, luxfer_lamps_params_init>;
 using ImportanceParams = Params<luxfer_importance_params, luxfer_importance_params_init>;
+using FalseColourParams = Params<luxfer_false_colour_params, luxfer_false_colour_params_init>;
 using PlacementParams = Params<luxfer_placement_params, luxfer_placement_params_init>;
 
 /// Powers of the lamps of an emission that come nearest to several goals. See luxfer_lamps.
@@ -37,6 +38,11 @@ public:
     Result<> set_sense(std::uint32_t goal, luxfer_sense sense) const { return set_sense(goal, sense, sense, sense); }
     Result<> set_sense(std::uint32_t goal, luxfer_sense red, luxfer_sense green, luxfer_sense blue) const {
         return call(luxfer_lamps_set_sense, goal, red, green, blue);
+    }
+
+    /// The multipliers that the lamps' drivers can be dimmed to; none for drivers without steps.
+    Result<> set_levels(const std::vector<double> &levels) const {
+        return call(luxfer_lamps_set_levels, levels.data(), static_cast<std::uint32_t>(levels.size()));
     }
 
     Result<> clear_goals() const { return call(luxfer_lamps_clear_goals); }
@@ -160,6 +166,61 @@ inline Result<std::array<double, 3>> colour_of_temperature(const Context &contex
 inline Result<luxfer_glare_report> glare(const Image &image, double fov_y, double threshold = 0) {
     return detail::get_value<luxfer_glare_report>(image.context().get(), luxfer_image_glare, image.get(), fov_y,
                                                   threshold);
+}
+
+/// An image in false colour, with a scale bar.
+inline Result<Image> false_colour(const Image &image, const luxfer_false_colour_params &params = FalseColourParams()) {
+    luxfer_image *shown = nullptr;
+    const luxfer_status status = luxfer_image_false_colour(image.get(), &params, &shown);
+    return detail::finish(image.context().get(), status, Image(image.context(), shown));
+}
+
+/// A light mixed from primaries, and how strongly each is driven.
+struct Mixture {
+    std::vector<double> drives;
+    luxfer_mixture light;
+};
+
+/// Mixes a linear colour from the LEDs of a luminaire, none driven by more than most.
+inline Result<Mixture> mix_primaries(const Context &context, const std::vector<std::array<double, 3>> &primaries,
+                                     std::array<double, 3> colour, double most = 1) {
+    std::vector<double> flat;
+    for (const auto &primary : primaries) flat.insert(flat.end(), primary.begin(), primary.end());
+    Mixture mixture = {std::vector<double>(primaries.size()), {}};
+    mixture.light.struct_size = sizeof mixture.light;
+    const luxfer_status status =
+        luxfer_mix_primaries(context.get(), flat.data(), static_cast<std::uint32_t>(primaries.size()), most,
+                             colour.data(), mixture.drives.data(), &mixture.light);
+    return detail::finish(context.get(), status, std::move(mixture));
+}
+
+/// The blackbody light that brings a target nearest to a mean radiance.
+inline Result<luxfer_temperature_fit> fit_temperature(const Context &context, std::array<double, 3> response,
+                                                      std::array<double, 3> background, std::array<double, 3> target) {
+    return detail::get_value<luxfer_temperature_fit>(context.get(), luxfer_fit_temperature, context.get(),
+                                                     response.data(), background.data(), target.data());
+}
+
+/// Electric power per floor area in W/m²: lumens, lumens per watt, m².
+inline Result<double> power_density(const Context &context, double flux, double efficacy, double area) {
+    double density = 0;
+    const luxfer_status status = luxfer_power_density(context.get(), flux, efficacy, area, &density);
+    return detail::finish(context.get(), status, density);
+}
+
+inline Result<std::uint32_t> preset_count(const Context &context) {
+    std::uint32_t count = 0;
+    const luxfer_status status = luxfer_preset_count(context.get(), &count);
+    return detail::finish(context.get(), status, count);
+}
+
+/// What EN 12464-1 asks of a place.
+inline Result<luxfer_preset> preset(const Context &context, std::uint32_t index) {
+    return detail::get_value<luxfer_preset>(context.get(), luxfer_preset_get, context.get(), index);
+}
+
+inline Result<std::string> preset_name(const Context &context, std::uint32_t index) {
+    return detail::get_text(context.get(), luxfer_preset_name, context.get(), index);
 }
 
 } // namespace luxfer

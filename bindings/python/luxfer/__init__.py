@@ -21,7 +21,17 @@ from .image import Image, homography
 from .importance import Importance
 from .job import Job
 from .lamps import Lamps
-from .photometry import Distribution, colour_of_temperature, colour_temperature, glare
+from .photometry import (
+    Distribution,
+    colour_of_temperature,
+    colour_temperature,
+    false_colour,
+    fit_temperature,
+    glare,
+    mix_primaries,
+    power_density,
+    presets,
+)
 from .rectify import Rectify
 from .relight import Relight
 from .render import Render
@@ -58,9 +68,14 @@ __all__ = [
     "colour_of_temperature",
     "colour_temperature",
     "errors",
+    "false_colour",
+    "fit_temperature",
     "glare",
     "homography",
     "library",
+    "mix_primaries",
+    "power_density",
+    "presets",
     "print_sheet",
     "types",
 ]

@@ -123,6 +123,10 @@ LUXFER_SENSE_AT_MOST = 2
 LUXFER_AIM_MOST = 0
 LUXFER_AIM_LEAST = 1
 LUXFER_AIM_RADIANCE = 2
+LUXFER_SCALE_LINEAR = 0
+LUXFER_SCALE_LOGARITHMIC = 1
+LUXFER_UNIT_LUMINANCE = 0
+LUXFER_UNIT_ILLUMINANCE = 1
 LUXFER_DISTRIBUTION_IES = 0
 LUXFER_DISTRIBUTION_LDT = 1
 LUXFER_STAGE_VIEW = 0
@@ -874,6 +878,61 @@ class luxfer_glare_report(Structure):
     result = types.GlareReport
 
 
+class luxfer_false_colour_params(Structure):
+    """Settings of a false colour image."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("scale", c_int32),
+        ("unit", c_int32),
+        ("bar", c_uint32),
+        ("least", c_double),
+        ("most", c_double),
+    ]
+    enumerations: dict[str, type] = {"scale": types.Scale, "unit": types.Unit}
+
+
+class luxfer_mixture(Structure):
+    """A light mixed from primaries."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("reached", c_uint32),
+        ("colour", c_double * 3),
+        ("delta_e", c_double),
+    ]
+    result = types.Mixture
+
+
+class luxfer_temperature_fit(Structure):
+    """The blackbody light that suits a target."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("reserved", c_uint32),
+        ("kelvin", c_double),
+        ("luminance", c_double),
+        ("achieved", c_double * 3),
+        ("delta_e", c_double),
+    ]
+    result = types.TemperatureFit
+
+
+class luxfer_preset(Structure):
+    """What EN 12464-1 asks of a place, as makers of luminaires quote it. The standard itself is what counts."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("edition", c_uint32),
+        ("illuminance", c_double),
+        ("glare", c_double),
+        ("uniformity", c_double),
+        ("rendering", c_double),
+        ("walls", c_double),
+        ("ceiling", c_double),
+    ]
+
+
 class luxfer_distribution_report(Structure):
     """A distribution on the whole."""
 
@@ -945,6 +1004,8 @@ class luxfer_fixture(Structure):
         ("size", c_double * 2),
         ("area", c_double),
         ("flux", c_double),
+        ("cct", c_double),
+        ("duv", c_double),
     ]
     result = types.Fixture
 
@@ -1226,6 +1287,7 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_lamps_add_mesh": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("mesh", c_uint32), ("quantity", c_int32), ("red", c_float), ("green", c_float), ("blue", c_float), ("weight", c_double)]),
     "luxfer_lamps_add_grid": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("grid", POINTER(luxfer_illuminance_grid)), ("lux", c_float), ("weight", c_double)]),
     "luxfer_lamps_set_sense": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("goal", c_uint32), ("red", c_int32), ("green", c_int32), ("blue", c_int32)]),
+    "luxfer_lamps_set_levels": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("levels", POINTER(c_double)), ("count", c_uint32)]),
     "luxfer_lamps_clear_goals": (c_int32, [("lamps", POINTER(luxfer_lamps))]),
     "luxfer_lamps_start": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("params", POINTER(luxfer_lamps_params)), ("job", POINTER(POINTER(luxfer_job)))]),
     "luxfer_lamps_retain": (c_int32, [("lamps", POINTER(luxfer_lamps))]),
@@ -1250,6 +1312,14 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_colour_temperature": (c_int32, [("context", POINTER(luxfer_context)), ("red", c_double), ("green", c_double), ("blue", c_double), ("kelvin", POINTER(c_double)), ("duv", POINTER(c_double))]),
     "luxfer_colour_of_temperature": (c_int32, [("context", POINTER(luxfer_context)), ("kelvin", c_double), ("duv", c_double), ("rgb", POINTER(c_double))]),
     "luxfer_image_glare": (c_int32, [("image", POINTER(luxfer_image)), ("fov_y", c_double), ("threshold", c_double), ("report", POINTER(luxfer_glare_report))]),
+    "luxfer_false_colour_params_init": (c_int32, [("params", POINTER(luxfer_false_colour_params)), ("size", c_size_t)]),
+    "luxfer_image_false_colour": (c_int32, [("image", POINTER(luxfer_image)), ("params", POINTER(luxfer_false_colour_params)), ("shown", POINTER(POINTER(luxfer_image)))]),
+    "luxfer_mix_primaries": (c_int32, [("context", POINTER(luxfer_context)), ("primaries", POINTER(c_double)), ("count", c_uint32), ("most", c_double), ("colour", POINTER(c_double)), ("drives", POINTER(c_double)), ("mixture", POINTER(luxfer_mixture))]),
+    "luxfer_fit_temperature": (c_int32, [("context", POINTER(luxfer_context)), ("response", POINTER(c_double)), ("background", POINTER(c_double)), ("target", POINTER(c_double)), ("fit", POINTER(luxfer_temperature_fit))]),
+    "luxfer_power_density": (c_int32, [("context", POINTER(luxfer_context)), ("flux", c_double), ("efficacy", c_double), ("area", c_double), ("density", POINTER(c_double))]),
+    "luxfer_preset_count": (c_int32, [("context", POINTER(luxfer_context)), ("count", POINTER(c_uint32))]),
+    "luxfer_preset_get": (c_int32, [("context", POINTER(luxfer_context)), ("index", c_uint32), ("preset", POINTER(luxfer_preset))]),
+    "luxfer_preset_name": (c_int32, [("context", POINTER(luxfer_context)), ("index", c_uint32), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
     "luxfer_distribution_load": (c_int32, [("context", POINTER(luxfer_context)), ("path", c_char_p), ("distribution", POINTER(POINTER(luxfer_distribution)))]),
     "luxfer_distribution_load_memory": (c_int32, [("context", POINTER(luxfer_context)), ("data", c_void_p), ("size", c_size_t), ("format", c_int32), ("distribution", POINTER(POINTER(luxfer_distribution)))]),
     "luxfer_distribution_save": (c_int32, [("distribution", POINTER(luxfer_distribution)), ("path", c_char_p)]),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, cast
 
@@ -52,6 +53,11 @@ class Lamps(StageBase):
         one = isinstance(sense, (Sense, str))
         red, green, blue = (_params.member(Sense, s) for s in ((sense,) * 3 if one else sense))
         self._call("set_sense", goal, red, green, blue)
+
+    def set_levels(self, levels: Sequence[float]) -> None:
+        """The multipliers that the lamps' drivers can be dimmed to; none for drivers without steps."""
+        numbers = (ctypes.c_double * len(levels))(*(float(v) for v in levels))
+        self._call("set_levels", numbers if len(levels) else None, len(levels))
 
     def clear_goals(self) -> None:
         """Forgets the goals."""

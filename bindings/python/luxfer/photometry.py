@@ -1,4 +1,5 @@
-"""What lighting design calls a light: luminaire files, colour temperature, glare."""
+"""What lighting design calls a light, and what luminaires make of it: luminaire files, colour temperature, glare, primaries, false
+colour, presets."""
 
 from __future__ import annotations
 
@@ -9,12 +10,15 @@ from typing import TYPE_CHECKING, cast
 
 from . import _abi, _params
 from ._handle import Handle, call
-from .image import image_of
-from .types import DistributionFormat, DistributionReport, GlareReport
+from .image import Image, image_of, made
+from .types import DistributionFormat, DistributionReport, GlareReport, Mixture, Preset, TemperatureFit
 
 if TYPE_CHECKING:
     from .context import Context
+    from typing_extensions import Unpack
+
     from .image import ImageLike
+    from .types import FalseColourParams
 
 
 class Distribution(Handle):
@@ -88,3 +92,61 @@ def glare(context: Context, image: ImageLike, fov_y: float, threshold: float = 0
     report = _params.sized(_abi.luxfer_glare_report)
     call(context, "luxfer_image_glare", image_of(context, image), fov_y, threshold, report)
     return cast(GlareReport, _params.report(report))
+
+
+def false_colour(context: Context, image: ImageLike, **params: Unpack[FalseColourParams]) -> Image:
+    """An image of luminance or illuminance as colours whose order the eye sees, with a scale bar."""
+    settings = _params.fill(_abi.luxfer_false_colour_params, params, [])
+    return made(context, "luxfer_image_false_colour", image_of(context, image), settings)
+
+
+def mix_primaries(
+    context: Context, primaries: Sequence[Sequence[float]], colour: Sequence[float], most: float = 1
+) -> tuple[list[float], Mixture]:
+    """How strongly to drive each of the LEDs of a luminaire for a linear colour, and what that gives.
+
+    >>> drives, light = luxfer.mix_primaries(context, [(1, 0, 0), (0, 1, 0), (0, 0, 1)], (0.5, 0.25, 0.75))
+    >>> [round(drive, 3) for drive in drives], light.reached
+    ([0.5, 0.25, 0.75], 1)
+    """
+    flat = [float(v) for primary in primaries for v in primary]
+    drives = (ctypes.c_double * len(primaries))()
+    report = _params.sized(_abi.luxfer_mixture)
+    leds, wanted = (ctypes.c_double * len(flat))(*flat), _three(colour)
+    call(context, "luxfer_mix_primaries", context, leds, len(primaries), most, wanted, drives, report)
+    return list(drives), cast(Mixture, _params.report(report))
+
+
+def fit_temperature(
+    context: Context, response: Sequence[float], target: Sequence[float], background: Sequence[float] = (0, 0, 0)
+) -> TemperatureFit:
+    """The blackbody light that brings a target nearest to a mean radiance; response is that to 1 cd/m² of white."""
+    report = _params.sized(_abi.luxfer_temperature_fit)
+    vectors = (_three(v) for v in (response, background, target))
+    call(context, "luxfer_fit_temperature", context, *vectors, report)
+    return cast(TemperatureFit, _params.report(report))
+
+
+def power_density(context: Context, flux: float, efficacy: float, area: float) -> float:
+    """Electric power per floor area in W/m²: lumens, lumens per watt, m²."""
+    density = ctypes.c_double()
+    call(context, "luxfer_power_density", context, flux, efficacy, area, density)
+    return density.value
+
+
+def presets(context: Context) -> dict[str, Preset]:
+    """What EN 12464-1 asks of places, by their names."""
+    count = ctypes.c_uint32()
+    call(context, "luxfer_preset_count", context, count)
+    found = {}
+    for index in range(count.value):
+        report = _params.sized(_abi.luxfer_preset)
+        call(context, "luxfer_preset_get", context, index, report)
+        name = ctypes.create_string_buffer(200)
+        call(context, "luxfer_preset_name", context, index, name, len(name), None)
+        found[name.value.decode()] = cast(Preset, _params.report(report))
+    return found
+
+
+def _three(values: Sequence[float]) -> ctypes.Array[ctypes.c_double]:
+    return (ctypes.c_double * 3)(*(float(v) for v in values))

@@ -331,6 +331,24 @@ class Aim(IntEnum):
     """The mean radiance of the target that is given, all other light included."""
 
 
+class Scale(IntEnum):
+    """How values are spread over the colours."""
+
+    LINEAR = 0
+    """Evenly."""
+    LOGARITHMIC = 1
+    """Decades are equally wide."""
+
+
+class Unit(IntEnum):
+    """What the values of an image are."""
+
+    LUMINANCE = 0
+    """Luminance in cd/m²."""
+    ILLUMINANCE = 1
+    """Illuminance in lux."""
+
+
 class DistributionFormat(IntEnum):
     """A file format of distributions."""
 
@@ -1354,6 +1372,68 @@ class GlareReport:
     """Solid angle of all sources in steradian."""
 
 
+class FalseColourParams(TypedDict, total=False):
+    """Settings of a false colour image."""
+
+    scale: Scale | str | int
+    """Scale; default Scale.LINEAR."""
+    unit: Unit | str | int
+    """Unit, written above the bar; default Unit.LUMINANCE."""
+    bar: int
+    """1: draw the scale bar beside the image, which then is wider; 0: none; default 1."""
+    least: float
+    """Value of the darkest colour, >= 0; on a logarithmic scale 0 stands for a thousandth of the largest;
+    default 0."""
+    most: float
+    """Value of the lightest colour, more than least; 0 stands for the largest value of the image; default 0."""
+
+
+@dataclass(frozen=True)
+class Mixture:
+    """A light mixed from primaries."""
+
+    reached: int
+    """1 if it is the colour asked for; 0 if that is out of reach, and this the nearest."""
+    colour: tuple[float, float, float]
+    """The linear colour it is."""
+    delta_e: float
+    """CIEDE2000 difference from the colour asked for, seen at the exposure that shows that as a middle grey."""
+
+
+@dataclass(frozen=True)
+class TemperatureFit:
+    """The blackbody light that suits a target."""
+
+    kelvin: float
+    """Correlated colour temperature, in [1000, 20000] kelvin."""
+    luminance: float
+    """Luminance of the emission, >= 0, where responses are those to 1 cd/m² of white."""
+    achieved: tuple[float, float, float]
+    """Mean radiance of the target under it and all other light, in cd/m²."""
+    delta_e: float
+    """CIEDE2000 difference of that from the target, seen at the exposure that shows the target as a middle
+    grey."""
+
+
+class Preset(TypedDict, total=False):
+    """What EN 12464-1 asks of a place, as makers of luminaires quote it. The standard itself is what counts."""
+
+    edition: int
+    """Year of the edition of the standard."""
+    illuminance: float
+    """Least mean illuminance of the task area, in lux."""
+    glare: float
+    """Largest unified glare rating."""
+    uniformity: float
+    """Least uniformity U0 of the task area."""
+    rendering: float
+    """Least colour rendering index."""
+    walls: float
+    """Least mean illuminance of the walls, in lux; 0 where none is asked for."""
+    ceiling: float
+    """Least mean illuminance of the ceiling, in lux; 0 where none is asked for."""
+
+
 @dataclass(frozen=True)
 class DistributionReport:
     """A distribution on the whole."""
@@ -1450,6 +1530,10 @@ class Fixture:
     """Area in m²."""
     flux: float
     """Luminous flux in lumens."""
+    cct: float
+    """Correlated colour temperature in kelvin; 0 for a lamp that is off."""
+    duv: float
+    """Distance from the blackbody in the CIE 1960 diagram."""
 
 
 class GuidesParams(TypedDict, total=False):

@@ -1,0 +1,113 @@
+//! False colour
+//!
+//! A luminance or illuminance image as colours whose order the eye sees, with a scale bar.
+
+use super::guard::{enter, guard};
+use super::handle::{self, Owned};
+use super::image::{Pixels, luxfer_image};
+use super::params::{self, Versioned};
+use super::pointer::Out;
+use super::status::luxfer_status;
+use crate::error::{Error, Result};
+use crate::photometry::false_colour::{self, Params, Scale, Unit};
+
+/// How values are spread over the colours: a LUXFER_SCALE_ value.
+pub type luxfer_scale = i32;
+/// Evenly.
+pub const LUXFER_SCALE_LINEAR: luxfer_scale = 0;
+/// Decades are equally wide.
+pub const LUXFER_SCALE_LOGARITHMIC: luxfer_scale = 1;
+
+/// What the values of an image are: a LUXFER_UNIT_ value.
+pub type luxfer_unit = i32;
+/// Luminance in cd/m².
+pub const LUXFER_UNIT_LUMINANCE: luxfer_unit = 0;
+/// Illuminance in lux.
+pub const LUXFER_UNIT_ILLUMINANCE: luxfer_unit = 1;
+
+/// Settings of a false colour image. Fill them with luxfer_false_colour_params_init.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_false_colour_params {
+    /// sizeof(luxfer_false_colour_params), set by luxfer_false_colour_params_init.
+    pub struct_size: u32,
+    /// LUXFER_SCALE_ value; default LUXFER_SCALE_LINEAR.
+    pub scale: luxfer_scale,
+    /// LUXFER_UNIT_ value, written above the bar; default LUXFER_UNIT_LUMINANCE.
+    pub unit: luxfer_unit,
+    /// 1: draw the scale bar beside the image, which then is wider; 0: none; default 1.
+    pub bar: u32,
+    /// Value of the darkest colour, >= 0; on a logarithmic scale 0 stands for a thousandth of the largest; default 0.
+    pub least: f64,
+    /// Value of the lightest colour, more than least; 0 stands for the largest value of the image; default 0.
+    pub most: f64,
+}
+
+// SAFETY: plain numbers.
+unsafe impl Versioned for luxfer_false_colour_params {
+    const NAME: &'static str = "luxfer_false_colour_params";
+    const SIZES: &'static [usize] = &[32];
+    fn defaults() -> Self {
+        let d = Params::default();
+        Self {
+            struct_size: 32,
+            scale: LUXFER_SCALE_LINEAR,
+            unit: LUXFER_UNIT_LUMINANCE,
+            bar: u32::from(d.bar),
+            least: d.least,
+            most: d.most,
+        }
+    }
+}
+
+impl luxfer_false_colour_params {
+    fn params(&self) -> Result<Params> {
+        let scale = match self.scale {
+            LUXFER_SCALE_LINEAR => Scale::Linear,
+            LUXFER_SCALE_LOGARITHMIC => Scale::Logarithmic,
+            other => return Err(Error::argument(format!("scale is {other}; it must be a LUXFER_SCALE_ value"))),
+        };
+        let unit = match self.unit {
+            LUXFER_UNIT_LUMINANCE => Unit::Luminance,
+            LUXFER_UNIT_ILLUMINANCE => Unit::Illuminance,
+            other => return Err(Error::argument(format!("unit is {other}; it must be a LUXFER_UNIT_ value"))),
+        };
+        if self.bar > 1 {
+            return Err(Error::argument(format!("bar is {}; it must be 0 or 1", self.bar)));
+        }
+        Ok(Params { scale, unit, least: self.least, most: self.most, bar: self.bar == 1 })
+    }
+}
+
+/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_false_colour_params_init(
+    params: *mut luxfer_false_colour_params,
+    size: usize,
+) -> luxfer_status {
+    guard(|| params::init(params, size))
+}
+
+/// Shows an image (1 channel, or linear RGB, of which the luminance counts) in false colour: linear RGB, grey where a value is
+/// NaN. params may be NULL for the defaults. Takes some milliseconds for each megapixel. The caller releases *shown. Any
+/// thread.
+/// LUXFER_INVALID_ARGUMENT if the range is none, or the image has no light to take it from; LUXFER_OUT_OF_MEMORY beyond the
+/// memory budget.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_image_false_colour(
+    image: *mut luxfer_image,
+    params: *const luxfer_false_colour_params,
+    shown: *mut *mut luxfer_image,
+) -> luxfer_status {
+    enter(image, |object| {
+        let out = Out::new(shown, "shown")?;
+        let params = params::read(params)?.params()?;
+        let source = object.image();
+        let width = source.width + false_colour::bar_width(source, &params)?;
+        let shown = Pixels::counted(object.context(), width, source.height, 3, || {
+            object.context().pool.run(|| false_colour::render(source, &params))
+        })?;
+        out.set(handle::give(shown));
+        Ok(())
+    })
+}
