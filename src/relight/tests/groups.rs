@@ -141,6 +141,52 @@ fn other_light_that_is_too_bright_is_named() {
     }
 }
 
+/// Every reason why goals are missed is told in its own case.
+#[test]
+fn every_reason_is_told() {
+    let (world, lamps) = lamp_room(&[[3, 3], [12, 12]], &[1.0; 2]);
+    let told = |world: &World, goals: &[Goal], params: &GroupParams| {
+        let responses = respond(world, &lamps, goals);
+        solve_groups(&responses, goals, params).unwrap().unreachable.unwrap_or_default()
+    };
+    let (kept, free) = (GroupParams::default(), GroupParams { colour: Colour::Free, ..GroupParams::default() });
+    let floor = |target| Goal { quantity: Quantity::Outgoing, ..goal(Place::Surface(FLOOR), target) };
+    // A floor that takes all red sends none back.
+    let mut redless = (**world.scene()).clone();
+    redless.materials[0].base_color.x = 0.0;
+    let redless = World::build(Arc::new(redless), Monitor::default().job()).unwrap();
+    let reason = told(&redless, &[floor(Vec3::splat(5.0))], &free);
+    assert!(reason.contains("in red") && reason.contains("no light of these lamps finds its way there"), "{reason}");
+    // Groups that cannot give a colour, and goals that cannot be had together, with colours kept and free.
+    let reason = told(&world, &[floor(Vec3::new(9.0, 5.0, 1.0))], &kept);
+    assert!(reason.contains("a colour that the groups do not have"), "{reason}");
+    let torn = [floor(Vec3::splat(5.0)), floor(Vec3::splat(9.0))];
+    let reason = told(&world, &torn, &free);
+    assert!(reason.contains("different things") && !reason.contains("colours"), "{reason}");
+    let lux = torn.map(|goal| Goal { aspect: Aspect::Luminance, ..goal });
+    let reason = told(&world, &lux, &kept);
+    assert!(
+        reason.contains("luminance") && reason.contains("different things") && !reason.contains("colour"),
+        "{reason}"
+    );
+    // A bound, and other lights (what it takes to be below them would be negative).
+    let reason = told(&world, &[floor(Vec3::splat(1e6))], &GroupParams { most: vec![1.0; 2], ..kept.clone() });
+    assert!(reason.contains("all groups are at their largest power"), "{reason}");
+    let mut bright = (**world.scene()).clone();
+    bright.lights.push(PunctualLight::Point { position: Vec3::new(2.0, 1.0, 2.0), intensity: Vec3::splat(1e4) });
+    let bright = World::build(Arc::new(bright), Monitor::default().job()).unwrap();
+    let reason = told(&bright, &[floor(Vec3::ONE)], &kept);
+    assert!(reason.contains("the other lights alone are brighter"), "{reason}");
+    // Nothing at all to be had is an error.
+    let mut black = (**world.scene()).clone();
+    black.materials[0].base_color = Vec3::ZERO;
+    let black = World::build(Arc::new(black), Monitor::default().job()).unwrap();
+    let responses = respond(&black, &lamps, &[floor(Vec3::ONE)]);
+    let error = solve_groups(&responses, &[floor(Vec3::ONE)], &kept).unwrap_err();
+    assert_eq!(error.kind, ErrorKind::Unreachable);
+    assert!(error.message.contains("no light of any group finds its way to a goal"), "{error}");
+}
+
 /// A goal in lux is met by its luminance, whatever the colour that the room gives the light.
 #[test]
 fn lux_are_luminance() {

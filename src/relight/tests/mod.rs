@@ -101,14 +101,18 @@ fn a_known_emitter_is_recovered_under_other_light() {
 #[test]
 fn what_cannot_be_met_is_said() {
     let params = Params { paths: 1 << 14, ..Params::default() };
-    let unreachable = |scene: &Scene, target: Vec3| solve(scene, target, &params).unwrap_err().kind;
+    let unreachable = |scene: &Scene, target: Vec3, reason: &str| {
+        let error = solve(scene, target, &params).unwrap_err();
+        assert!(error.message.contains(reason), "{error}");
+        error.kind
+    };
     // A black floor sends nothing back.
     let black = room(Vec3::ONE, Vec3::ZERO, Vec3::ONE * 0.5, Vec3::ONE);
-    assert_eq!(unreachable(&black, Vec3::ONE), ErrorKind::Unreachable);
+    assert_eq!(unreachable(&black, Vec3::ONE, "no light of the emission finds its way back"), ErrorKind::Unreachable);
     // Another light is brighter than the target.
     let mut bright = room(Vec3::ONE, Vec3::splat(0.5), Vec3::splat(0.5), Vec3::ONE);
     bright.lights.push(PunctualLight::Point { position: Vec3::splat(0.5), intensity: Vec3::splat(1e3) });
-    assert_eq!(unreachable(&bright, Vec3::ONE), ErrorKind::Unreachable);
+    assert_eq!(unreachable(&bright, Vec3::ONE, "the other lights of the scene alone"), ErrorKind::Unreachable);
     // A channel that walls absorb completely keeps the others' mean.
     let redless = room(Vec3::ONE, Vec3::new(0.0, 0.5, 0.5), Vec3::splat(0.5), Vec3::ONE);
     let solution = solve(&redless, Vec3::ONE, &params).unwrap();
