@@ -2866,8 +2866,8 @@ typedef struct luxfer_temperature_fit {
 } luxfer_temperature_fit;
 
 /**
- * What EN 12464-1 asks of a place, as makers of luminaires quote it. The standard itself is what counts. Set struct_size
- * before the call.
+ * What EN 12464-1 asks of a place, as makers of luminaires quote it. The standard itself is what counts.
+ * Set struct_size before the call.
  */
 typedef struct luxfer_preset {
     /** sizeof(luxfer_preset), set by the caller. */

@@ -67,8 +67,8 @@ unsafe impl Versioned for luxfer_temperature_fit {
     }
 }
 
-/// What EN 12464-1 asks of a place, as makers of luminaires quote it. The standard itself is what counts. Set struct_size
-/// before the call.
+/// What EN 12464-1 asks of a place, as makers of luminaires quote it. The standard itself is what counts.
+/// Set struct_size before the call.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_preset {

@@ -931,6 +931,7 @@ class luxfer_preset(Structure):
         ("walls", c_double),
         ("ceiling", c_double),
     ]
+    result = types.Preset
 
 
 class luxfer_distribution_report(Structure):

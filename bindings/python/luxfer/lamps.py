@@ -50,8 +50,8 @@ class Lamps(StageBase):
 
     def set_sense(self, goal: int, sense: Sense | str | Sequence[Sense | str]) -> None:
         """Makes a goal a limit, "at-least" or "at-most", in all channels or in each for itself."""
-        one = isinstance(sense, (Sense, str))
-        red, green, blue = (_params.member(Sense, s) for s in ((sense,) * 3 if one else sense))
+        senses = (sense,) * 3 if isinstance(sense, (Sense, str)) else sense
+        red, green, blue = (_params.member(Sense, s) for s in senses)
         self._call("set_sense", goal, red, green, blue)
 
     def set_levels(self, levels: Sequence[float]) -> None:

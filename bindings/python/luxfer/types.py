@@ -1415,7 +1415,8 @@ class TemperatureFit:
     grey."""
 
 
-class Preset(TypedDict, total=False):
+@dataclass(frozen=True)
+class Preset:
     """What EN 12464-1 asks of a place, as makers of luminaires quote it. The standard itself is what counts."""
 
     edition: int
