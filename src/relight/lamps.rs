@@ -1,6 +1,7 @@
 //! Which lamp a point of the emission belongs to: by the texels of its texture, or by the pieces of its meshes.
 
 use crate::error::{Error, Result};
+use crate::image::patches::Patches;
 use crate::image::{Image, try_vec};
 use crate::scene::Scene;
 use glam::{DVec3, Vec2, Vec3};
@@ -55,34 +56,7 @@ impl Lamps {
 
     /// Every 8-connected patch of texels that emit is a lamp.
     pub fn of_texture(texture: &Image) -> Result<Self> {
-        let (width, height) = (texture.width, texture.height);
-        let colours = texture.channels.min(3);
-        let lit = |i: usize| texture.data[i * texture.channels..][..colours].iter().any(|&v| v > 0.0);
-        let mut labels = try_vec(width * height, 0u32)?;
-        let mut open = Vec::new();
-        let mut count = 0;
-        for start in 0..width * height {
-            if labels[start] != 0 || !lit(start) {
-                continue;
-            }
-            // Flood the patch from its first texel.
-            count += 1;
-            labels[start] = count;
-            open.push(start);
-            while let Some(i) = open.pop() {
-                let (x, y) = (i % width, i / width);
-                for ny in y.saturating_sub(1)..=(y + 1).min(height - 1) {
-                    for nx in x.saturating_sub(1)..=(x + 1).min(width - 1) {
-                        let next = ny * width + nx;
-                        if labels[next] == 0 && lit(next) {
-                            labels[next] = count;
-                            open.push(next);
-                        }
-                    }
-                }
-            }
-        }
-        Self::of_labels(width, height, labels)
+        Self::of_labels(texture.width, texture.height, Patches::of(texture)?.labels)
     }
 
     /// Every connected piece of the meshes that have the emitting material is a lamp: triangles that share a vertex.

@@ -17,7 +17,7 @@ pub use camera::Camera;
 pub use light::{Environment, PunctualLight};
 pub use material::{AlphaMode, Material, TextureRef};
 pub use mesh::Mesh;
-pub use texture::{Texture, Wrap};
+pub use texture::{Texture, Wrap, texel_at};
 pub use validate::check_place;
 
 /// Everything a host can describe. Indices between the lists are checked by [`Scene::validate`].

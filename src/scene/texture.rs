@@ -56,6 +56,12 @@ impl Texture {
     }
 }
 
+/// The texel, row by row, that covers a point in a texture of `width × height` texels.
+pub fn texel_at(uv: Vec2, [width, height]: [usize; 2], wrap: [Wrap; 2]) -> usize {
+    let texel = (uv * Vec2::new(width as f32, height as f32)).floor();
+    wrap_index(texel.y, height, wrap[1]) * width + wrap_index(texel.x, width, wrap[0])
+}
+
 /// The two texels whose centres a coordinate lies between, and where between them.
 fn neighbours(u: f32, size: usize, wrap: Wrap) -> ([usize; 2], f32) {
     let position = (u * size as f32 - 0.5).max(-16_777_216.0).min(16_777_216.0);

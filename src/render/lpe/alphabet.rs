@@ -3,9 +3,12 @@
 use super::parse::{Event, kind, mode};
 use super::{EmitterAs, Expression};
 use crate::error::{Error, ErrorKind, Result};
+use crate::image::patches::Patches;
 use crate::render::LightSource;
-use crate::scene::Scene;
+use crate::scene::{Mesh, Scene, Texture, Wrap, texel_at};
+use glam::Vec2;
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 /// The ways a surface scatters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,20 +26,39 @@ pub struct Alphabet {
     pub lights: Vec<Event>,
     /// Number of a mesh's class, which is that of its light too.
     class_of_mesh: Vec<u32>,
+    /// Of meshes whose lamps are told apart.
+    lamps: Vec<Option<Lamps>>,
     punctual: Vec<u32>,
     environment: u32,
+}
+
+/// The patches of an emission texture, each a light of its own.
+struct Lamps {
+    texture: Arc<Lit>,
+    /// The light of each patch, after that of what belongs to none.
+    lights: Vec<u32>,
+}
+
+struct Lit {
+    size: [usize; 2],
+    wrap: [Wrap; 2],
+    patches: Patches,
 }
 
 impl Alphabet {
     /// # Errors
     /// A label that nothing bears.
     pub fn new(scene: &Scene, expressions: &[&Expression], emitter_as: EmitterAs) -> Result<Self> {
-        let names = |mesh: &crate::scene::Mesh| {
+        let names = |mesh: &Mesh| {
             [mesh.name.clone(), scene.materials.get(mesh.material).map_or(String::new(), |m| m.name.clone())]
         };
         let mut borne: BTreeSet<String> = scene.meshes.iter().flat_map(names).collect();
         borne.extend((0..scene.lights.len()).map(punctual_label));
         borne.insert(ENVIRONMENT.to_string());
+        let lit = lit_textures(scene, expressions, names)?;
+        for (mesh, texture) in scene.meshes.iter().filter_map(|m| Some((m, lit.get(&m.material)?))) {
+            borne.extend((0..texture.patches.count).flat_map(|i| names(mesh).map(|name| lamp_label(&name, i))));
+        }
         let wanted = wanted(expressions, &borne)?;
         let told = |names: &[String]| -> Vec<String> {
             let set: BTreeSet<&String> = names.iter().filter(|n| wanted.contains(*n)).collect();
@@ -70,7 +92,22 @@ impl Alphabet {
         }
         let punctual = (0..scene.lights.len()).map(|i| light(kind::LIGHT, told(&[punctual_label(i)]))).collect();
         let environment = light(environment_kinds(emitter_as), told(&[ENVIRONMENT.to_string()]));
-        Ok(Self { scatters, lights, class_of_mesh, punctual, environment })
+        let lamps = scene.meshes.iter().zip(&class_of_mesh).map(|(mesh, class)| {
+            let texture = lit.get(&mesh.material)?.clone();
+            let of_lamp = |i: usize| {
+                let of_it = names(mesh).map(|name| lamp_label(&name, i));
+                // One that no expression names is like the rest of the mesh.
+                if of_it.iter().any(|name| wanted.contains(name)) {
+                    light(surface_kinds(emitter_as), told(&[names(mesh), of_it].concat()))
+                } else {
+                    *class
+                }
+            };
+            let lights = [*class].into_iter().chain((0..texture.patches.count).map(of_lamp)).collect();
+            Some(Lamps { texture, lights })
+        });
+        let lamps = lamps.collect();
+        Ok(Self { scatters, lights, class_of_mesh, lamps, punctual, environment })
     }
 
     /// How many classes of meshes there are.
@@ -87,11 +124,49 @@ impl Alphabet {
     #[inline]
     pub fn light(&self, source: LightSource) -> usize {
         (match source {
-            LightSource::Surface { mesh, .. } => self.class_of_mesh[mesh as usize],
+            LightSource::Surface { mesh, uv, .. } => match &self.lamps[mesh as usize] {
+                None => self.class_of_mesh[mesh as usize],
+                Some(lamps) => lamps.light(uv),
+            },
             LightSource::Punctual(index) => self.punctual[index as usize],
             LightSource::Environment => self.environment,
         }) as usize
     }
+}
+
+impl Lamps {
+    fn light(&self, uv: Vec2) -> u32 {
+        let Lit { size, wrap, patches } = &*self.texture;
+        self.lights[patches.labels[texel_at(uv, *size, *wrap)] as usize]
+    }
+}
+
+/// The emission textures of materials whose lamps an expression may name: `'Ceiling#3'`, after mesh or material.
+fn lit_textures(
+    scene: &Scene,
+    expressions: &[&Expression],
+    names: impl Fn(&Mesh) -> [String; 2],
+) -> Result<BTreeMap<usize, Arc<Lit>>> {
+    let mut named = BTreeSet::new();
+    for expression in expressions {
+        expression.tree.labels(&mut |name, _| {
+            named.extend(name.rsplit_once('#').map(|(owner, _)| owner.to_string()));
+        });
+    }
+    let mut lit = BTreeMap::new();
+    for mesh in scene.meshes.iter().filter(|mesh| names(mesh).iter().any(|name| named.contains(name))) {
+        let Some(map) = scene.materials.get(mesh.material).and_then(|m| m.emission_texture) else { continue };
+        if !lit.contains_key(&mesh.material) {
+            let Texture { image, wrap, .. } = &scene.textures[map.texture];
+            let (size, patches) = ([image.width, image.height], Patches::of(image)?);
+            lit.insert(mesh.material, Arc::new(Lit { size, wrap: *wrap, patches }));
+        }
+    }
+    Ok(lit)
+}
+
+fn lamp_label(owner: &str, index: usize) -> String {
+    format!("{owner}#{index}")
 }
 
 const ENVIRONMENT: &str = "environment";

@@ -12,7 +12,7 @@
 //! | `<type mode labels>` | e.g. `<RD>`, `<TS'pane'>`, `<L.'Ceiling'>`; each part a letter, `.` for any, `[..]`, `[^..]` |
 //! | types | `R` reflection, `T` transmission, `V` volume (never met here); `L` `O` `B` lights; `C` the camera |
 //! | modes | `D` diffuse, `G` glossy, `S` mirror or clear pane, `s` clear pane: straight through |
-//! | labels | names of objects (meshes) or of their materials; of lights the same, `light0`, `light1`, ... for punctual lights in the scene's order, and `environment` |
+//! | labels | names of objects (meshes) or of their materials; of lights the same, `light0`, `light1`, ... for punctual lights in the scene's order, and `environment`; `Name#0`, `Name#1`, ... for the lamps of the emission texture of the object or material Name, its connected patches in the order of their first texels |
 //! | `D`, `R`, `L`, `'x'` | short for `<.D>`, `<R.>`, `<L.>`, `<..'x'>` |
 //! | `.` `[DS]` `[^D]` | any event, one of these, none of these |
 //! | `*` `+` `?` `{n}` `{n,}` `{n,m}` `\|` `( )` | as in any regular expression |

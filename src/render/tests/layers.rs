@@ -77,6 +77,46 @@ fn complete_sets_sum_to_the_image_and_leave_its_bits() {
     }
 }
 
+/// The lamps of an emission texture are lights of their own: with what is between them they sum to the image, and each is
+/// what it is when the others are off.
+#[test]
+fn lamps_of_a_texture_are_light_groups() {
+    let texture = |lit: [f32; 2]| {
+        let value = |x: usize, y: usize| if (y / 2) == 1 && (x == 1 || x == 6) { lit[x / 4] } else { 0.0 };
+        Image::from_fn(8, 6, |x, y| [value(x, y)]).unwrap()
+    };
+    let room = |lit: [f32; 2]| {
+        let mut scene = open();
+        scene.meshes[1].uvs[0] = vec![Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y];
+        scene.textures.push(crate::scene::Texture::new("lamps", texture(lit)));
+        let material = scene.meshes[1].material;
+        scene.materials[material].name = "Lamps".into();
+        scene.materials[material].emission_texture = Some(crate::scene::TextureRef::new(scene.textures.len() - 1));
+        world(scene)
+    };
+    let params = Params { width: 40, height: 30, samples: 256, ..Params::default() };
+    let set = [("a", "C.*<L.'Lamps#0'>"), ("b", "C.*<L.'Lamps#1'>"), ("rest", "C.*<L.[^'Lamps']>")];
+    let film = render(&room([1.0, 3.0]), &viewer(), &with(&params, &set, &[]));
+    assert_eq!(film.beauty, render(&room([1.0, 3.0]), &viewer(), &params).beauty);
+    let error = sum_error(&film);
+    assert!(error <= 1e-5, "{error}");
+    // One alone is named together with its material.
+    let both = [("a", "C.*<L.'Lamps'>"), ("b", "C.*<L.[^'Lamps']>"), ("c", "C.*<L.'Lamps''Lamps#1'>")];
+    let named = render(&room([1.0, 3.0]), &viewer(), &with(&params, &both, &[]));
+    assert_eq!(layer(&named, "c"), layer(&film, "b"));
+    assert!((mean(layer(&film, "a")) + mean(layer(&film, "b")) - mean(layer(&named, "a"))).abs() < 1e-4);
+    // The second is off: the image is what the first gives and the rest. Both are estimates, of other paths.
+    let alone = render(&room([1.0, 0.0]), &viewer(), &with(&params, &set[..1], &[]));
+    let (mixed, direct) = (mean(layer(&film, "a")), mean(layer(&alone, "a")));
+    assert!(mixed > 0.0 && mean(layer(&film, "b")) > 1.5 * mixed);
+    assert!((mixed / direct - 1.0).abs() < 0.05, "{mixed} {direct}");
+    // A lamp that is not there is an error that says what there is.
+    let missing = with(&params, &[("x", "C.*<L.'Lamps#2'>")], &[]);
+    let error =
+        crate::render::run(&room([1.0, 1.0]), &viewer(), &missing, Monitor::default().job(), &mut |_| ()).unwrap_err();
+    assert!(error.message.contains("'Lamps#2'"), "{error}");
+}
+
 #[test]
 fn layers_have_the_same_bits_on_any_number_of_threads() {
     let params = Params { width: 70, height: 40, samples: 8, ..Params::default() };
