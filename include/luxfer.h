@@ -1858,9 +1858,10 @@ luxfer_status luxfer_render_release(luxfer_render *render);
  * "LDE", "LSE", "L.*DDE", "LD{1,2}E", "LS*DE" (S is all that is not diffuse), or camera first with C, as in Open Shading
  * Language: "C<RD>L", "C[GS]+.*<L.'Lamp'>". Types are R T V, modes D G S s (a clear pane is both S and s), lights L O B;
  * . [..] [^..] * + ? {n,m} | ( ) are what they are in regular expressions. Labels in quotes are names of meshes or of
- * their materials; light0, light1, ... are the scene's lights in their order, environment is what surrounds it. Arnold's
- * built-in names are known: direct, indirect, emission, background, and diffuse, specular, transmission, each alone or
- * with _direct or _indirect.
+ * their materials; Name#0, Name#1, ... are the patches of its emission texture, numbered as luxfer_lamps numbers them;
+ * light0, light1, ... are the scene's lights in their order, environment is what surrounds it. Arnold's built-in names are
+ * known: direct, indirect, emission, background, and diffuse, specular, transmission, each alone or with _direct or
+ * _indirect.
  * ==================================================================================================================== */
 
 /** Distance along the viewing direction, in metres; infinite where nothing is. Layer Depth, channel Z. */
@@ -2299,9 +2300,6 @@ typedef struct luxfer_lamps_params {
     uint64_t seed;
 } luxfer_lamps_params;
 
-/** On which side of its value a goal's light should be: a LUXFER_SENSE_ value. */
-typedef int32_t luxfer_sense;
-
 /** All lamps. */
 #define LUXFER_GROUP_ALL 0
 
@@ -2316,15 +2314,6 @@ typedef int32_t luxfer_sense;
 
 /** Those whose centres agree in their third coordinate: z of meshes. */
 #define LUXFER_GROUP_THIRD 4
-
-/** At it. */
-#define LUXFER_SENSE_EXACTLY 0
-
-/** At it or above: what a standard asks of a desk, or what a clipped channel of a photo says. */
-#define LUXFER_SENSE_AT_LEAST 1
-
-/** At it or below: a limit against glare. */
-#define LUXFER_SENSE_AT_MOST 2
 
 /**
  * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
@@ -2343,6 +2332,42 @@ luxfer_status luxfer_lamps_create(luxfer_context *context, luxfer_lamps **lamps)
 luxfer_status luxfer_lamps_set_scene(luxfer_lamps *lamps,
                                      luxfer_scene *scene,
                                      uint32_t material);
+
+/**
+ * Starts a job that measures and solves. params may be NULL for the defaults. The caller releases *job. Any thread.
+ * LUXFER_INVALID_OPERATION if the scene or a goal is missing or a job runs already. Goals that cannot be met are no
+ * error: the powers then are the nearest that the bounds allow. The job may end with LUXFER_UNREACHABLE if no goal gets
+ * light from any lamp, LUXFER_INVALID_ARGUMENT if the scene is not valid, the emission has no lamp, or a setting is out of
+ * range.
+ */
+luxfer_status luxfer_lamps_start(luxfer_lamps *lamps,
+                                 const luxfer_lamps_params *params,
+                                 luxfer_job **job);
+
+/** Adds a reference. Any thread. */
+luxfer_status luxfer_lamps_retain(luxfer_lamps *lamps);
+
+/** Gives a reference back; a job that runs goes on. Any thread. */
+luxfer_status luxfer_lamps_release(luxfer_lamps *lamps);
+
+/* ====================================================================================================================
+ * Goals of lamps
+ *
+ * What lamps are for: surfaces and calculation grids that should have a given light, just that or as a limit, and the steps that
+ * their drivers have.
+ * ==================================================================================================================== */
+
+/** On which side of its value a goal's light should be: a LUXFER_SENSE_ value. */
+typedef int32_t luxfer_sense;
+
+/** At it. */
+#define LUXFER_SENSE_EXACTLY 0
+
+/** At it or above: what a standard asks of a desk, or what a clipped channel of a photo says. */
+#define LUXFER_SENSE_AT_LEAST 1
+
+/** At it or below: a limit against glare. */
+#define LUXFER_SENSE_AT_MOST 2
 
 /**
  * Adds a goal: the mean radiance a mesh should have, in cd/m² per channel, each finite and >= 0; quantity is a
@@ -2390,23 +2415,6 @@ luxfer_status luxfer_lamps_set_levels(luxfer_lamps *lamps,
 
 /** Forgets the goals. Any thread. */
 luxfer_status luxfer_lamps_clear_goals(luxfer_lamps *lamps);
-
-/**
- * Starts a job that measures and solves. params may be NULL for the defaults. The caller releases *job. Any thread.
- * LUXFER_INVALID_OPERATION if the scene or a goal is missing or a job runs already. Goals that cannot be met are no
- * error: the powers then are the nearest that the bounds allow. The job may end with LUXFER_UNREACHABLE if no goal gets
- * light from any lamp, LUXFER_INVALID_ARGUMENT if the scene is not valid, the emission has no lamp, or a setting is out of
- * range.
- */
-luxfer_status luxfer_lamps_start(luxfer_lamps *lamps,
-                                 const luxfer_lamps_params *params,
-                                 luxfer_job **job);
-
-/** Adds a reference. Any thread. */
-luxfer_status luxfer_lamps_retain(luxfer_lamps *lamps);
-
-/** Gives a reference back; a job that runs goes on. Any thread. */
-luxfer_status luxfer_lamps_release(luxfer_lamps *lamps);
 
 /* ====================================================================================================================
  * Results of lamps

@@ -35,6 +35,7 @@ const GROUPS: &[&str] = &[
     "illuminance",
     "relight",
     "lamps",
+    "lamps_goals",
     "lamps_results",
     "importance",
     "placement",

@@ -9,9 +9,10 @@
 //! "LDE", "LSE", "L.*DDE", "LD{1,2}E", "LS*DE" (S is all that is not diffuse), or camera first with C, as in Open Shading
 //! Language: "C<RD>L", "C[GS]+.*<L.'Lamp'>". Types are R T V, modes D G S s (a clear pane is both S and s), lights L O B;
 //! . [..] [^..] * + ? {n,m} | ( ) are what they are in regular expressions. Labels in quotes are names of meshes or of
-//! their materials; light0, light1, ... are the scene's lights in their order, environment is what surrounds it. Arnold's
-//! built-in names are known: direct, indirect, emission, background, and diffuse, specular, transmission, each alone or
-//! with _direct or _indirect.
+//! their materials; Name#0, Name#1, ... are the patches of its emission texture, numbered as luxfer_lamps numbers them;
+//! light0, light1, ... are the scene's lights in their order, environment is what surrounds it. Arnold's built-in names are
+//! known: direct, indirect, emission, background, and diffuse, specular, transmission, each alone or with _direct or
+//! _indirect.
 
 use super::guard::enter;
 use super::handle::{self, Owned};

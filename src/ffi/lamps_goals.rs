@@ -1,0 +1,193 @@
+//! Goals of lamps
+//!
+//! What lamps are for: surfaces and calculation grids that should have a given light, just that or as a limit, and the steps that
+//! their drivers have.
+
+use super::geometry::list;
+use super::guard::enter;
+use super::illuminance::luxfer_illuminance_grid;
+use super::lamps::{Inputs, Output, luxfer_lamps};
+use super::params;
+use super::relight::{luxfer_quantity, quantity};
+use super::scene::{colour, missing};
+use super::stage::{Stage, need};
+use super::status::luxfer_status;
+use crate::error::{Error, Result};
+use crate::relight::{Aspect, Goal, MAX_LEVELS, Place, Quantity, Sense};
+use crate::scene::Scene;
+use glam::Vec3;
+
+/// On which side of its value a goal's light should be: a LUXFER_SENSE_ value.
+pub type luxfer_sense = i32;
+/// At it.
+pub const LUXFER_SENSE_EXACTLY: luxfer_sense = 0;
+/// At it or above: what a standard asks of a desk, or what a clipped channel of a photo says.
+pub const LUXFER_SENSE_AT_LEAST: luxfer_sense = 1;
+/// At it or below: a limit against glare.
+pub const LUXFER_SENSE_AT_MOST: luxfer_sense = 2;
+
+/// A goal as the host has set it.
+#[derive(Clone)]
+pub(super) struct Aim {
+    place: Where,
+    quantity: Quantity,
+    pub target: Vec3,
+    aspect: Aspect,
+    sense: [Sense; 3],
+    weight: f64,
+}
+
+#[derive(Clone)]
+enum Where {
+    Mesh(u32),
+    Grid { origin: Vec3, across: Vec3, down: Vec3, normal: Vec3 },
+}
+
+/// Adds a goal: the mean radiance a mesh should have, in cd/m² per channel, each finite and >= 0; quantity is a
+/// LUXFER_QUANTITY_ value; weight, >= 0, is what missing it weighs beside the other goals. Any thread.
+/// LUXFER_NOT_FOUND if the scene has no such mesh, LUXFER_INVALID_OPERATION before luxfer_lamps_set_scene.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_lamps_add_mesh(
+    lamps: *mut luxfer_lamps,
+    mesh: u32,
+    quantity: luxfer_quantity,
+    red: f32,
+    green: f32,
+    blue: f32,
+    weight: f64,
+) -> luxfer_status {
+    enter(lamps, |stage| {
+        let (quantity, target) = (self::quantity(quantity)?, colour("target", red, green, blue)?);
+        let sense = [Sense::Exactly; 3];
+        add(stage, Aim { place: Where::Mesh(mesh), quantity, target, aspect: Aspect::Colour, sense, weight })
+    })
+}
+
+/// Adds a goal: the mean illuminance in lux that a calculation grid should have, of whatever colour; weight as above. grid may
+/// be NULL for its default. Any thread.
+/// LUXFER_INVALID_ARGUMENT if lux is not finite or negative, LUXFER_INVALID_OPERATION before luxfer_lamps_set_scene.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_lamps_add_grid(
+    lamps: *mut luxfer_lamps,
+    grid: *const luxfer_illuminance_grid,
+    lux: f32,
+    weight: f64,
+) -> luxfer_status {
+    enter(lamps, |stage| {
+        let [origin, across, down, normal] = params::read(grid)?.vectors()?;
+        let target = colour("lux", lux, lux, lux)? / std::f32::consts::PI;
+        let place = Where::Grid { origin, across, down, normal };
+        let (quantity, sense) = (Quantity::Incident, [Sense::Exactly; 3]);
+        add(stage, Aim { place, quantity, target, aspect: Aspect::Luminance, sense, weight })
+    })
+}
+
+fn add(stage: &Stage<Inputs, Output>, aim: Aim) -> Result<()> {
+    if !(aim.weight >= 0.0 && aim.weight.is_finite()) {
+        return Err(Error::argument(format!("weight is {}; it must be finite and not negative", aim.weight)));
+    }
+    stage.change(|inputs| {
+        let (scene, _) = need(&inputs.emission, "luxfer_lamps_set_scene")?;
+        let meshes = scene.snapshot().meshes.len();
+        if let Where::Mesh(mesh) = aim.place
+            && mesh as usize >= meshes
+        {
+            return Err(missing("mesh", mesh, meshes));
+        }
+        inputs.goals.push(aim);
+        Ok(())
+    })
+}
+
+/// Makes a goal a limit, in each channel for itself: LUXFER_SENSE_ values; those of a goal in lux must be the same. Goals are
+/// counted from 0 as they were added, and ask for just their value until then. Any thread.
+/// LUXFER_NOT_FOUND if there is no such goal.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_lamps_set_sense(
+    lamps: *mut luxfer_lamps,
+    goal: u32,
+    red: luxfer_sense,
+    green: luxfer_sense,
+    blue: luxfer_sense,
+) -> luxfer_status {
+    enter(lamps, |stage| {
+        let senses = [sense(red)?, sense(green)?, sense(blue)?];
+        stage.change(|inputs| {
+            let count = inputs.goals.len();
+            let aim = inputs.goals.get_mut(goal as usize).ok_or_else(|| missing("goal", goal, count))?;
+            if aim.aspect == Aspect::Luminance && senses != [senses[0]; 3] {
+                return Err(Error::argument(format!("goal {goal} is in lux; its channels must have the same sense")));
+            }
+            aim.sense = senses;
+            Ok(())
+        })
+    })
+}
+
+fn sense(value: luxfer_sense) -> Result<Sense> {
+    match value {
+        LUXFER_SENSE_EXACTLY => Ok(Sense::Exactly),
+        LUXFER_SENSE_AT_LEAST => Ok(Sense::AtLeast),
+        LUXFER_SENSE_AT_MOST => Ok(Sense::AtMost),
+        other => Err(Error::argument(format!("sense is {other}; it must be a LUXFER_SENSE_ value"))),
+    }
+}
+
+/// Sets the multipliers that the lamps' drivers can be dimmed to, each finite and >= 0, in any order; count is at most 4096, 0
+/// for drivers that have no steps. The groups then get the levels that together are best for the goals, and half-widths
+/// stay those of powers without steps. Any thread.
+/// LUXFER_INVALID_ARGUMENT if a level is not finite or negative, or there are too many.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_lamps_set_levels(
+    lamps: *mut luxfer_lamps,
+    levels: *const f64,
+    count: u32,
+) -> luxfer_status {
+    enter(lamps, |stage| {
+        if count as usize > MAX_LEVELS {
+            return Err(Error::argument(format!("count is {count}; it must be at most {MAX_LEVELS}")));
+        }
+        let levels = if count == 0 { Vec::new() } else { list(levels, count as usize, "levels")? };
+        for (i, level) in levels.iter().enumerate() {
+            if !(*level >= 0.0 && level.is_finite()) {
+                return Err(Error::argument(format!("level {i} is {level}; it must be finite and not negative")));
+            }
+        }
+        stage.change(|inputs| {
+            inputs.levels = levels;
+            Ok(())
+        })
+    })
+}
+
+/// Forgets the goals. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_lamps_clear_goals(lamps: *mut luxfer_lamps) -> luxfer_status {
+    enter(lamps, |stage| {
+        stage.change(|inputs| {
+            inputs.goals.clear();
+            Ok(())
+        })
+    })
+}
+
+impl Aim {
+    pub(super) fn triangles(&self, scene: &Scene) -> Vec<(usize, usize)> {
+        match self.place {
+            Where::Mesh(mesh) => {
+                let count = scene.meshes.get(mesh as usize).map_or(0, |m| m.triangles.len());
+                (0..count).map(|t| (mesh as usize, t)).collect()
+            }
+            Where::Grid { .. } => Vec::new(),
+        }
+    }
+
+    pub(super) fn goal<'a>(&self, triangles: &'a [(usize, usize)]) -> Goal<'a> {
+        let place = match self.place {
+            Where::Mesh(_) => Place::Surface(triangles),
+            Where::Grid { origin, across, down, normal } => Place::Grid { origin, across, down, normal },
+        };
+        let Self { quantity, target, aspect, sense, weight, .. } = *self;
+        Goal { place, quantity, target, aspect, sense, weight }
+    }
+}
