@@ -20,6 +20,8 @@ use std::collections::{BinaryHeap, HashMap};
 const PARTS: usize = 256;
 const PART_LEAVES: usize = 128;
 const FEW_PARTS: usize = 8;
+/// Lines of a page of memory, within which a ray's next step need not look up another page.
+const PAGE_LINES: usize = 64;
 
 /// Builds the nodes and packets of `accel`.
 pub(super) fn run(source: &Source, accel: &mut Accel, job: Job) -> Result<()> {
@@ -112,6 +114,16 @@ impl Wide {
     }
 }
 
+/// A place that is to become a node.
+struct Open {
+    place: Place,
+    area: f32,
+    /// The node and the lane whose child it is.
+    parent: Option<(usize, usize)>,
+    /// Entries that wait when it is visited.
+    waiting: usize,
+}
+
 /// A child that is left to be done, and where it belongs.
 struct Left {
     at: Place,
@@ -139,38 +151,54 @@ impl Choice<'_> {
             wide.root = Child::of_packet(wide.lines.push(&self.packet(&self.triangles(root)))?);
             return Ok(wide);
         }
-        // Nodes to be made: the place, whose child it is, and the entries that wait when it is visited.
-        let mut open = vec![(root, None, 0)];
-        while let Some((place, parent, waiting)) = open.pop() {
-            let node = wide.lines.push(&Node::empty())?;
-            wide.nodes.push(node);
-            match parent {
-                Some((parent, lane)) => wide.lines.get_mut::<Node>(parent).children[lane] = Child::of_node(node).bits(),
-                None => wide.root = Child::of_node(node),
+        // A page at a time is filled with the nodes that rays meet together most: a root, and of the nodes below those that
+        // are there the largest. What does not fit starts pages of its own.
+        let mut roots = vec![Open { place: root, area: 0.0, parent: None, waiting: 0 }];
+        let mut open = Vec::new();
+        while let Some(next) = roots.pop() {
+            let end = wide.lines.len() + PAGE_LINES;
+            open.push(next);
+            while wide.lines.len() < end
+                && let Some(largest) = (0..open.len()).max_by(|&a, &b| open[a].area.total_cmp(&open[b].area))
+            {
+                let next = open.swap_remove(largest);
+                self.make_node(next, root, leave, &mut wide, &mut open)?;
             }
-            let mut members = [root; 8];
-            let len = self.members(place, &mut members);
-            let mut ranked = members.map(|at| (0.0, at));
-            ranked[..len].iter_mut().for_each(|(promise, at)| *promise = self.promise(*at));
-            ranked[..len].sort_by(|a, b| a.0.total_cmp(&b.0));
-            // All triangles are known, and memory is asked for them, before the first is needed.
-            let packets = ranked.map(|(_, at)| self.is_packet(at).then(|| self.triangles(at)));
-            wide.stack_need = wide.stack_need.max(waiting + len);
-            let waiting = waiting + len - 1;
-            for (lane, &(_, at)) in ranked[..len].iter().enumerate() {
-                let mut child = Child::EMPTY;
-                if leave && at.0 != root.0 {
-                    wide.left.push(Left { at, node, lane, waiting });
-                } else if let Some(ids) = &packets[lane] {
-                    child = Child::of_packet(wide.lines.push(&self.packet(ids))?);
-                } else {
-                    open.push((at, Some((node, lane)), waiting));
-                }
-                let branch = self.branch(at);
-                wide.lines.get_mut::<Node>(node).set(lane, branch.low, branch.high, child);
-            }
+            roots.append(&mut open);
         }
         Ok(wide)
+    }
+
+    /// A node and its packets; the nodes below it are left open.
+    fn make_node(&self, this: Open, root: Place, leave: bool, wide: &mut Wide, open: &mut Vec<Open>) -> Result<()> {
+        let node = wide.lines.push(&Node::empty())?;
+        wide.nodes.push(node);
+        match this.parent {
+            Some((parent, lane)) => wide.lines.get_mut::<Node>(parent).children[lane] = Child::of_node(node).bits(),
+            None => wide.root = Child::of_node(node),
+        }
+        let mut members = [root; 8];
+        let len = self.members(this.place, &mut members);
+        let mut ranked = members.map(|at| (0.0, at));
+        ranked[..len].iter_mut().for_each(|(promise, at)| *promise = self.promise(*at));
+        ranked[..len].sort_by(|a, b| a.0.total_cmp(&b.0));
+        // All triangles are known, and memory is asked for them, before the first is needed.
+        let packets = ranked.map(|(_, at)| self.is_packet(at).then(|| self.triangles(at)));
+        wide.stack_need = wide.stack_need.max(this.waiting + len);
+        let waiting = this.waiting + len - 1;
+        for (lane, &(_, at)) in ranked[..len].iter().enumerate() {
+            let mut child = Child::EMPTY;
+            if leave && at.0 != root.0 {
+                wide.left.push(Left { at, node, lane, waiting });
+            } else if let Some(ids) = &packets[lane] {
+                child = Child::of_packet(wide.lines.push(&self.packet(ids))?);
+            } else {
+                open.push(Open { place: at, area: self.area(at), parent: Some((node, lane)), waiting });
+            }
+            let branch = self.branch(at);
+            wide.lines.get_mut::<Node>(node).set(lane, branch.low, branch.high, child);
+        }
+        Ok(())
     }
 
     /// What a search for any hit may expect of a child, which visits the last lane first: the chance of a hit, over the cost
@@ -178,9 +206,14 @@ impl Choice<'_> {
     /// one behind the other, so that the chance of any is less.
     fn promise(&self, place: Place) -> f32 {
         let branch = self.branch(place);
-        let area = self.binaries[place.0].scale.area(branch.low, branch.high);
+        let area = self.area(place);
         let chance = branch.surface / (branch.surface + area);
         chance * area / branch.cost[0]
+    }
+
+    fn area(&self, place: Place) -> f32 {
+        let branch = self.branch(place);
+        self.binaries[place.0].scale.area(branch.low, branch.high)
     }
 
     fn is_packet(&self, (binary, at): Place) -> bool {

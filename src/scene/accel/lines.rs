@@ -1,7 +1,7 @@
 //! Nodes and packets in one list of cache lines.
 //!
 //! Below the levels that stay in the caches each step of a ray waits for memory, and longer where the step leads to
-//! another page. So a node is followed by its packets, and those by the nodes below it, the first of them first.
+//! another page. So a node is followed by its packets, and nodes that rays meet together share a page.
 
 use super::node::Node;
 use super::packet::Packet;
