@@ -146,7 +146,7 @@ impl Choice<'_> {
 
     /// The wide subtree of a place; within other parts than its own, children are left to be done if `leave`.
     fn widen(&self, root: Place, leave: bool) -> Result<Wide> {
-        let mut wide = Wide::default();
+        let mut wide = Wide { lines: Lines::with_room(self.branch(root).lines())?, ..Wide::default() };
         if self.is_packet(root) {
             wide.root = Child::of_packet(wide.lines.push(&self.packet(&self.triangles(root)))?);
             return Ok(wide);

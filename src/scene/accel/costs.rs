@@ -83,6 +83,11 @@ impl Branch {
         cost: [0.0; 7],
     };
 
+    /// Lines of memory that it will take, about: packets are rarely full, and nodes add a tenth.
+    pub fn lines(&self) -> usize {
+        self.count as usize * 5 / 4 + 8
+    }
+
     /// Bounds and costs of a unit.
     fn measure(&mut self, source: &Source, unit: u32, scale: Scale) {
         for id in source.units[unit as usize].ids() {
@@ -152,7 +157,12 @@ impl Binary {
         let (low, high, count) = (l.low.min(r.low), l.high.max(r.high), l.count + r.count);
         let surface = l.surface + r.surface;
         let area = self.scale.area(low, high);
-        let halves = combine(&l.cost, &r.cost);
+        // A unit costs the same as any number of subtrees.
+        let halves = match (l.content, r.content) {
+            (Content::Unit(_), _) => r.cost.map(|cost| cost + l.cost[0]),
+            (_, Content::Unit(_)) => l.cost.map(|cost| cost + r.cost[0]),
+            _ => combine(&l.cost, &r.cost),
+        };
         let mut cost = [area + halves[6]; 7];
         if count <= WIDTH as u32 {
             cost[0] = least(cost[0], area * PACKET_COST);

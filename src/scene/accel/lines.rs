@@ -37,6 +37,10 @@ impl Lines {
         Self { list }
     }
 
+    pub fn with_room(len: usize) -> Result<Self> {
+        Ok(Self { list: pages::reserve(len)? })
+    }
+
     pub fn as_slice(&self) -> &[Line] {
         &self.list
     }

@@ -119,9 +119,9 @@ impl Units {
         let unit_box = |unit: &Unit| {
             let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
             for corner in unit.ids().flat_map(|id| triangles[id as usize]) {
-                let p = ((corner.as_dvec3() - centre) * scale).as_vec3();
-                (low, high) = (low.min(p), high.max(p));
+                (low, high) = (low.min(corner), high.max(corner));
             }
+            let [low, high] = [low, high].map(|p| ((p.as_dvec3() - centre) * scale).as_vec3());
             let amount = (rng::mix(u64::from(unit.first) + 1) >> 40) as f32 / (1 << 24) as f32;
             let (extent, distance) = ((high - low).max_element(), low.abs().max(high.abs()).max_element());
             let is_point = extent <= distance * f32::EPSILON;
