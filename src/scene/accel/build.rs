@@ -17,7 +17,7 @@ use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 /// and the sort keys (32 each); two nodes per leaf (64) with their parents and marks (10).
 const BUILDER_BYTES: usize = 256;
 
-/// Nodes that the first round of reinsertion tries to move, within limits of 8 and 20 % of all: more make a better
+/// Nodes that the first round of reinsertion tries to move, within limits of 8 and 16 % of all: more make a better
 /// tree, but take their time.
 const REINSERTED: f32 = 13_000.0;
 /// Rounds of reinsertion, as shares of the first; the largest nodes are tried in every one. More of them gain nothing.
@@ -71,7 +71,7 @@ fn binary_tree(boxes: &[Aabb], job: Job) -> Result<Bvh2> {
         PlocBuilder::with_capacity(boxes.len()).build(PlocSearchDistance::Low, boxes, indices, SortPrecision::U64, 0);
     job.check()?;
     job.report(0.7);
-    let share = (REINSERTED / boxes.len() as f32).clamp(0.08, 0.2);
+    let share = (REINSERTED / boxes.len() as f32).clamp(0.08, 0.16);
     ReinsertionOptimizer::default().run(&mut tree, share, Some(ROUNDS.to_vec()));
     job.check()?;
     job.report(1.0);
