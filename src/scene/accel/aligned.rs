@@ -7,11 +7,10 @@ use glam::{BVec4A, Vec4};
 pub(super) struct Aligned {
     pub origin: Vec4,
     pub direction: Vec4,
-    /// Absolute values of the direction.
-    pub size: Vec4,
-    /// The largest of them.
-    pub along: f32,
-    /// Where that is; more than one axis where they are equal.
+    /// One over the direction, finite: a component too small to divide by is replaced by one that moves the ray less than
+    /// the margin of its boxes.
+    pub inverse: Vec4,
+    /// Where the direction is longest; more than one axis where they are equal.
     pub is_dominant: BVec4A,
 }
 
@@ -25,7 +24,9 @@ impl Aligned {
         // Zero times an infinity or NaN is NaN.
         let is_finite = (origin * 0.0 + direction * 0.0).cmpeq(Vec4::ZERO).all();
         let is_dominant = size.cmpeq(Vec4::splat(along));
-        (is_finite && along > 0.0 && ray.t_max > 0.0).then_some(Self { origin, direction, size, along, is_dominant })
+        let divisor = size.max(Vec4::splat(along * 1e-12)).copysign(direction);
+        let inverse = finite(Vec4::ONE / divisor);
+        (is_finite && along > 0.0 && ray.t_max > 0.0).then_some(Self { origin, direction, inverse, is_dominant })
     }
 
     /// The longest axis; the last of equals.
@@ -33,4 +34,10 @@ impl Aligned {
     pub fn dominant_axis(&self) -> usize {
         (31 - (self.is_dominant.bitmask() & 7 | 1).leading_zeros()) as usize
     }
+}
+
+/// Infinities become the largest numbers.
+#[inline(always)]
+pub(super) fn finite(v: Vec4) -> Vec4 {
+    v.max(Vec4::splat(f32::MIN)).min(Vec4::splat(f32::MAX))
 }

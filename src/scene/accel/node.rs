@@ -1,6 +1,6 @@
 //! Nodes of eight children and the conservative test of a ray against their boxes.
 
-use super::aligned::Aligned;
+use super::aligned::{Aligned, finite};
 use super::lanes::{Lanes, Row};
 use glam::{Vec3, Vec4};
 
@@ -127,15 +127,10 @@ impl<L: Lanes> NodeRay<L> {
         let reach = ray.origin.abs() + largest;
         let dominant = Vec4::select(ray.is_dominant, reach, Vec4::ZERO).max_element();
         let margin = (reach + Vec4::splat(dominant)) * MARGIN;
-        // A component too small to divide by is replaced by one that moves the ray less than the margin.
-        let sign = Vec4::ONE.copysign(ray.direction);
-        let d = ray.size.max(Vec4::splat(ray.along * 1e-12)) * sign;
-        // Kept finite, whatever the ray: an infinity could make a NaN of an empty box, and a NaN is met.
-        let finite = |v: Vec4| v.max(Vec4::splat(f32::MIN)).min(Vec4::splat(f32::MAX));
-        let scale = finite(Vec4::ONE / d);
-        let margin = margin * sign;
-        let near = finite(-(ray.origin + margin) * scale);
-        let far = finite(-(ray.origin - margin) * scale);
+        let scale = ray.inverse;
+        // Finite, whatever the ray: an infinity could make a NaN of an empty box, and a NaN is met.
+        let (middle, margin) = (-ray.origin * scale, margin * scale.abs());
+        let (near, far) = (finite(middle - margin), finite(middle + margin));
         let is_negative = ray.direction.is_negative_bitmask() as usize;
         let start = |axis: usize| size_of::<Row>() * (2 * axis + (is_negative >> axis & 1));
         Self {

@@ -145,10 +145,9 @@ impl TriangleRay {
     #[inline(always)]
     pub fn new(ray: &Aligned) -> Self {
         let z = ray.dominant_axis();
-        let (origin, d) = (ray.origin.to_array(), ray.direction.to_array());
+        let (origin, d, inverse) = (ray.origin.to_array(), ray.direction.to_array(), ray.inverse.to_array()[z]);
         // The two axes after it in turn, from tables of two bits each: 1, 2, 0 and 2, 0, 1.
         let (x, y) = (0b00_10_01 >> (2 * z) & 3, 0b01_00_10 >> (2 * z) & 3);
-        let inverse = 1.0 / d[z];
         Self {
             origin: [origin[x], origin[y], origin[z]],
             axes: [x, y, z],
