@@ -34,12 +34,12 @@ pub(super) trait Lanes: Copy {
     fn or(a: Self::Mask, b: Self::Mask) -> Self::Mask;
     /// Bit `i` is set where lane `i` is.
     fn bits(mask: Self::Mask) -> u32;
-    /// Writes `payload[i] | bits(self[i]) << 32` for every lane `i` of `mask`, in order of the lanes; what comes after
-    /// that, up to the eighth place, is overwritten with anything.
+    /// Writes `payload[i]` for every lane `i` of `mask`, in order of the lanes; what comes after that, up to the eighth
+    /// place, is overwritten with anything.
     ///
     /// # Safety
     /// There is room for eight at `to`.
-    unsafe fn pack(self, payload: &[u32; 8], mask: u32, to: *mut u64);
+    unsafe fn pick(payload: &[u32; 8], mask: u32, to: *mut u64);
 }
 
 /// Two registers of four: SSE2 on x86-64, NEON on aarch64, scalars elsewhere.
@@ -150,14 +150,13 @@ impl Lanes for Baseline {
     }
 
     #[inline(always)]
-    unsafe fn pack(self, payload: &[u32; 8], mut mask: u32, mut to: *mut u64) {
-        let row = self.store();
+    unsafe fn pick(payload: &[u32; 8], mut mask: u32, mut to: *mut u64) {
         while mask != 0 {
             let lane = mask.trailing_zeros() as usize & 7;
             mask &= mask - 1;
             // SAFETY: a mask has eight bits at most.
             unsafe {
-                to.write(u64::from(payload[lane]) | u64::from(row.0[lane].to_bits()) << 32);
+                to.write(u64::from(payload[lane]));
                 to = to.add(1);
             }
         }
@@ -288,15 +287,13 @@ mod avx2 {
         }
 
         #[inline(always)]
-        unsafe fn pack(self, payload: &[u32; 8], mask: u32, to: *mut u64) {
+        unsafe fn pick(payload: &[u32; 8], mask: u32, to: *mut u64) {
             unsafe {
                 let lanes = _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(LANES_OF[mask as usize & 255] as i64));
-                let payload = _mm256_loadu_si256(payload.as_ptr().cast());
-                let high = _mm256_permutevar8x32_epi32(_mm256_castps_si256(self.0), lanes);
-                let low = _mm256_permutevar8x32_epi32(payload, lanes);
-                let (a, b) = (_mm256_unpacklo_epi32(low, high), _mm256_unpackhi_epi32(low, high));
-                _mm256_storeu_si256(to.cast(), _mm256_permute2x128_si256::<0x20>(a, b));
-                _mm256_storeu_si256(to.add(4).cast(), _mm256_permute2x128_si256::<0x31>(a, b));
+                let payload = _mm256_permutevar8x32_epi32(_mm256_loadu_si256(payload.as_ptr().cast()), lanes);
+                let (low, high) = (_mm256_castsi256_si128(payload), _mm256_extracti128_si256::<1>(payload));
+                _mm256_storeu_si256(to.cast(), _mm256_cvtepu32_epi64(low));
+                _mm256_storeu_si256(to.add(4).cast(), _mm256_cvtepu32_epi64(high));
             }
         }
     }

@@ -78,10 +78,10 @@ impl Lines {
         unsafe { &*self.at(line).cast() }
     }
 
-    /// Asks memory for what starts at a line: a node, or all of a packet but the indices, which only hits need.
+    /// Asks memory for what starts at a line: a packet, or a node and a line more.
     #[inline(always)]
     pub fn prefetch(&self, line: usize) {
-        pages::prefetch(self.at(line), 4);
+        pages::prefetch(self.at(line), lines_of::<Packet>());
     }
 
     #[inline(always)]

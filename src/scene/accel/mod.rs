@@ -189,20 +189,19 @@ impl Accel {
                 let node = unsafe { self.lines.get::<Node>(child.line()) };
                 let (mut mask, near) = node.intersect(&node_ray, t_max);
                 if mask != 0 {
-                    let first = if ANY { take_highest(&mut mask) } else { take_lowest(&mut mask) };
-                    if mask == 0 {
-                        child = node.child(first);
-                        continue;
-                    }
                     child = if ANY {
-                        stack.push_all(near, &node.children, mask);
+                        let first = take_highest(&mut mask);
+                        stack.push_all::<L>(&node.children, mask);
                         node.child(first)
                     } else {
+                        let first = take_lowest(&mut mask);
+                        if mask == 0 {
+                            child = node.child(first);
+                            continue;
+                        }
                         stack.push_all_but_nearest(&near.store(), &node.children, first, mask)
                     };
-                    if let Some((_, next)) = stack.top() {
-                        self.lines.prefetch(next.line());
-                    }
+                    self.prefetch(&stack);
                     continue;
                 }
             }
@@ -213,6 +212,17 @@ impl Accel {
                     break next;
                 }
             };
+            if ANY {
+                self.prefetch(&stack);
+            }
+        }
+    }
+
+    /// Asks memory for the child that is next.
+    #[inline(always)]
+    fn prefetch(&self, stack: &Stack) {
+        if let Some((_, next)) = stack.top() {
+            self.lines.prefetch(next.line());
         }
     }
 }

@@ -38,12 +38,12 @@ impl<'a> Stack<'a> {
         Some((f32::from_bits((entry >> 32) as u32), Child::from_bits(entry as u32)))
     }
 
-    /// Puts down the children in a mask.
+    /// Puts down the children in a mask, whatever their distances.
     #[inline(always)]
-    pub fn push_all<L: Lanes>(&mut self, near: L, children: &[u32; 8], mask: u32) {
+    pub fn push_all<L: Lanes>(&mut self, children: &[u32; 8], mask: u32) {
         debug_assert!(self.len + SLACK <= self.places.len());
         // SAFETY: there is room for eight beyond those that wait.
-        unsafe { near.pack(children, mask, self.places.as_mut_ptr().add(self.len).cast()) };
+        unsafe { L::pick(children, mask, self.places.as_mut_ptr().add(self.len).cast()) };
         self.len += mask.count_ones() as usize;
     }
 
