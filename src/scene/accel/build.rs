@@ -21,7 +21,7 @@ const BUILDER_BYTES: usize = 256;
 /// tree, but take their time.
 const REINSERTED: f32 = 13_000.0;
 /// Rounds of reinsertion, as shares of the first; the largest nodes are tried in every one. More of them gain nothing.
-const ROUNDS: [f32; 3] = [1.0, 0.33, 0.1];
+const ROUNDS: [f32; 3] = [1.0, 0.2, 0.1];
 
 pub(super) fn build(triangles: &[[Vec3; 3]], job: Job) -> Result<Accel> {
     if triangles.len() >= 1 << 31 {
