@@ -8,7 +8,7 @@
 //! `make setup` installs Mitsuba from PyPI into target/peers. Without it there is nothing to compare with: the test says so,
 //! except in continuous integration (CI set), where it fails.
 
-use glam::{Quat, Vec2, Vec3};
+use glam::{Quat, Vec3};
 use luxfer::exec::Pool;
 use luxfer::job::Monitor;
 use luxfer::render::{self, World};
