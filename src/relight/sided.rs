@@ -68,8 +68,12 @@ impl Problem<'_> {
             if then == counting {
                 return Ok(next);
             }
-            let t = self.line_search(lambda, &x, &next);
+            let (t, slope) = self.line_search(lambda, &x, &next);
             x.iter_mut().zip(&next).for_each(|(x, n)| *x += t * (n - *x));
+            // On the edge to rounding a term may flicker, and the function does not fall any more.
+            if -slope * t <= ROUNDING * dot(self.right, self.right) {
+                return Ok(x);
+            }
             counting = self.counting(&x, &counting);
         }
         Err(Error::new(ErrorKind::Internal, "the powers for goals with limits did not settle"))
@@ -104,8 +108,8 @@ impl Problem<'_> {
         bounded::Problem { matrix: &matrix, right: &right, pull, preferred, upper }.solve()
     }
 
-    /// Where between two places the function is least.
-    fn line_search(&self, lambda: f64, from: &[f64], to: &[f64]) -> f64 {
+    /// Where between two places the function is least, and its slope at the first.
+    fn line_search(&self, lambda: f64, from: &[f64], to: &[f64]) -> (f64, f64) {
         let step: Vec<f64> = to.iter().zip(from).map(|(b, a)| b - a).collect();
         let away: f64 = from.iter().zip(self.preferred).zip(&step).map(|((x, p), d)| (x - p) * d).sum();
         let mut slope = Slope { start: lambda * away, growth: lambda * dot(&step, &step), changes: Vec::new() };
@@ -122,7 +126,8 @@ impl Problem<'_> {
                 slope.add(first, last, rise * rise);
             }
         }
-        slope.zero()
+        let start = slope.start;
+        (slope.zero(), start)
     }
 }
 
@@ -208,14 +213,19 @@ mod tests {
     #[test]
     fn conditions_of_optimality() {
         let mut rng = Rng::new(7, &[]);
-        for case in 0..200 {
-            let (m, n) = (1 + rng.below(8), 1 + rng.below(30));
-            let matrix: Vec<f64> = (0..m * n).map(|_| rng.next_f64()).collect();
-            let right: Vec<f64> = (0..m).map(|_| rng.next_f64() * n as f64).collect();
+        for case in 0..10_000 {
+            let (m, n) = (1 + rng.below(8), 1 + rng.below(if case % 2 == 0 { 30 } else { 5 }));
+            let mut matrix: Vec<f64> = (0..m * n).map(|_| rng.next_f64()).collect();
+            // Channels of a grey room are alike.
+            for i in (1..m).filter(|i| case % 3 == 0 && i % 3 != 0) {
+                matrix.copy_within((i - 1) * n..i * n, i * n);
+            }
+            let right: Vec<f64> = (0..m).map(|_| rng.next_f64() * n as f64 * 0.5).collect();
             let senses: Vec<Sense> = (0..m).map(|_| [Exactly, AtLeast, AtMost][rng.below(3)]).collect();
             let preferred: Vec<f64> = (0..n).map(|_| rng.next_f64()).collect();
-            let upper: Vec<f64> = (0..n).map(|_| if rng.next_f64() < 0.5 { FREE } else { rng.next_f64() }).collect();
-            let pull = 10f64.powf(-6.0 * rng.next_f64());
+            let upper: Vec<f64> =
+                (0..n).map(|_| if rng.next_f64() < 0.5 { FREE } else { 2.0 * rng.next_f64() }).collect();
+            let pull = 10f64.powf(-9.0 * rng.next_f64());
             let problem =
                 Problem { matrix: &matrix, right: &right, senses: &senses, pull, preferred: &preferred, upper: &upper };
             let x = problem.solve().unwrap();
@@ -223,7 +233,7 @@ mod tests {
             let misses: Vec<f64> = (0..m).map(|i| senses[i].miss(dot(problem.row(i), &x) - right[i])).collect();
             for j in 0..n {
                 let slope = (0..m).map(|i| matrix[i * n + j] * misses[i]).sum::<f64>() + lambda * (x[j] - preferred[j]);
-                let small = 1e-9 * (lambda + dot(&right, &right).sqrt());
+                let small = 1e-6 * (lambda + dot(&right, &right).sqrt());
                 let fits = match x[j] {
                     v if v == upper[j] => slope <= small,
                     0.0 => slope >= -small,

@@ -105,7 +105,7 @@ def mix_primaries(
 ) -> tuple[list[float], Mixture]:
     """How strongly to drive each of the LEDs of a luminaire for a linear colour, and what that gives.
 
-    >>> drives, light = luxfer.mix_primaries(context, [(1, 0, 0), (0, 1, 0), (0, 0, 1)], (0.5, 0.25, 0.75))
+    >>> drives, light = mix_primaries(context, [(1, 0, 0), (0, 1, 0), (0, 0, 1)], (0.5, 0.25, 0.75))
     >>> [round(drive, 3) for drive in drives], light.reached
     ([0.5, 0.25, 0.75], 1)
     """
