@@ -13,9 +13,9 @@
 //! the sphere. The paper maps a rectangle of any shape onto the quadrilateral; here the focal length gives the plane its
 //! true aspect ratio.
 //!
-//! Known weaknesses. Stated errors presume independent endpoint noise; short segments share a bias of about 0.01 rad on
-//! fine perspective patterns, whose cause is not known, so errors from pixels are often two to five times the stated
-//! ones, and `corner_error` and `aspect_confidence` are too hopeful with them.
+//! Known weaknesses. Stated errors presume five segments per independent observation and a floor of 0.2°, calibrated on
+//! re-projected panoramas: half of their true errors lie below 0.7 of the stated ones, as they should, but one in twenty
+//! beyond 2.3. A direction that few lines show can be lost to chance lines of a floor, and its stated error does not say so.
 //!
 //! Not modelled: lens distortion, pixels that are not square, rooms whose walls are not at right angles (their directions
 //! are found, but the axes are made orthogonal).

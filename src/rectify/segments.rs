@@ -8,8 +8,9 @@ use crate::image::try_vec;
 use crate::job::Job;
 use glam::DVec2;
 
-/// Weakest gradient that counts, in encoded luma per pixel: an edge of about 6 of 255 grey levels.
-const WEAKEST: f32 = 0.01;
+/// Weakest gradient that counts, in encoded luma per pixel: an edge of about 9 of 255 grey levels. Weaker ones are the
+/// texture of floors and plaster, whose chance lines outvote the few real ones of a poorly seen direction.
+const WEAKEST: f32 = 0.015;
 
 /// Half-angle within which a pixel joins a region, as in LSD: π / 8.
 const TOLERANCE: f64 = std::f64::consts::FRAC_PI_8;

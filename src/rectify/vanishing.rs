@@ -1,7 +1,7 @@
 //! Vanishing points from line segments (§5.2): up to three directions, orthogonal where the search is Manhattan's, each
 //! then refined freely with its own covariance.
 
-use super::sphere::{Evidence, Frame, Refined, project, refine, unproject};
+use super::sphere::{Evidence, Frame, Refined, RightAngle, project, refine, refine_near, unproject};
 use super::{Params, Search, VanishingPoint, manhattan, successive};
 use crate::error::{Error, Result, check_range};
 use crate::geometry::Segment;
@@ -13,6 +13,11 @@ const MOST_LINES: usize = 2500;
 
 /// A direction less certain than this, in radians, is none.
 const WORST_ERROR: f64 = 0.2;
+
+/// How far from a right angle two directions of a room are, in radians, and by how much the logarithm of the focal length
+/// is off while they are refined.
+const SQUARENESS: f64 = 0.04;
+const FOCAL_SPREAD: f64 = 0.05;
 
 /// The vanishing points of a set of segments.
 #[derive(Clone, Debug)]
@@ -106,31 +111,51 @@ pub fn from_segments(
     Ok(Vanishing { points, members, focal: focal * frame.scale })
 }
 
-/// Refines each direction on the lines that run along it more nearly than along the others. Directions that no two lines
-/// fix, or that drift into another, are dropped.
+/// Refines each direction on the lines that run along it more nearly than along the others, then once more with the
+/// right angles that the others, as their own lines have them, lead one to expect: those help where a direction has few
+/// lines. Directions that no two lines fix, or that drift into another, are dropped.
 fn refine_freely(lines: &[Evidence], axes: &[DVec3], focal: f64) -> Vec<Refined> {
     let mut current: Vec<Refined> = axes.iter().map(|&direction| Refined { direction, error: 0.0 }).collect();
     for _ in 0..3 {
-        let points: Vec<DVec3> = current.iter().map(|r| project(r.direction, focal)).collect();
-        let mut groups = vec![Vec::new(); points.len()];
-        for e in lines {
-            let best = points.iter().map(|&p| e.agreement(p)).enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
-            if let Some((k, _)) = best.filter(|b| b.1 > 0.0) {
-                groups[k].push(*e);
-            }
-        }
-        let refined: Vec<Refined> =
-            current.iter().zip(&groups).filter_map(|(r, group)| refine(group, r.direction, focal)).collect();
-        current = refined;
+        let groups = nearest(lines, &current, focal);
+        current = current.iter().zip(&groups).filter_map(|(r, group)| refine(group, r.direction, focal)).collect();
     }
+    let groups = nearest(lines, &current, focal);
+    let squared: Vec<Refined> = (0..current.len())
+        .map(|i| {
+            let from = current[i];
+            let expected: Vec<RightAngle> = (0..current.len())
+                .filter(|&j| j != i)
+                .map(|j| {
+                    let Refined { direction: to, error } = current[j];
+                    let by_focal = 2.0 * from.direction.z * to.z * FOCAL_SPREAD;
+                    RightAngle { to, variance: SQUARENESS * SQUARENESS + error * error + by_focal * by_focal }
+                })
+                .collect();
+            refine_near(&groups[i], from.direction, focal, &expected).unwrap_or(from)
+        })
+        .collect();
     let mut kept: Vec<Refined> = Vec::new();
-    for r in current {
+    for r in squared {
         let apart = kept.iter().all(|k| k.direction.dot(r.direction).abs() < 0.9);
         if apart && r.error < WORST_ERROR {
             kept.push(r);
         }
     }
     kept
+}
+
+/// For each direction the lines that agree with it, and with none better.
+fn nearest(lines: &[Evidence], directions: &[Refined], focal: f64) -> Vec<Vec<Evidence>> {
+    let points: Vec<DVec3> = directions.iter().map(|r| project(r.direction, focal)).collect();
+    let mut groups = vec![Vec::new(); points.len()];
+    for e in lines {
+        let best = points.iter().map(|&p| e.agreement(p)).enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
+        if let Some((k, _)) = best.filter(|b| b.1 > 0.0) {
+            groups[k].push(*e);
+        }
+    }
+    groups
 }
 
 impl Params {

@@ -1,0 +1,180 @@
+//! Vanishing points: accuracy on labelled sets of segments and from the pixels of re-projected panoramas, by method, and
+//! error against time as lines or pixels are left out.
+
+mod harness;
+#[path = "../tests/truth/mod.rs"]
+mod truth;
+
+use harness::plot::Plot;
+use harness::{Clock, Table, absent, figure, interleaved, quantile, time};
+use luxfer::exec::Pool;
+use luxfer::geometry::Segment;
+use luxfer::image::pyramid;
+use luxfer::job::Monitor;
+use luxfer::rectify::{self, Metric, Params, Search, vanishing};
+use truth::{GivenSet, Labelled, area, errors, given_set, labelled_photos};
+
+/// Segments of which `vp.ms` tells the time, and images that it is the median of.
+const SEGMENTS: usize = 500;
+const TIMED: usize = 25;
+
+fn main() {
+    let pool = Pool::new(2).unwrap();
+    let sets = ["nyu_dev", "yud_dev"].map(given_set);
+    pool.run(|| given_segments(&sets));
+    let photos = labelled_photos();
+    pool.run(|| panoramas(&photos));
+}
+
+fn methods() -> [(&'static str, Params); 4] {
+    let segment = Params { search: Search::Successive, ..Params::default() };
+    [
+        ("Manhattan, then free (default)", Params::default()),
+        ("successive, distance on segments", segment.clone()),
+        ("successive, distance as printed", Params { metric: Metric::VisibleLine, ..segment }),
+        ("default from Hough lines", Params { detector: rectify::LineDetector::Hough, ..Params::default() }),
+    ]
+}
+
+fn given_segments(sets: &[Option<GivenSet>; 2]) {
+    let mut table = Table::new(["set and method", "AUC@10", "AUC@5", "AUC@3", "median deg", "ms/image"]);
+    let mut row = |name: &str, method: &str, set: &GivenSet, params: &Params| {
+        let (seconds, angles) = time(Clock::Wall, || set.angles(params));
+        let share = |limit: f64| format!("{:.1}", 100.0 * area(&angles, limit));
+        let ms = seconds * 1e3 / set.images.len() as f64;
+        let median = format!("{:.2}", quantile(&angles, 0.5));
+        table.row([format!("{name}: {method}"), share(10.0), share(5.0), share(3.0), median, format!("{ms:.1}")]);
+        100.0 * area(&angles, 10.0)
+    };
+    let mut headline = Vec::new();
+    for (name, set) in ["nyu_dev", "yud_dev"].iter().zip(sets) {
+        let Some(set) = set else {
+            absent(&format!("vp.{name}.auc10"), "the labelled segments are not there");
+            continue;
+        };
+        for (k, (method, params)) in methods()[..3].iter().enumerate() {
+            let auc = row(name, method, set, params);
+            if k == 0 {
+                headline.push((format!("vp.{name}.auc10"), auc));
+            }
+        }
+        let known = Params {
+            focal: Some(set.intrinsics.x_axis.x),
+            principal: Some(set.intrinsics.z_axis.truncate()),
+            ..Params::default()
+        };
+        row(name, "default, camera known", set, &known);
+    }
+    if let Some(set) = given_set("yud_dev") {
+        // Beside York Urban's own three, a few images carry further directions, some of them with half a dozen lines.
+        let auc = row("yud_dev", "default, its first three directions only", &set.first_three(), &Params::default());
+        headline.push(("vp.yud_dev.first_three.auc10".into(), auc));
+    }
+    table.print("From given segments, focal length unknown");
+    headline.iter().for_each(|(name, auc)| figure(name, *auc, "%"));
+
+    let Some(set) = &sets[0] else { return absent("vp.ms", "the labelled segments are not there") };
+    let many: Vec<Vec<Segment>> =
+        set.images.iter().filter(|(s, _)| s.len() >= SEGMENTS).take(TIMED).map(|(s, _)| longest(s, SEGMENTS)).collect();
+    let monitor = Monitor::default();
+    let mut one = |segments: &[Segment]| {
+        let params = Params::default();
+        let timings = interleaved(Clock::Wall, 5, &mut [&mut || {
+            let _ = vanishing::from_segments(segments, set.width, set.height, 3, &params, monitor.job());
+        }]);
+        1e3 * timings.median(0)
+    };
+    let ms: Vec<f64> = many.iter().map(|s| one(s)).collect();
+    println!("\n{} segments: {:.1} to {:.1} ms", SEGMENTS, quantile(&ms, 0.0), quantile(&ms, 1.0));
+    figure("vp.ms", quantile(&ms, 0.5), "ms");
+
+    // The shortest left out.
+    let mut plot = Plot::new("Vanishing points from the longest segments", "ms per image", "100 - AUC@10, %");
+    for (name, set) in ["nyu_dev", "yud_dev"].iter().zip(sets).filter_map(|(n, s)| Some((n, s.as_ref()?))) {
+        for (method, params) in &methods()[..2] {
+            let points = [20, 50, 100, 200, 400, 1000].map(|most| {
+                let images = set.images.iter().map(|(s, t)| (longest(s, most), t.clone())).collect();
+                let part = GivenSet { images, ..*set };
+                let (seconds, angles) = time(Clock::Wall, || part.angles(params));
+                [seconds * 1e3 / part.images.len() as f64, 100.0 * (1.0 - area(&angles, 10.0))]
+            });
+            plot.add(&format!("{name}: {}", method.split(',').next().unwrap_or_default()), points);
+        }
+    }
+    plot.write("vp_segments").unwrap();
+}
+
+/// The longest segments, at most so many, in their order.
+fn longest(segments: &[Segment], most: usize) -> Vec<Segment> {
+    let mut lengths: Vec<f64> = segments.iter().map(Segment::length).collect();
+    lengths.sort_by(|a, b| b.total_cmp(a));
+    let least = lengths.get(most).copied().unwrap_or(0.0);
+    segments.iter().filter(|s| s.length() > least).copied().collect()
+}
+
+/// Errors in degrees of the directions found in a photo, each with the error that was stated for it.
+fn found(photo: &Labelled, params: &Params) -> (f64, Vec<[f64; 2]>) {
+    let monitor = Monitor::default();
+    let (seconds, view) = time(Clock::Wall, || rectify::find_view(&photo.photo, params, monitor.job()));
+    let points = view.map_or(Vec::new(), |v| v.vanishing_points.to_vec());
+    let list = photo.directions.iter().map(|direction| {
+        let each = points.iter().filter(|p| p.support > 0);
+        each.map(|p| [errors(&[*direction], &[p.point], photo.intrinsics)[0], p.error.to_degrees()])
+            .fold([90.0, f64::NAN], |a, b| if b[0] < a[0] { b } else { a })
+    });
+    (1e3 * seconds, list.collect())
+}
+
+fn panoramas(photos: &[Labelled]) {
+    if photos.is_empty() {
+        absent("vp.panorama.median_deg", "the panoramas are not there");
+        absent("vp.panorama.failures", "the panoramas are not there");
+        return;
+    }
+    let mut table = Table::new(["method", "median deg", "90 % below", "beyond 5 deg", "error / stated: half", "90 %", "ms"]);
+    let mut plot = Plot::new("Vanishing points from pixels, photos reduced", "ms per photo", "median error, degrees");
+    for (k, (method, params)) in methods().iter().enumerate() {
+        let all: Vec<(f64, Vec<[f64; 2]>)> = photos.iter().map(|p| found(p, params)).collect();
+        let flat: Vec<[f64; 2]> = all.iter().flat_map(|a| a.1.clone()).collect();
+        let angles: Vec<f64> = flat.iter().map(|e| e[0]).collect();
+        let shares: Vec<f64> = flat.iter().filter(|e| e[1] > 0.0).map(|e| e[0] / e[1]).collect();
+        let failures = angles.iter().filter(|&&e| e > 5.0).count();
+        let ms: Vec<f64> = all.iter().map(|a| a.0).collect();
+        let text = |v: f64| format!("{v:.2}");
+        table.row([
+            (*method).into(),
+            text(quantile(&angles, 0.5)),
+            text(quantile(&angles, 0.9)),
+            format!("{failures} of {}", angles.len()),
+            text(quantile(&shares, 0.5)),
+            text(quantile(&shares, 0.9)),
+            format!("{:.0}", quantile(&ms, 0.5)),
+        ]);
+        if k == 0 {
+            figure("vp.panorama.median_deg", quantile(&angles, 0.5), "degrees");
+            figure("vp.panorama.failures", failures as f64, "count");
+        }
+        if k == 0 || k == 3 {
+            plot.add(method, [0.2, 0.35, 0.5, 0.7, 1.0].map(|scale| reduced(photos, params, scale)));
+        }
+    }
+    table.print("From pixels of re-projected panoramas, focal length unknown");
+    plot.write("vp_pixels").unwrap();
+}
+
+/// Median milliseconds and median error on photos reduced to a share of their sides.
+fn reduced(photos: &[Labelled], params: &Params, scale: f64) -> [f64; 2] {
+    let monitor = Monitor::default();
+    let (mut ms, mut angles) = (Vec::new(), Vec::new());
+    for photo in photos {
+        let [width, height] = [photo.photo.width, photo.photo.height].map(|side| (side as f64 * scale).round() as usize);
+        let small = pyramid::resize(&photo.photo, width, height, monitor.job()).unwrap();
+        let k = glam::DMat3::from_diagonal(glam::DVec3::new(scale, scale, 1.0)) * photo.intrinsics;
+        let small =
+            Labelled { name: photo.name.clone(), photo: small, intrinsics: k, directions: photo.directions.clone() };
+        let (taken, list) = found(&small, params);
+        ms.push(taken);
+        angles.extend(list.iter().map(|e| e[0]));
+    }
+    [quantile(&ms, 0.5), quantile(&angles, 0.5)]
+}
