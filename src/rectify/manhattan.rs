@@ -23,7 +23,12 @@ const FOCAL_COST: f64 = 0.004;
 const PAIRS: usize = 800;
 const CANDIDATES: usize = 8;
 const PARTNERS: usize = 40;
+const SEMIFINALISTS: usize = 256;
 const FINALISTS: usize = 12;
+
+/// Longest lines that hypotheses and semifinalists are scored on.
+const FEW: usize = 64;
+const MANY: usize = 200;
 
 /// An orthogonal triplet: camera-space directions as columns, the focal length in units of the frame.
 #[derive(Clone, Copy, Debug)]
@@ -37,13 +42,11 @@ pub struct Triplet {
 pub fn search(lines: &[Evidence], focal: Option<f64>, seed: u64, job: Job) -> Result<Option<Triplet>> {
     let candidates = candidates(lines, focal.unwrap_or(USUAL_FOCAL), CANDIDATES, seed, job.part(0.0, 0.3))?;
     let hypotheses = hypotheses(lines, &candidates, focal);
-    // Score all on the longest lines, the best on all lines after refinement.
-    let longest = &lines[..lines.len().min(200)];
-    let scores = exec::map(hypotheses.len(), job.part(0.3, 0.7), |i| score(longest, &hypotheses[i]))?;
-    let mut ranked: Vec<(f64, Triplet)> = scores.into_iter().zip(hypotheses).collect();
-    ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
+    // Score all on a few lines, the better ones on more, the best on all lines after refinement.
+    let few = ranked(lines, FEW, hypotheses, job.part(0.3, 0.6))?;
+    let ranked = ranked(lines, MANY, few.into_iter().take(SEMIFINALISTS).collect(), job.part(0.6, 0.7))?;
     let mut finalists: Vec<Triplet> = Vec::new();
-    for (_, triplet) in ranked {
+    for triplet in ranked {
         if finalists.len() == FINALISTS {
             break;
         }
@@ -53,6 +56,15 @@ pub fn search(lines: &[Evidence], focal: Option<f64>, seed: u64, job: Job) -> Re
     }
     let refined = exec::map(finalists.len(), job.part(0.7, 1.0), |i| refine_jointly(lines, finalists[i], focal))?;
     Ok(refined.into_iter().max_by(|a, b| a.score.total_cmp(&b.score)))
+}
+
+/// Triplets by falling score on the longest lines.
+fn ranked(lines: &[Evidence], longest: usize, triplets: Vec<Triplet>, job: Job) -> Result<Vec<Triplet>> {
+    let longest = &lines[..lines.len().min(longest)];
+    let scores = exec::map(triplets.len(), job, |i| score(longest, &triplets[i]))?;
+    let mut ranked: Vec<(f64, Triplet)> = scores.into_iter().zip(triplets).collect();
+    ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
+    Ok(ranked.into_iter().map(|(_, triplet)| triplet).collect())
 }
 
 /// The direction that most lines agree with.
@@ -85,13 +97,19 @@ fn candidates(lines: &[Evidence], focal: f64, count: usize, seed: u64, job: Job)
     })?;
     let mut weights: Vec<f32> = lines.iter().map(|e| e.weight as f32).collect();
     let mut found: Vec<DVec3> = Vec::new();
+    // Weights only fall, so an old value bounds the present one: most points need no second look.
+    let mut bounds = vec![f32::INFINITY; points.len()];
     for _ in 0..count {
-        let value = |i: usize| agreements[i].iter().zip(&weights).map(|(a, w)| a * w).sum::<f32>();
-        let Some((best, _)) =
-            (0..points.len()).map(|i| (i, value(i))).max_by(|a, b| a.1.total_cmp(&b.1)).filter(|b| b.1 > 0.0)
-        else {
-            break;
+        let mut is_fresh = vec![false; points.len()];
+        let strongest = loop {
+            let Some((i, _)) = bounds.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)) else { break None };
+            if is_fresh[i] {
+                break Some(i).filter(|&i| bounds[i] > 0.0);
+            }
+            bounds[i] = agreements[i].iter().zip(&weights).map(|(a, w)| a * w).sum();
+            is_fresh[i] = true;
         };
+        let Some(best) = strongest else { break };
         let start = unproject(points[best], focal);
         let point = project(refine(lines, start, focal).map_or(start, |r| r.direction), focal);
         for (w, (e, a)) in weights.iter_mut().zip(lines.iter().zip(&agreements[best])) {
