@@ -1,1 +1,232 @@
-fn main() {}
+//! Features: the time of a megapixel, and normals against Open3D's, on rooms whose normals are known and on RGB-D pairs.
+
+mod harness;
+
+use glam::{DMat3, DVec2, Vec3};
+use harness::peer::Peer;
+use harness::{Clock, Table, absent, figure, interleaved, median, time};
+use luxfer::exec::Pool;
+use luxfer::features::{self, DepthKind, DepthMap, Input, Params, RoomView};
+use luxfer::geometry::{FocalSource, Perspective};
+use luxfer::image::Image;
+use luxfer::image::io::{Encoding, load};
+use luxfer::job::Monitor;
+use luxfer::rng::Rng;
+use std::path::{Path, PathBuf};
+
+const SIZE: [usize; 2] = [1152, 868];
+/// Open3D's usual number of neighbours, and more: its accuracy with noise rises with them, its time too.
+const NEIGHBOURS: [usize; 2] = [30, 100];
+const ROUNDS: usize = 5;
+
+/// A depth map with its camera and, where they are known, the true normals.
+struct Case {
+    name: String,
+    photo: Image,
+    depth: Image,
+    camera: Perspective,
+    truth: Option<Vec<Vec3>>,
+}
+
+fn main() {
+    let pool = Pool::new(2).unwrap();
+    pool.run(megapixel);
+    let cases: Vec<Case> = [0.0, 0.002, 0.01].map(room).into_iter().chain(pairs()).collect();
+    if let Err(reason) = pool.run(|| normals(&cases)) {
+        absent("normals.vs_open3d", &reason);
+    }
+}
+
+fn looking(focal: f64, principal: DVec2, axes: DMat3) -> Perspective {
+    Perspective { focal, focal_source: FocalSource::Given, principal, axes }
+}
+
+/// A box with a table in it, seen aslant; depth along z with noise of a share that grows with depth, as sensors have it.
+fn room(noise: f64) -> Case {
+    let [width, height] = SIZE;
+    let axes = DMat3::from_rotation_y(0.4) * DMat3::from_rotation_x(-0.2);
+    let camera = looking(900.0, DVec2::new(width as f64, height as f64) / 2.0, DMat3::IDENTITY);
+    // Faces as axis, where on it, and the bounds of the other two.
+    let all = [(-9.0, 9.0), (-9.0, 9.0)];
+    let faces = [
+        (0, -2.0, all),
+        (0, 2.5, all),
+        (1, -1.5, all),
+        (1, 1.2, all),
+        (2, 4.5, all),
+        (1, 0.4, [(2.2, 3.4), (-0.8, 0.9)]),
+        (2, 2.2, [(-0.8, 0.9), (0.4, 0.55)]),
+    ];
+    // Depth and normal of what a pixel sees.
+    let seen = |x: usize, y: usize| {
+        let toward = camera.ray(DVec2::new(x as f64 + 0.5, y as f64 + 0.5));
+        let ray = axes.transpose() * toward;
+        let mut nearest = (f64::INFINITY, 0);
+        for (axis, at, [u, v]) in faces {
+            let t = at / ray[axis];
+            let (a, b) = (ray[(axis + 1) % 3] * t, ray[(axis + 2) % 3] * t);
+            if t > 0.0 && t < nearest.0 && (u.0..u.1).contains(&a) && (v.0..v.1).contains(&b) {
+                nearest = (t, axis);
+            }
+        }
+        (nearest.0 * toward.z, (axes.col(nearest.1) * -ray[nearest.1].signum()).as_vec3())
+    };
+    let truth = (0..width * height).map(|i| seen(i % width, i / width).1).collect();
+    let depth = Image::from_fn(width, height, |x, y| {
+        let (z, _) = seen(x, y);
+        let mut rng = Rng::new(1, &[x as u64, y as u64]);
+        let [a, b] = [rng.next_f64().max(1e-12), rng.next_f64()];
+        let normal = (-2.0 * a.ln()).sqrt() * (std::f64::consts::TAU * b).cos();
+        [(z * (1.0 + noise * normal * z / 4.0)) as f32]
+    });
+    let photo = Image::from_fn(width, height, |x, y| [((x * 7 + y * 13) % 64) as f32 / 64.0; 3]).unwrap();
+    let name = format!("room, noise {:.1} % at 4 m", 100.0 * noise);
+    Case { name, photo, depth: depth.unwrap(), camera, truth: Some(truth) }
+}
+
+/// The RGB-D pairs, if they are there.
+fn pairs() -> Vec<Case> {
+    let root = std::env::var_os("LUXFER_TEST_DATA")
+        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data"), PathBuf::from)
+        .join("rgbd");
+    let Ok(text) = std::fs::read(root.join("rgbd.json")) else { return Vec::new() };
+    let about: serde_json::Value = serde_json::from_slice(&text).unwrap();
+    let k = |name: &str| about["K"][name].as_f64().unwrap();
+    let camera = looking((k("fx") + k("fy")) / 2.0, DVec2::new(k("cx"), k("cy")), DMat3::IDENTITY);
+    let case = |name: &str| Case {
+        name: format!("RGB-D pair {name}"),
+        photo: load(&root.join(format!("nyu_{name}_rgb.jpg")), Encoding::Srgb).unwrap(),
+        depth: load(&root.join(format!("nyu_{name}_depth.png")), Encoding::Linear).unwrap().channel(0).unwrap(),
+        camera,
+        truth: None,
+    };
+    ["00000", "00050", "00100"].map(case).into()
+}
+
+impl Case {
+    fn features(&self) -> Image {
+        let room = RoomView { perspective: &self.camera, segments: &[] };
+        let depth = DepthMap { image: &self.depth, kind: DepthKind::AlongZ };
+        let input = Input { photo: &self.photo, depth: Some(depth), room: Some(room) };
+        features::run(&input, &Params::default(), Monitor::default().job()).unwrap().image
+    }
+
+    /// Pixels with a measured depth.
+    fn measured(&self) -> Vec<usize> {
+        (0..self.depth.data.len()).filter(|&i| self.depth.data[i] > 0.0).collect()
+    }
+
+    /// Their points in camera space.
+    fn cloud(&self) -> Vec<[f32; 3]> {
+        let point = |i: usize| {
+            let at = DVec2::new((i % self.depth.width) as f64 + 0.5, (i / self.depth.width) as f64 + 0.5);
+            let ray = self.camera.ray(at);
+            (ray * (f64::from(self.depth.data[i]) / ray.z)).as_vec3().to_array()
+        };
+        self.measured().into_iter().map(point).collect()
+    }
+
+    /// Median angle in degrees to the truth; where there is none, between normals eight pixels apart, which mostly share a
+    /// surface: a bound of the noise, but not of what is wrong alike.
+    fn error(&self, normal_of: &dyn Fn(usize) -> Vec3) -> f64 {
+        let angle = |a: Vec3, b: Vec3| f64::from(a.cross(b).length().atan2(a.dot(b).abs()).to_degrees());
+        let measured = self.measured();
+        let angles: Vec<f64> = match &self.truth {
+            Some(truth) => measured.iter().map(|&i| angle(normal_of(i), truth[i])).collect(),
+            None => measured
+                .iter()
+                .filter(|&&i| i % self.depth.width + 8 < self.depth.width && self.depth.data[i + 8] > 0.0)
+                .map(|&i| angle(normal_of(i), normal_of(i + 8)))
+                .collect(),
+        };
+        median(&angles)
+    }
+}
+
+fn megapixel() {
+    let case = room(0.002);
+    let monitor = Monitor::default();
+    let monitor = &monitor;
+    let rooms = RoomView { perspective: &case.camera, segments: &[] };
+    let run = |input: Input| {
+        let _ = features::run(&input, &Params::default(), monitor.job()).unwrap();
+    };
+    let depth = Some(DepthMap { image: &case.depth, kind: DepthKind::AlongZ });
+    let timings = interleaved(
+        Clock::Wall,
+        ROUNDS,
+        &mut [
+            &mut || run(Input { photo: &case.photo, depth, room: Some(rooms) }),
+            &mut || run(Input { photo: &case.photo, depth: None, room: Some(rooms) }),
+            &mut || run(Input { photo: &case.photo, depth: None, room: None }),
+        ],
+    );
+    let mut table = Table::new(["1 megapixel, 2 threads", "ms"]);
+    for (i, name) in ["from a depth map", "from the room's layout", "without either"].iter().enumerate() {
+        table.row([(*name).to_string(), format!("{:.1}", 1e3 * timings.median(i))]);
+    }
+    table.print("All ten channels");
+    figure("features.megapixel.ms", 1e3 * timings.median(0), "ms");
+}
+
+fn normals(cases: &[Case]) -> Result<(), String> {
+    let mut peer = Peer::start("open3d", "open3d_normals.py")?;
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("out/bench");
+    std::fs::create_dir_all(&folder).map_err(|e| e.to_string())?;
+    let [points, answer] = ["open3d_points.bin", "open3d_normals.bin"].map(|name| folder.join(name));
+    let mut table = Table::new(["case", "ours ms", "ours deg", "k = 30 ms", "k = 30 deg", "k = 100 ms", "k = 100 deg"]);
+    let mut ratios = Vec::new();
+    for case in cases {
+        let bytes: Vec<u8> = case.cloud().iter().flatten().flat_map(|v| v.to_le_bytes()).collect();
+        std::fs::write(&points, bytes).map_err(|e| e.to_string())?;
+        let measured = case.measured();
+        // Turns: all of our channels, not the normals alone, against the peer's normals.
+        let (mut ours, mut theirs) = (Vec::new(), [Vec::new(), Vec::new()]);
+        let mut errors = [0.0; 3];
+        for round in 0..if case.truth.is_some() { ROUNDS } else { 1 } {
+            let (seconds, image) = time(Clock::Wall, || case.features());
+            ours.push(seconds);
+            if round == 0 {
+                errors[0] = case.error(&|i| Vec3::from_slice(&image.data[i * 10 + 7..i * 10 + 10]));
+            }
+            for (k, neighbours) in NEIGHBOURS.iter().enumerate() {
+                if k > 0 && round > 0 {
+                    continue;
+                }
+                let question = format!("{} {} {neighbours}", points.display(), answer.display());
+                let seconds = peer.ask(&question)?["seconds"].as_f64().ok_or("no time in the answer")?;
+                theirs[k].push(seconds);
+                if round == 0 {
+                    let mut of_pixel = vec![Vec3::Z; case.depth.data.len()];
+                    let read = std::fs::read(&answer).map_err(|e| e.to_string())?;
+                    for (bytes, &i) in read.chunks_exact(12).zip(&measured) {
+                        of_pixel[i] = Vec3::from_array(std::array::from_fn(|c| {
+                            f32::from_le_bytes(std::array::from_fn(|b| bytes[4 * c + b]))
+                        }));
+                    }
+                    errors[k + 1] = case.error(&|i| of_pixel[i]);
+                }
+            }
+        }
+        if case.truth.is_some() {
+            ratios.extend(theirs[0].iter().zip(&ours).map(|(a, b)| a / b));
+        }
+        let ms = |seconds: &[f64]| format!("{:.0}", 1e3 * median(seconds));
+        let degrees = |k: usize| format!("{:.3}", errors[k]);
+        table.row([
+            case.name.clone(),
+            ms(&ours),
+            degrees(0),
+            ms(&theirs[0]),
+            degrees(1),
+            ms(&theirs[1]),
+            degrees(2),
+        ]);
+    }
+    table.print("Normals (ours: with all other channels); degrees: median error, for pairs between normals 8 pixels apart");
+    for path in [points, answer] {
+        let _ = std::fs::remove_file(path);
+    }
+    figure("normals.vs_open3d", median(&ratios), "x");
+    Ok(())
+}

@@ -77,7 +77,7 @@ fn given_segments(sets: &[Option<GivenSet>; 2]) {
     let many: Vec<Vec<Segment>> =
         set.images.iter().filter(|(s, _)| s.len() >= SEGMENTS).take(TIMED).map(|(s, _)| longest(s, SEGMENTS)).collect();
     let monitor = Monitor::default();
-    let mut one = |segments: &[Segment]| {
+    let one = |segments: &[Segment]| {
         let params = Params::default();
         let timings = interleaved(Clock::Wall, 5, &mut [&mut || {
             let _ = vanishing::from_segments(segments, set.width, set.height, 3, &params, monitor.job());

@@ -10,6 +10,7 @@
 pub mod embree;
 #[cfg(feature = "stylize")]
 pub mod judge;
+pub mod peer;
 pub mod plot;
 pub mod scenes;
 
@@ -17,8 +18,8 @@ use std::time::Instant;
 
 /// One headline figure.
 pub fn figure(name: &str, value: f64, unit: &str) {
-    // Four significant digits whatever the size.
-    let digits = (3.0 - value.abs().max(1e-9).log10().floor()).clamp(0.0, 9.0) as usize;
+    // Four significant digits whatever the size; a count of nothing needs one.
+    let digits = if value == 0.0 { 0 } else { (3.0 - value.abs().log10().floor()).clamp(0.0, 9.0) as usize };
     println!("figure {name} {value:.digits$} {unit}");
 }
 

@@ -25,6 +25,11 @@ install mitsuba mitsuba numpy
 # Cycles; its wheels fit one version of Python each.
 install bpy 'bpy==5.0.*' 'numpy<2'
 
+# Normals from point clouds.
+install open3d open3d numpy
+# grabCut, a random forest and a support vector machine, for masks from strokes.
+install segment opencv-python-headless scikit-learn numpy
+
 # What `stylit_judge.py` beside the test data runs on.
 install judge numpy scipy pillow
 
