@@ -213,17 +213,11 @@ fn normals(cases: &[Case]) -> Result<(), String> {
         }
         let ms = |seconds: &[f64]| format!("{:.0}", 1e3 * median(seconds));
         let degrees = |k: usize| format!("{:.3}", errors[k]);
-        table.row([
-            case.name.clone(),
-            ms(&ours),
-            degrees(0),
-            ms(&theirs[0]),
-            degrees(1),
-            ms(&theirs[1]),
-            degrees(2),
-        ]);
+        table.row([case.name.clone(), ms(&ours), degrees(0), ms(&theirs[0]), degrees(1), ms(&theirs[1]), degrees(2)]);
     }
-    table.print("Normals (ours: with all other channels); degrees: median error, for pairs between normals 8 pixels apart");
+    table.print(
+        "Normals (ours: with all other channels); degrees: median error, for pairs between normals 8 pixels apart",
+    );
     for path in [points, answer] {
         let _ = std::fs::remove_file(path);
     }

@@ -79,9 +79,13 @@ fn given_segments(sets: &[Option<GivenSet>; 2]) {
     let monitor = Monitor::default();
     let one = |segments: &[Segment]| {
         let params = Params::default();
-        let timings = interleaved(Clock::Wall, 5, &mut [&mut || {
-            let _ = vanishing::from_segments(segments, set.width, set.height, 3, &params, monitor.job());
-        }]);
+        let timings = interleaved(
+            Clock::Wall,
+            5,
+            &mut [&mut || {
+                let _ = vanishing::from_segments(segments, set.width, set.height, 3, &params, monitor.job());
+            }],
+        );
         1e3 * timings.median(0)
     };
     let ms: Vec<f64> = many.iter().map(|s| one(s)).collect();
@@ -131,7 +135,8 @@ fn panoramas(photos: &[Labelled]) {
         absent("vp.panorama.failures", "the panoramas are not there");
         return;
     }
-    let mut table = Table::new(["method", "median deg", "90 % below", "beyond 5 deg", "error / stated: half", "90 %", "ms"]);
+    let mut table =
+        Table::new(["method", "median deg", "90 % below", "beyond 5 deg", "error / stated: half", "90 %", "ms"]);
     let mut plot = Plot::new("Vanishing points from pixels, photos reduced", "ms per photo", "median error, degrees");
     for (k, (method, params)) in methods().iter().enumerate() {
         let all: Vec<(f64, Vec<[f64; 2]>)> = photos.iter().map(|p| found(p, params)).collect();
@@ -167,7 +172,8 @@ fn reduced(photos: &[Labelled], params: &Params, scale: f64) -> [f64; 2] {
     let monitor = Monitor::default();
     let (mut ms, mut angles) = (Vec::new(), Vec::new());
     for photo in photos {
-        let [width, height] = [photo.photo.width, photo.photo.height].map(|side| (side as f64 * scale).round() as usize);
+        let [width, height] =
+            [photo.photo.width, photo.photo.height].map(|side| (side as f64 * scale).round() as usize);
         let small = pyramid::resize(&photo.photo, width, height, monitor.job()).unwrap();
         let k = glam::DMat3::from_diagonal(glam::DVec3::new(scale, scale, 1.0)) * photo.intrinsics;
         let small =

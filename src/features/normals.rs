@@ -149,23 +149,60 @@ fn fit_band(inverse_depth: &Image, confidence: &Image, radius: usize, from: usiz
         }
     }
 
-    // Along columns, then the regression.
+    // Along columns, sums that slide down by a row at a time; then the regression.
+    let row = |y: usize| &sums[(y - first) * width..(y - first + 1) * width];
+    let r = radius as f64;
+    let mut windows = vec![WindowSums::default(); width];
     let mut fits = Vec::with_capacity((to - from) * width);
     for y in from..to {
-        for x in 0..width {
-            let (mut t, mut tj, mut tjj, mut tij, mut tjw) = (RowSums::default(), 0.0, 0.0, 0.0, 0.0);
-            for k in y.saturating_sub(radius)..(y + radius + 1).min(height) {
-                let (s, j) = (&sums[(k - first) * width + x], k as f64 - y as f64);
-                t = t.plus(s, 1.0);
-                tj += j * s.n;
-                tjj += j * j * s.n;
-                tij += j * s.i;
-                tjw += j * s.w;
+        if y == from {
+            for k in first..(y + radius + 1).min(height) {
+                let j = k as f64 - y as f64;
+                windows.iter_mut().zip(row(k)).for_each(|(window, sums)| window.add(sums, j, 1.0));
             }
-            fits.push(regress(&t, tj, tjj, tij, tjw));
+        } else {
+            if y > radius {
+                let leaving = row(y - radius - 1);
+                windows.iter_mut().zip(leaving).for_each(|(window, sums)| window.add(sums, -r, -1.0));
+            }
+            windows.iter_mut().for_each(WindowSums::move_down);
+            if y + radius < height {
+                windows.iter_mut().zip(row(y + radius)).for_each(|(window, sums)| window.add(sums, r, 1.0));
+            }
         }
+        fits.extend(windows.iter().map(|t| regress(&t.sums, t.j, t.jj, t.ij, t.jw)));
     }
     fits
+}
+
+/// Sums over a window, `j` being the row offset.
+#[derive(Clone, Copy, Default)]
+struct WindowSums {
+    sums: RowSums,
+    j: f64,
+    jj: f64,
+    ij: f64,
+    jw: f64,
+}
+
+impl WindowSums {
+    /// A row at offset `j` comes (`sign` 1) or goes (-1).
+    fn add(&mut self, row: &RowSums, j: f64, sign: f64) {
+        self.sums = self.sums.plus(row, sign);
+        let j = sign * j;
+        self.j += j * row.n;
+        self.jj += j * j * sign * row.n;
+        self.ij += j * row.i;
+        self.jw += j * row.w;
+    }
+
+    /// Offsets counted from the next row.
+    fn move_down(&mut self) {
+        self.jj += self.sums.n - 2.0 * self.j;
+        self.j -= self.sums.n;
+        self.ij -= self.sums.i;
+        self.jw -= self.sums.w;
+    }
 }
 
 /// Least squares of `w` on `(1, i, j)`, about the means; no fit where the points lie on one line.

@@ -24,7 +24,7 @@ const PER_OBSERVATION: f64 = 5.0;
 
 /// Standard deviation in radians of the direction of the room's edges themselves, which no number of lines averages out:
 /// what lenses, stitching and builders leave.
-const STRAIGHTNESS: f64 = 0.0035;
+pub const STRAIGHTNESS: f64 = 0.0035;
 
 /// Image coordinates relative to the principal point, half the longer side being 1.
 #[derive(Clone, Copy, Debug)]
