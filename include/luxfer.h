@@ -1584,8 +1584,8 @@ typedef struct luxfer_emission_report {
     /** Number of luminaires; see luxfer_emission_get_luminaire. */
     uint32_t luminaires;
     /**
-     * The largest relative difference between texture and exemplar: in the share that is lit, in the luminance of what is, and in the
-     * area of whole lamps and the distance from each to the nearest other. Lamps count the less the nearer a border they are.
+     * The largest relative difference between texture and exemplar in the share that is lit, the area of whole lamps, and the
+     * distance from each to the nearest other.
      */
     double error;
     /**

@@ -42,12 +42,13 @@ fn doubled(name: &str, photo: &Image, light: &Image) -> Emission {
     let start = std::time::Instant::now();
     let result = Pool::new(2).unwrap().run(|| run(&input, &params, Monitor::default().job())).unwrap();
     eprintln!(
-        "{name}: {:.2} s, {:?}, regularity {:.2}, {} lamps, error {:.3}",
+        "{name}: {:.2} s, {:?}, regularity {:.2}, {} lamps, error {:.3}, {:?}",
         start.elapsed().as_secs_f64(),
         result.continuation,
         result.regularity,
         result.luminaires.len(),
-        result.error
+        result.error,
+        result.statistics
     );
     for (suffix, image) in [("in", photo), ("out", &result.texture), ("metadata", &result.metadata)] {
         let path = std::env::temp_dir().join(format!("luxfer_emission_{name}_{suffix}.png"));

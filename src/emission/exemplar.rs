@@ -101,11 +101,11 @@ impl<'a> Exemplar<'a> {
         Ok(Self { image, light, width, height, shown, components, whole, cut, photo_area, lit_share, working })
     }
 
-    /// The statistics of its pattern, in unwarped pixels; `fades` as in [`Pattern`].
-    pub fn statistics(&self, fades: [bool; 2]) -> Statistics {
+    /// The statistics of its pattern, in unwarped pixels; `periods` as in [`Pattern`].
+    pub fn statistics(&self, periods: [Option<f64>; 2]) -> Statistics {
         let Self { image, width, height, components, whole, .. } = self;
         let colour = |i: usize| self.shown[i].then(|| image.rgb(i % width, i / width));
-        Statistics::of(&Pattern { width: *width, height: *height, components, whole, fades, colour })
+        Statistics::of(&Pattern { width: *width, height: *height, components, whole, periods, colour })
     }
 
     pub fn lamps(&self) -> impl Iterator<Item = &Component> {

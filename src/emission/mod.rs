@@ -135,7 +135,7 @@ pub struct Emission {
     pub regularity: f64,
     /// Of the exemplar, in texels, and of the texture.
     pub statistics: [Statistics; 2],
-    /// Largest relative difference between the two.
+    /// Largest relative difference between the two, their luminance aside.
     pub error: f64,
 }
 
@@ -168,7 +168,7 @@ pub fn given(texture: &Image, job: Job) -> Result<Emission> {
     }
     let components = luminaires::components(&mask)?;
     let luminaires = luminaires::find(&texture, &components, job)?;
-    let statistics = statistics_of(&texture, &components, [false; 2]);
+    let statistics = statistics_of(&texture, &components, [Some(f64::INFINITY); 2]);
     Ok(Emission {
         texture,
         mask,
@@ -258,15 +258,10 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Emission> {
     let components = luminaires::components(&mask)?;
     let luminaires = luminaires::find(&texture, &components, job.part(0.95, 1.0))?;
 
-    // A border may cut periods, but not the only one.
-    let fades = match continuation {
-        Continuation::Lattice(_) | Continuation::Free => [true; 2],
-        Continuation::Row([along, _]) => [along.x.abs() > along.y.abs(), along.x.abs() <= along.y.abs()],
-        Continuation::Tile(_) | Continuation::Copy => [false; 2],
-    };
+    let periods = continuation.periods();
     let statistics = [
-        exemplar.statistics(fades).scaled(1.0 / params.scale),
-        statistics_of(&texture, &components, [continuation != Continuation::Copy; 2]),
+        exemplar.statistics(periods).scaled(1.0 / params.scale),
+        statistics_of(&texture, &components, periods.map(|p| p.map(|p| p / params.scale))),
     ];
     let error = statistics[1].difference(&statistics[0]);
     let metadata = shown_metadata(&layout, &exemplar, &exemplar_metadata)?;
@@ -275,13 +270,13 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Emission> {
 }
 
 /// The statistics of a texture; lamps are whole that do not touch its border.
-fn statistics_of(texture: &Image, components: &Components, fades: [bool; 2]) -> Statistics {
+fn statistics_of(texture: &Image, components: &Components, periods: [Option<f64>; 2]) -> Statistics {
     let (width, height) = (texture.width, texture.height);
     let inside =
         |c: &components::Component| c.min.iter().all(|&low| low > 0) && c.max[0] + 1 < width && c.max[1] + 1 < height;
     let whole: Vec<bool> = components.list.iter().map(inside).collect();
     let colour = |i: usize| Some(Vec3::from_slice(&texture.data[3 * i..]));
-    Statistics::of(&Pattern { width, height, components, whole: &whole, fades, colour })
+    Statistics::of(&Pattern { width, height, components, whole: &whole, periods, colour })
 }
 
 /// Longest side of the exemplar at work: coarser than asked for where the result would have too many working pixels.

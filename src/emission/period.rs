@@ -48,6 +48,18 @@ impl Continuation {
             Self::Copy | Self::Free => None,
         }
     }
+
+    /// The period along x and along y, in unwarped pixels, where the lattice has one there; that of a copy is infinite.
+    pub fn periods(&self) -> [Option<f64>; 2] {
+        if *self == Self::Copy {
+            return [Some(f64::INFINITY); 2];
+        }
+        let along = |axis: DVec2| {
+            let is_along = |v: &DVec2| v.perp_dot(axis).abs() < MOST_SLANT * v.length();
+            self.lattice().and_then(|basis| basis.into_iter().find(is_along)).map(|v| v.length())
+        };
+        [along(DVec2::X), along(DVec2::Y)]
+    }
 }
 
 /// Finds how the lights of the exemplar repeat, and how well: the lower correlation of its periods, 0 if there are none.

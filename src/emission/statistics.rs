@@ -1,9 +1,9 @@
 //! What two light patterns have in common: the statistics by which a texture is held against its exemplar.
 //!
 //! A border cuts a pattern anywhere, so plain counts in a window differ by what happens to lie on its rim, and more so the
-//! fewer lamps there are. Every mean here is therefore weighed by a Hann window, which fades to nothing at the border
-//! (Harris 1978): what a few periods show then hardly depends on where they are cut. Only along axes on which the pattern as
-//! a whole is one period, nothing fades.
+//! fewer lamps there are. Every mean here is therefore weighed. Along an axis with a known period the weights are those of
+//! as many whole periods as the window holds, averaged over all their places in it: wherever they are cut, each part of
+//! the period weighs the same. Along others they are a Hann window, which fades to nothing at the border (Harris 1978).
 
 use super::components::Components;
 use crate::image::colour::luminance;
@@ -32,22 +32,21 @@ pub struct Pattern<'a, C> {
     /// Its connected lights, and which of them end inside.
     pub components: &'a Components,
     pub whole: &'a [bool],
-    /// Whether what is near the border counts less, along x and y.
-    pub fades: [bool; 2],
+    /// Period along x and y, if there is one; infinite where the pattern as a whole is the period.
+    pub periods: [Option<f64>; 2],
     /// Linear colour of a pixel; nothing where the pattern is not shown.
     pub colour: C,
 }
 
 impl Statistics {
     pub fn of<C: Fn(usize) -> Option<Vec3>>(pattern: &Pattern<C>) -> Self {
-        let Pattern { width, height, components, whole, fades, colour } = pattern;
-        let hann = |at: f64, side: usize, fades: bool| if fades { (PI * at / side as f64).sin().powi(2) } else { 1.0 };
-        let columns: Vec<f64> = (0..*width).map(|x| hann(x as f64 + 0.5, *width, fades[0])).collect();
+        let Pattern { width, height, components, whole, periods, colour } = pattern;
+        let columns: Vec<f64> = (0..*width).map(|x| weight(x as f64 + 0.5, *width, periods[0])).collect();
 
         // Of pixels.
         let (mut all, mut lit, mut light) = (0.0, 0.0, 0.0);
         for y in 0..*height {
-            let row = hann(y as f64 + 0.5, *height, fades[1]);
+            let row = weight(y as f64 + 0.5, *height, periods[1]);
             for (x, column) in columns.iter().enumerate() {
                 let Some(colour) = colour(y * width + x) else { continue };
                 all += row * column;
@@ -61,10 +60,10 @@ impl Statistics {
         // Of lamps.
         let lamps: Vec<(DVec2, f64)> =
             components.list.iter().zip(*whole).filter(|(_, w)| **w).map(|(c, _)| (c.centre, c.area as f64)).collect();
-        let weight = |at: DVec2| hann(at.x, *width, fades[0]) * hann(at.y, *height, fades[1]);
+        let place = |at: DVec2| weight(at.x, *width, periods[0]) * weight(at.y, *height, periods[1]);
         let mean = |value: &dyn Fn(usize) -> f64| {
-            let weights: f64 = lamps.iter().map(|l| weight(l.0)).sum();
-            ratio((0..lamps.len()).map(|i| weight(lamps[i].0) * value(i)).sum(), weights)
+            let weights: f64 = lamps.iter().map(|l| place(l.0)).sum();
+            ratio((0..lamps.len()).map(|i| place(lamps[i].0) * value(i)).sum(), weights)
         };
         let nearest = nearest_distances(&lamps.iter().map(|l| l.0).collect::<Vec<_>>());
         Self {
@@ -81,14 +80,10 @@ impl Statistics {
         Self { area: self.area * scale * scale, spacing: self.spacing * scale, ..self }
     }
 
-    /// The largest relative difference from another pattern; of lamps only what both have.
+    /// The largest relative difference from another pattern, of lamps only in what both have. Luminance is left out: a texture is
+    /// relative, and what it is worth is solved for.
     pub fn difference(&self, other: &Self) -> f64 {
-        let pairs = [
-            (self.lit, other.lit),
-            (self.luminance, other.luminance),
-            (self.area, other.area),
-            (self.spacing, other.spacing),
-        ];
+        let pairs = [(self.lit, other.lit), (self.area, other.area), (self.spacing, other.spacing)];
         pairs.iter().filter(|(a, b)| *a > 0.0 && *b > 0.0).map(|(a, b)| (a / b - 1.0).abs()).fold(0.0, f64::max)
     }
 }
@@ -106,6 +101,15 @@ pub fn phase(points: &[DVec2], [a, b]: [DVec2; 2]) -> f64 {
         (d - d.round()).length_squared()
     };
     (cells.iter().map(off).sum::<f64>() / cells.len().max(1) as f64).sqrt()
+}
+
+/// What a place along a side weighs.
+fn weight(at: f64, side: usize, period: Option<f64>) -> f64 {
+    let side = side as f64;
+    let Some(period) = period else { return (PI * at / side).sin().powi(2) };
+    // Of a single period, all.
+    let spare = if period < side { side % period } else { 0.0 };
+    if spare > 0.0 { (at.min(side - at) / spare).min(1.0) } else { 1.0 }
 }
 
 fn ratio(part: f64, whole: f64) -> f64 {
@@ -150,23 +154,28 @@ mod tests {
     }
 
     /// Lamps of 9 × 5 pixels every 20 × 16, cut by a window anywhere.
-    fn grid(width: usize, height: usize, shift: [usize; 2]) -> Statistics {
+    fn grid(width: usize, height: usize, shift: [usize; 2], periods: [Option<f64>; 2]) -> Statistics {
         let lit = |i: usize| (i % width + shift[0]) % 20 < 9 && (i / width + shift[1]) % 16 < 5;
         let components = components::find(width, height, lit).unwrap();
         let whole: Vec<bool> = (components.list.iter())
             .map(|c| c.min.iter().all(|&v| v > 0) && c.max[0] + 1 < width && c.max[1] + 1 < height)
             .collect();
         let colour = |i: usize| Some(if lit(i) { Vec3::splat(2.0) } else { Vec3::ZERO });
-        Statistics::of(&Pattern { width, height, components: &components, whole: &whole, fades: [true; 2], colour })
+        Statistics::of(&Pattern { width, height, components: &components, whole: &whole, periods, colour })
     }
 
     #[test]
     fn where_the_border_cuts_hardly_matters() {
         let truth = Statistics { lit: 45.0 / 320.0, luminance: 2.0, area: 45.0, spacing: 16.0, whole: 0 };
-        for (width, height) in [(67, 61), (90, 83), (200, 150)] {
-            for shift in [[0, 0], [3, 1], [9, 7], [15, 12]] {
-                let seen = grid(width, height, shift);
+        for shift in [[0, 0], [3, 1], [9, 7], [15, 12]] {
+            for (width, height) in [(67, 61), (90, 83), (200, 150)] {
+                let seen = grid(width, height, shift, [None; 2]);
                 assert!(seen.difference(&truth) < 0.02, "{width} x {height}, {shift:?}: {seen:?}");
+            }
+            // Where the periods are known, not at all.
+            for (width, height) in [(47, 39), (67, 61), (80, 64)] {
+                let seen = grid(width, height, shift, [Some(20.0), Some(16.0)]);
+                assert!(seen.difference(&truth) < 1e-9, "{width} x {height}, {shift:?}: {seen:?}");
             }
         }
         // Plain counts would be off by a tenth.
@@ -179,6 +188,7 @@ mod tests {
         let one = Statistics { lit: 0.1, luminance: 1.0, area: 10.0, spacing: 5.0, whole: 9 };
         assert_eq!(one.difference(&one), 0.0);
         assert!((Statistics { area: 12.0, ..one }.difference(&one) - 0.2).abs() < 1e-12);
+        assert_eq!(Statistics { luminance: 2.0, ..one }.difference(&one), 0.0);
         assert_eq!(Statistics { area: 0.0, spacing: 0.0, whole: 0, ..one }.difference(&one), 0.0);
         assert!((one.scaled(2.0).difference(&one) - 3.0).abs() < 1e-12);
     }

@@ -108,8 +108,8 @@ pub struct luxfer_emission_report {
     pub struct_size: u32,
     /// Number of luminaires; see luxfer_emission_get_luminaire.
     pub luminaires: u32,
-    /// The largest relative difference between texture and exemplar: in the share that is lit, in the luminance of what is, and in the
-    /// area of whole lamps and the distance from each to the nearest other. Lamps count the less the nearer a border they are.
+    /// The largest relative difference between texture and exemplar in the share that is lit, the area of whole lamps, and the
+    /// distance from each to the nearest other.
     pub error: f64,
     /// How regular the lights are, in [0, 1]: correlation with themselves shifted by the lattice that was found, 0 without.
     pub regularity: f64,

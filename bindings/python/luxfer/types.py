@@ -1032,9 +1032,8 @@ class EmissionReport:
     luminaires: int
     """Number of luminaires; see luxfer_emission_get_luminaire."""
     error: float
-    """The largest relative difference between texture and exemplar: in the share that is lit, in the luminance
-    of what is, and in the area of whole lamps and the distance from each to the nearest other. Lamps count the
-    less the nearer a border they are."""
+    """The largest relative difference between texture and exemplar in the share that is lit, the area of whole
+    lamps, and the distance from each to the nearest other."""
     regularity: float
     """How regular the lights are, in [0, 1]: correlation with themselves shifted by the lattice that was found,
     0 without."""
