@@ -367,7 +367,7 @@ pub unsafe extern "C" fn luxfer_stylize_set_painted(
                 return Err(Error::argument(format!("painted has {} channels; it must have 1", mask.channels)));
             }
             let unpainted = Pixels::counted(stage.context(), mask.width, mask.height, mask.channels, || {
-                let mut opposite = mask.clone();
+                let mut opposite = mask.try_clone()?;
                 opposite.data.iter_mut().for_each(|v| *v = if *v > 0.5 { 0.0 } else { 1.0 });
                 Ok(opposite)
             })?;

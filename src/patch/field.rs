@@ -2,7 +2,7 @@
 
 use super::domain::Domain;
 use crate::error::Result;
-use crate::image::try_vec;
+use crate::image::{try_collect, try_vec};
 
 /// A patch without a match.
 pub const NONE: u32 = u32::MAX;
@@ -33,6 +33,12 @@ pub struct Field {
 impl Field {
     pub fn new(width: usize, height: usize) -> Result<Self> {
         Ok(Self { width, height, at: try_vec(width * height, NONE)?, error: try_vec(width * height, u32::MAX)? })
+    }
+
+    /// A copy, or an error where there is no memory for it.
+    pub fn try_clone(&self) -> Result<Self> {
+        let copy = |list: &[u32]| try_collect(list.iter().copied());
+        Ok(Self { at: copy(&self.at)?, error: copy(&self.error)?, ..*self })
     }
 
     /// Hints at the same relative position in an image with `base` patches.

@@ -40,7 +40,7 @@ impl Problem {
         let shortest = sides.into_iter().min().unwrap_or(1);
         let half = params.preview && shortest >= 2 * params.patch;
         let mut guides = Channels::new(input.guides, params.match_appearance, half, job)?;
-        let mut style = artwork.clone();
+        let mut style = artwork.try_clone()?;
         let mut source_mask = mask("source_mask", input.source_mask, first.source)?;
         let mut target_mask = mask("target_mask", input.target_mask, first.target)?;
 
@@ -98,7 +98,7 @@ impl Problem {
     /// What is known of the target, else black; encoded for display.
     pub fn blank_picture(&self) -> Result<Image> {
         match &self.known {
-            Some(known) => Ok(known.clone()),
+            Some(known) => known.try_clone(),
             None => Image::new(self.guides.target.width, self.guides.target.height, self.style.channels),
         }
     }
@@ -164,7 +164,7 @@ fn encode_known(known: &Image, target: &Image, channels: usize, job: Job) -> Res
             known.channels
         )));
     }
-    let mut encoded = known.clone();
+    let mut encoded = known.try_clone()?;
     encode(&mut encoded, job)?;
     Ok(encoded)
 }

@@ -45,7 +45,7 @@ pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Pu
     let mut field = match (&moved, input.previous) {
         _ if !goes_on => None,
         (None, Some(previous)) => Some(checked_size(previous, problem)?),
-        (moved, _) => moved.clone(),
+        (moved, _) => moved.as_ref().map(Field::try_clone).transpose()?,
     };
     for l in (0..levels).rev() {
         let job = job.part(0.01 + 0.98 * done / total, 0.01 + 0.98 * (done + cost(l)) / total);
@@ -69,7 +69,7 @@ pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Pu
         // What the frame before has made stays where it fits.
         let kept = match &moved {
             Some(moved) if l == 0 => {
-                let mut moved = checked(moved.clone(), &level)?;
+                let mut moved = checked(moved.try_clone()?, &level)?;
                 let kept = keep(&mut level, &mut moved, params, hash(seed, &[1]), job.part(0.1, 0.1))?;
                 for i in (0..kept.len()).filter(|&i| kept[i]) {
                     (current.at[i], current.error[i]) = (moved.at[i], moved.error[i]);
@@ -198,7 +198,7 @@ fn checked_size(field: &Field, problem: &Problem) -> Result<Field> {
             field.width, field.height
         )));
     }
-    Ok(field.clone())
+    field.try_clone()
 }
 
 /// A field from outside, its matches inside the exemplar.
@@ -236,7 +236,7 @@ fn restore_known(picture: &mut Image, problem: &Problem) {
 }
 
 fn decode(picture: &Image, job: Job) -> Result<Image> {
-    let mut out = picture.clone();
+    let mut out = picture.try_clone()?;
     let row_len = out.row_len();
     exec::for_rows(&mut out.data, row_len, job.part(1.0, 1.0), |_, row| {
         row.iter_mut().for_each(|v| *v = srgb_to_linear(*v));

@@ -35,15 +35,15 @@ impl Study {
         params.check()?;
         let problem = Problem::new(input, params, job.part(0.0, 0.03))?;
         let output = schedule::run(&problem, input, params, publish, job.part(0.03, 1.0))?;
-        let mut display = input.artwork.clone();
+        let mut display = input.artwork.try_clone()?;
         encode(&mut display, job)?;
         let study = Self {
             problem,
             params: params.clone(),
-            artwork: input.artwork.clone(),
+            artwork: input.artwork.try_clone()?,
             encoded: display,
-            known: input.known.cloned(),
-            field: output.field.clone(),
+            known: input.known.map(Image::try_clone).transpose()?,
+            field: output.field.try_clone()?,
             pending: try_vec(input.artwork.width * input.artwork.height, false)?,
         };
         job.report(1.0);
