@@ -18,8 +18,8 @@ use std::time::Instant;
 
 /// One headline figure.
 pub fn figure(name: &str, value: f64, unit: &str) {
-    // Four significant digits whatever the size; a count of nothing needs one.
-    let digits = if value == 0.0 { 0 } else { (3.0 - value.abs().log10().floor()).clamp(0.0, 9.0) as usize };
+    // Four significant digits whatever the size; nothing, rounding aside, needs one.
+    let digits = if value.abs() < 1e-12 { 0 } else { (3.0 - value.abs().log10().floor()).clamp(0.0, 9.0) as usize };
     println!("figure {name} {value:.digits$} {unit}");
 }
 
