@@ -183,8 +183,8 @@ impl Score {
 fn patterns() {
     let methods: [(&str, Params); 3] = [
         ("default", Params::default()),
-        ("as in the paper", Params { regularity: 1.0, whole_lamps: false, ..Params::default() }),
-        ("quilting", Params { regularity: 1.0, whole_lamps: false, metadata_weight: 0.0, ..Params::default() }),
+        ("as in the paper", Params { least_regularity: 1.0, whole_lamps: false, ..Params::default() }),
+        ("quilting", Params { least_regularity: 1.0, whole_lamps: false, metadata_weight: 0.0, ..Params::default() }),
     ];
     let mut table = Table::new(["design", "method", "worst statistic %", "phase %", "lamps broken", "stated error %"]);
     let mut ours = Score::default();
@@ -252,7 +252,7 @@ fn knobs() {
             .map(|relative| {
                 let block = (relative * 60.0 * working_side as f64 / 480.0) as usize;
                 let params =
-                    Params { width: 1024, height: 1024, working_side, block, regularity: 1.0, ..Params::default() };
+                    Params { width: 1024, height: 1024, working_side, block, least_regularity: 1.0, ..Params::default() };
                 let (seconds, result) = time(Clock::Wall, || exemplar.run(&params));
                 let score = Score::of(&result, design);
                 table.row([

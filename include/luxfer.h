@@ -1569,9 +1569,20 @@ typedef struct luxfer_emission_params {
      * Correlation of the lights with themselves from which they are taken for regular, in [0, 1]; default 0.6. At 0 any
      * repetition is held to exactly, at 1 none is, and patches go anywhere.
      */
-    float regularity;
+    float least_regularity;
     /** 1, the default, shows every lamp as one piece; with 0 seams may cut lamps. */
     uint32_t whole_lamps;
+    /**
+     * Where a pattern with a lattice begins, in texels right of and below the texture's corner, each in [-1e6, 1e6]; default 0.
+     */
+    double offset[2];
+    /**
+     * Channel value from which the photo is clipped, in [0, 1]; default 0.95. Lamps it shows so get the colour of their rims,
+     * as dark as the clipped channels allow. With 0 nothing is taken for clipped.
+     */
+    float clip_level;
+    /** With 1 every lamp shines evenly, in its mean colour; default 0: as in the photo. */
+    uint32_t even_lamps;
 } luxfer_emission_params;
 
 /** An image of the emission: a LUXFER_EMISSION_ value. */
@@ -3047,6 +3058,64 @@ luxfer_status luxfer_distribution_retain(luxfer_distribution *distribution);
 luxfer_status luxfer_distribution_release(luxfer_distribution *distribution);
 
 /* ====================================================================================================================
+ * Pattern
+ *
+ * How the lights of a transfer lie on the surface: how large, how turned, from where on, and where not.
+ * ==================================================================================================================== */
+
+/** What sets the size of the pattern on the surface: a LUXFER_PATTERN_ value. */
+typedef int32_t luxfer_pattern_scale;
+
+/**
+ * How the pattern lies on the surface, whose axes u and v and corner are those of luxfer_surface. Fill it with
+ * luxfer_pattern_params_init.
+ */
+typedef struct luxfer_pattern_params {
+    /** sizeof(luxfer_pattern_params), set by luxfer_pattern_params_init. */
+    uint32_t struct_size;
+    /** LUXFER_PATTERN_ value; default LUXFER_PATTERN_DISTANCE. */
+    luxfer_pattern_scale scale;
+    /** What the lamp or the spacing measures, in metres, in [1e-6, 1e6]; default 1. The other scales do not read it. */
+    double length;
+    /**
+     * Metres per texel, in [0, 1e6]; 0, the default, is as fine as the unwarped photo, where max_texels of
+     * luxfer_transfer_params allows it.
+     */
+    double texel_size;
+    /** Turn of the pattern from u towards v in radians, in [-2 pi, 2 pi]; default 0. */
+    double rotation;
+    /**
+     * Shift of the pattern along its own axes in metres, each in [-1e6, 1e6]; default 0. Lamps without a lattice go anywhere,
+     * and are not shifted.
+     */
+    double offset[2];
+    /**
+     * Distance in metres that lamps keep from the edge of the surface and from the zones of luxfer_transfer_set_zones, in
+     * [-1, 1e6]; those that do not are left
+     * out. Below 0 the edge of the surface cuts lamps; default -1.
+     */
+    double margin;
+} luxfer_pattern_params;
+
+/** The distance of the photo's camera from the lit plane: plane_distance of luxfer_transfer_params. */
+#define LUXFER_PATTERN_DISTANCE 0
+
+/** The length of a lamp: the longer side of the photo's, of which the median counts. */
+#define LUXFER_PATTERN_LAMP 1
+
+/** The mean distance from a lamp to the nearest other. */
+#define LUXFER_PATTERN_SPACING 2
+
+/** The width of the surface: it becomes as many lamps wide as the photo's plane. */
+#define LUXFER_PATTERN_ACROSS 3
+
+/**
+ * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+ */
+luxfer_status luxfer_pattern_params_init(luxfer_pattern_params *params,
+                                         size_t size);
+
+/* ====================================================================================================================
  * Transfer
  *
  * The lighting transfer from end to end: from a photo, a few strokes and a scene to that scene lit as in the photo. It
@@ -3086,7 +3155,7 @@ typedef struct luxfer_transfer_params {
     /** Settings of the stage LIGHTS; NULL, the default, for those of luxfer_segment with channels = 7, colour only. */
     const luxfer_segment_params *lights;
     /**
-     * Settings of the stage EMISSION, whose width, height and scale the transfer sets; NULL, the default, for their
+     * Settings of the stage EMISSION, whose width, height, scale and offset the transfer sets; NULL, the default, for their
      * defaults.
      */
     const luxfer_emission_params *emission;
@@ -3094,6 +3163,8 @@ typedef struct luxfer_transfer_params {
     const luxfer_relight_params *relight;
     /** Settings of the stage RENDER; NULL, the default, for their defaults. */
     const luxfer_render_params *render;
+    /** How the lights lie on the surface; NULL, the default, for the defaults. */
+    const luxfer_pattern_params *pattern;
 } luxfer_transfer_params;
 
 /** A stage of the transfer: a LUXFER_STAGE_ value, in the order they run. */
@@ -3193,6 +3264,15 @@ luxfer_status luxfer_transfer_add_strokes_image(luxfer_transfer *transfer,
  * LUXFER_INVALID_OPERATION before the photo is set.
  */
 luxfer_status luxfer_transfer_add_strokes_text(luxfer_transfer *transfer, const char *description);
+
+/**
+ * Sets rectangles of the surface that lamps keep away from, as behind ducts and sprinklers: u0, v0, u1 and v1 of each in
+ * metres from the surface's corner along its axes (luxfer_surface), with u0 <= u1 and v0 <= v1. They replace those set
+ * before; zones may be NULL if count is 0. Any thread.
+ */
+luxfer_status luxfer_transfer_set_zones(luxfer_transfer *transfer,
+                                        const double *zones,
+                                        size_t count);
 
 /** Removes all strokes. Any thread. */
 luxfer_status luxfer_transfer_clear_strokes(luxfer_transfer *transfer);

@@ -43,6 +43,7 @@ const GROUPS: &[&str] = &[
     "false_colour",
     "design",
     "distribution",
+    "pattern",
     "transfer",
     "transfer_results",
     "guides",
@@ -348,8 +349,8 @@ layouts! {
         max_magnification seed;
     luxfer_rectify_report: struct_size segments vanishing_points vanishing_errors vanishing_support focal_source
         focal principal axes is_unwarped reserved to_photo corners corner_errors pixel_size aspect_confidence;
-    luxfer_emission_params: struct_size width height block scale working_side metadata_weight seed regularity
-        whole_lamps;
+    luxfer_emission_params: struct_size width height block scale working_side metadata_weight seed least_regularity
+        whole_lamps offset clip_level even_lamps;
     luxfer_emission_report: struct_size luminaires error regularity;
     luxfer_luminaire: struct_size corners centre size orientation area flux_share colour reserved;
     luxfer_requirements: struct_size scattering lights textures bounces brightest_material albedo
@@ -380,7 +381,8 @@ layouts! {
     luxfer_preset: struct_size edition illuminance glare uniformity rendering walls ceiling;
     luxfer_distribution_report: struct_size planes angles reserved flux lamp_flux watts size;
     luxfer_transfer_params: struct_size max_texels plane_distance white_luminance target rectify features plane lights
-        emission relight render;
+        emission relight render pattern;
+    luxfer_pattern_params: struct_size scale length texel_size rotation offset margin;
     luxfer_transfer_report: struct_size fixtures seconds view_error depth_confidence plane_error lights_error
         unwarp_error emission_error relight_error render_error texel_size target reserved;
     luxfer_sheet_params: struct_size even_light paper_width paper_height dpi margin contrast;

@@ -1,15 +1,15 @@
 //! The whole lighting transfer on the generated photo and room, against what is known about them.
 
-use glam::Vec3;
+use glam::{DVec2, DVec4, Vec3};
 use luxfer::demo::{self, photo};
-use luxfer::emission::Continuation;
+use luxfer::emission::{Continuation, Luminaire};
 use luxfer::error::ErrorKind;
 use luxfer::exec::Pool;
 use luxfer::image::Image;
 use luxfer::job::Monitor;
 use luxfer::relight;
 use luxfer::render::World;
-use luxfer::transfer::{Input, Params, Stage, Transfer};
+use luxfer::transfer::{Input, Params, Pattern, Scale, Stage, Transfer};
 use std::sync::Arc;
 
 /// A transfer with all its input, small enough for a test; and the room the photo shows.
@@ -112,6 +112,55 @@ fn noise_in_the_photo_does_not_change_the_design() {
         let count = emission.luminaires.len() as f64;
         assert!(count >= fewest && count <= most, "{seed}: {count} lamps, {fewest} to {most} fit");
     }
+}
+
+#[test]
+fn the_pattern_lies_on_the_surface_as_it_is_told_to() {
+    let pool = Pool::new(0).unwrap();
+    let monitor = Monitor::default();
+    let (mut transfer, _) = prepared(&pool, 8, 3);
+    pool.run(|| transfer.run(Stage::View, Stage::Unwarp, monitor.job(), |_| {})).unwrap();
+    let mut lay = |pattern: Pattern, zones: &[DVec4]| {
+        transfer.params.pattern = pattern;
+        transfer.input.zones = zones.to_vec();
+        pool.run(|| transfer.run(Stage::Emission, Stage::Emission, monitor.job(), |_| {})).unwrap();
+        let emission = transfer.results.emission.clone().unwrap();
+        let unsolved = transfer.results.unsolved.clone().unwrap();
+        (emission.luminaires.clone(), unsolved.texel_size, unsolved.surface.clone())
+    };
+    let median = |mut list: Vec<f64>| {
+        list.sort_by(f64::total_cmp);
+        list[list.len() / 2]
+    };
+
+    // Lamps of half a metre; of their bounding boxes, so within a texel on each side.
+    let (lamps, texel, _) = lay(Pattern { scale: Scale::Lamp(0.5), ..Pattern::default() }, &[]);
+    let length = median(lamps.iter().map(|l| l.size.x * texel).collect());
+    assert!((length - 0.5).abs() < 0.05, "{length} m");
+
+    // At a spacing of 0.6 m, texels of 1 cm, half a metre from every edge, and none beneath a duct.
+    let duct = DVec4::new(2.0, 0.0, 3.0, 4.0);
+    let settings = Pattern { scale: Scale::Spacing(0.6), texel_size: 0.01, margin: 0.5, ..Pattern::default() };
+    let (lamps, texel, surface) = lay(settings, &[duct]);
+    assert!((texel - 0.01).abs() < 1e-6);
+    let corners = || lamps.iter().flat_map(|l| &l.outline).map(|p| *p * texel);
+    let size = surface.size.as_dvec2();
+    for p in corners() {
+        assert!(p.min_element() > 0.49 && (size - p).min_element() > 0.49, "a lamp reaches {p} of {size}");
+        assert!(p.x < duct.x - 0.49 || p.x > duct.z + 0.49, "a lamp reaches {p}");
+    }
+    let nearest = |l: &Luminaire| {
+        let others = lamps.iter().map(|o| o.centre.distance(l.centre)).filter(|d| *d > 1.0);
+        others.fold(f64::INFINITY, f64::min) * texel
+    };
+    let spacing = median(lamps.iter().map(nearest).collect());
+    assert!((spacing - 0.6).abs() < 0.03, "{spacing} m");
+
+    // Turned: the same lamps along other axes, and the rectangle of the texture around the surface.
+    let (_, _, turned) = lay(Pattern { rotation: 0.4, ..Pattern::default() }, &[]);
+    assert!((turned.u_axis.dot(surface.u_axis) - 0.4f32.cos()).abs() < 1e-5);
+    let (sin, cos) = 0.4f64.sin_cos();
+    assert!((turned.size.as_dvec2() - DVec2::new(size.x * cos + size.y * sin, size.x * sin + size.y * cos)).length() < 1e-3);
 }
 
 #[test]

@@ -11,11 +11,11 @@ use glam::{DVec2, DVec3, Vec3};
 /// Largest distance in texels between an outline and the corners of its texels: a staircase becomes one line.
 const OUTLINE_TOLERANCE: f64 = 1.0;
 
-/// Takes out every connected piece of light smaller than `least` texels.
-pub fn sweep(texture: &mut Image, mask: &mut Image, least: f64) -> Result<()> {
+/// Takes out every connected piece of light smaller than `least` texels; gives those that stay.
+pub fn sweep(texture: &mut Image, mask: &mut Image, least: f64) -> Result<Components> {
     let found = components(mask)?;
     if found.list.iter().all(|piece| piece.area as f64 >= least) {
-        return Ok(());
+        return Ok(found);
     }
     for (i, _) in
         found.labels.iter().enumerate().filter(|(_, l)| **l != 0 && (found.list[**l as usize - 1].area as f64) < least)
@@ -23,7 +23,20 @@ pub fn sweep(texture: &mut Image, mask: &mut Image, least: f64) -> Result<()> {
         texture.data[3 * i..3 * i + 3].fill(0.0);
         mask.data[i] = 0.0;
     }
-    Ok(())
+    components(mask)
+}
+
+/// Gives every texel of a lamp the lamp's mean colour.
+pub fn even_out(texture: &mut Image, found: &Components) {
+    let mut sums = vec![DVec3::ZERO; found.list.len()];
+    let lit = || found.labels.iter().enumerate().filter(|(_, l)| **l != 0).map(|(i, &l)| (3 * i, l as usize - 1));
+    for (i, lamp) in lit() {
+        sums[lamp] += Vec3::from_slice(&texture.data[i..]).as_dvec3();
+    }
+    for (i, lamp) in lit() {
+        let mean = (sums[lamp] / found.list[lamp].area as f64).as_vec3();
+        texture.data[i..i + 3].copy_from_slice(&mean.to_array());
+    }
 }
 
 /// The connected components of a mask.

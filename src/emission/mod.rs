@@ -13,12 +13,15 @@
 //!
 //! A texture that fits inside the exemplar is a part of it, copied.
 //!
-//! Beyond the paper: the lattice, and lamps as pieces; image quilting alone lets regular patterns drift and cuts lamps. Not
-//! modelled: light clipped in the photo, tileable textures, and several exemplars in one texture.
+//! Beyond the paper: the lattice, and lamps as pieces; image quilting alone lets regular patterns drift and cuts lamps; the
+//! colour of lamps that the photo shows clipped ([`clipping`]); and lamps kept off where they have no place ([`ground`]).
+//! Not modelled: tileable textures, and several exemplars in one texture.
 
+mod clipping;
 mod components;
 mod correlation;
 mod exemplar;
+mod ground;
 mod lamps;
 mod luminaires;
 mod metadata;
@@ -30,12 +33,14 @@ pub mod statistics;
 #[cfg(test)]
 mod tests;
 
+pub use ground::Ground;
 pub use period::Continuation;
 
 use crate::error::{Error, Result, check_range};
 use crate::geometry::Homography;
 use crate::image::Image;
 use crate::job::Job;
+use clipping::Clipping;
 use components::Components;
 use exemplar::{AreaSums, Exemplar};
 use glam::{DVec2, Vec3};
@@ -74,11 +79,17 @@ pub struct Params {
     pub working_side: usize,
     /// Weight of the metadata channels against colour, in `[0, 1e3]`; 0 is plain quilting.
     pub metadata_weight: f32,
+    /// Where the pattern begins, in texels right of and below the texture's corner, each in `[-1e6, 1e6]`.
+    pub offset: DVec2,
     /// Correlation of the lights with themselves from which they are taken for regular, in `[0, 1]`: at 0 any repetition is
     /// held to exactly, at 1 none is, and patches go anywhere.
-    pub regularity: f32,
+    pub least_regularity: f32,
     /// Shows every lamp as one piece; without, seams may cut lamps, as in the paper.
     pub whole_lamps: bool,
+    /// Every lamp shines evenly, in its mean colour.
+    pub even_lamps: bool,
+    /// Channel value from which the photo is clipped, in `[0, 1]`; lamps there get the colour of their rims. 0: nothing is.
+    pub clip_level: f32,
     pub seed: u64,
 }
 
@@ -91,8 +102,11 @@ impl Default for Params {
             block: 0,
             working_side: 256,
             metadata_weight: 1.0,
-            regularity: 0.6,
+            offset: DVec2::ZERO,
+            least_regularity: 0.6,
             whole_lamps: true,
+            even_lamps: false,
+            clip_level: 0.95,
             seed: 1,
         }
     }
@@ -148,9 +162,36 @@ impl Params {
         check_range("emission.block", self.block, 0, 65_536)?;
         check_range("emission.working_side", self.working_side, 16, 2048)?;
         check_range("emission.metadata_weight", self.metadata_weight, 0.0, 1e3)?;
-        check_range("emission.regularity", self.regularity, 0.0, 1.0)?;
+        check_range("emission.offset.x", self.offset.x, -1e6, 1e6)?;
+        check_range("emission.offset.y", self.offset.y, -1e6, 1e6)?;
+        check_range("emission.least_regularity", self.least_regularity, 0.0, 1.0)?;
+        check_range("emission.clip_level", self.clip_level, 0.0, 1.0)?;
         Ok(())
     }
+}
+
+/// What an exemplar shows, in unwarped pixels.
+pub struct Measure {
+    /// Median over its whole lamps of the longer side; 0 without one.
+    pub lamp_length: f64,
+    /// Mean distance from a whole lamp to the nearest other; 0 if there are less than two.
+    pub spacing: f64,
+    /// Width of what it shows.
+    pub width: f64,
+}
+
+/// Measures an exemplar. Errors as of [`run`].
+pub fn measure(input: &Input, job: Job) -> Result<Measure> {
+    check_input(input)?;
+    let exemplar = Exemplar::new(input, 16.0, job)?;
+    let mut lengths: Vec<usize> = exemplar.lamps().map(|lamp| lamp.size()[0].max(lamp.size()[1])).collect();
+    lengths.sort_unstable();
+    let columns = (0..exemplar.width).filter(|&x| (0..exemplar.height).any(|y| exemplar.shown[y * exemplar.width + x]));
+    Ok(Measure {
+        lamp_length: lengths.get(lengths.len() / 2).map_or(0.0, |&l| l as f64),
+        spacing: exemplar.statistics([None; 2]).spacing,
+        width: columns.count() as f64,
+    })
 }
 
 /// The emission of a texture the caller has made: what is brighter than nothing is light.
@@ -208,10 +249,11 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Emission> {
     let working = &exemplar.working;
 
     // How the pattern goes on, the size of a patch, and the metadata at that scale.
-    let inside = window(&exemplar, params)?;
+    let window = window(&exemplar, params)?;
+    let inside = window.as_ref().filter(|w| w.is_shown).map(|w| w.corner);
     let (continuation, regularity) = match inside {
         Some(_) => (Continuation::Copy, 0.0),
-        None => period::find(&exemplar, params.regularity, job.part(0.1, 0.2))?,
+        None => period::find(&exemplar, params.least_regularity, job.part(0.1, 0.2))?,
     };
     let block = if params.block > 0 { params.block } else { default_block(&exemplar, continuation) };
     let reach = continuation
@@ -229,7 +271,8 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Emission> {
         Some(corner) => copy(corner, canvas, working.pitch)?,
         None => {
             let guide = Guide { working, metadata: &exemplar_metadata, metadata_weight: params.metadata_weight };
-            patches::place(&guide, continuation, canvas, block, params.seed, job.part(0.25, 0.8))?
+            let offset = window.map_or(params.offset * params.scale, |w| -w.corner);
+            patches::place(&guide, continuation, offset, canvas, block, params.seed, job.part(0.25, 0.8))?
         }
     };
 
@@ -248,14 +291,18 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Emission> {
         instances: &instances,
         by_pixel: &by_pixel,
         photo: input.photo,
+        clipping: Clipping::find(input.unwarped, &exemplar.shown, &exemplar.components, params.clip_level),
         scale: params.scale,
     };
     let (mut texture, mut mask) = recover::run(&source, params.width, params.height, job.part(0.85, 0.94))?;
-    if !instances.is_empty() {
-        let smallest = exemplar.lamps().map(|l| l.area as f64).fold(f64::INFINITY, f64::min);
-        luminaires::sweep(&mut texture, &mut mask, CRUMB * smallest / params.scale.powi(2))?;
+    let least = match instances.is_empty() {
+        true => 0.0,
+        false => CRUMB * exemplar.lamps().map(|l| l.area as f64).fold(f64::INFINITY, f64::min) / params.scale.powi(2),
+    };
+    let components = luminaires::sweep(&mut texture, &mut mask, least)?;
+    if params.even_lamps {
+        luminaires::even_out(&mut texture, &components);
     }
-    let components = luminaires::components(&mask)?;
     let luminaires = luminaires::find(&texture, &components, job.part(0.95, 1.0))?;
 
     let periods = continuation.periods();
@@ -287,9 +334,16 @@ fn working_side(input: &Input, params: &Params) -> f64 {
     side * (MOST_WORKING_PIXELS / pixels).sqrt().min(1.0)
 }
 
-/// The corner of a part of the exemplar that is the whole texture, if one is shown everywhere: that whose share of light is
-/// nearest to the exemplar's.
-fn window(exemplar: &Exemplar, params: &Params) -> Result<Option<DVec2>> {
+/// A part of the exemplar as large as the texture.
+struct Window {
+    corner: DVec2,
+    /// Whether all of it is.
+    is_shown: bool,
+}
+
+/// Of the parts that are shown everywhere that whose share of light is nearest to the exemplar's, less the offset; nothing
+/// where there is none.
+fn window(exemplar: &Exemplar, params: &Params) -> Result<Option<Window>> {
     let side = |n: usize| (n as f64 * params.scale - 1e-9).ceil().max(1.0);
     let (w, h) = (side(params.width), side(params.height));
     if w > exemplar.width as f64 || h > exemplar.height as f64 {
@@ -310,7 +364,14 @@ fn window(exemplar: &Exemplar, params: &Params) -> Result<Option<DVec2>> {
             }
         }
     }
-    Ok(best.map(|b| b.1))
+    Ok(best.map(|(_, best)| {
+        let corner = best - (params.offset * params.scale).round();
+        let inside = corner.cmpge(DVec2::ZERO).all()
+            && corner.x + w as f64 <= exemplar.width as f64
+            && corner.y + h as f64 <= exemplar.height as f64;
+        let is_shown = inside && shown.count(corner.x as usize, corner.y as usize, w, h) == w * h;
+        Window { corner, is_shown }
+    }))
 }
 
 /// The layout of a texture that is a part of the exemplar.

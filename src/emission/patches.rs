@@ -91,16 +91,19 @@ struct Quilt<'a> {
     features: Vec<[f32; 6]>,
     layout: Layout,
     continuation: Continuation,
+    /// Where the lattice begins, in unwarped pixels.
+    offset: DVec2,
     /// The box of the usable pixels, and the corners at which a whole block of them can be taken.
     bounds: [usize; 4],
     admissible: Vec<u32>,
     seed: u64,
 }
 
-/// Fills `width` × `height` working pixels with patches of side `block`.
+/// Fills `width` × `height` working pixels with patches of side `block`; a lattice is shifted by `offset` unwarped pixels.
 pub fn place(
     guide: &Guide,
     continuation: Continuation,
+    offset: DVec2,
     (width, height): (usize, usize),
     block: usize,
     seed: u64,
@@ -127,7 +130,7 @@ pub fn place(
     }
 
     let layout = Layout { width, height, labels: try_vec(width * height, NONE)?, shifts: Vec::new() };
-    let mut quilt = Quilt { guide, features: guide.features(), layout, continuation, bounds, admissible, seed };
+    let mut quilt = Quilt { guide, features: guide.features(), layout, continuation, offset, bounds, admissible, seed };
     let overlap = [w / 3, h / 3];
     for y in (0..height).step_by(h - overlap[1]) {
         for x in (0..width).step_by(w - overlap[0]) {
@@ -210,7 +213,8 @@ impl Quilt<'_> {
 
         // The cells of the lattice that the box of such shifts touches.
         let inverse = DMat2::from_cols(basis[0], basis[1]).inverse();
-        let corners = [low, DVec2::new(high.x, low.y), DVec2::new(low.x, high.y), high].map(|c| inverse * c);
+        let corners =
+            [low, DVec2::new(high.x, low.y), DVec2::new(low.x, high.y), high].map(|c| inverse * (c - self.offset));
         let first = corners.iter().fold(DVec2::INFINITY, |m, c| m.min(*c)).ceil();
         let last = corners.iter().fold(DVec2::NEG_INFINITY, |m, c| m.max(*c)).floor();
         let columns = (last.x - first.x).max(-1.0) as u64 + 1;
@@ -222,7 +226,8 @@ impl Quilt<'_> {
         (0..count)
             .filter(|&i| keep(i))
             .map(|i| {
-                let exact = basis[0] * (first.x + (i % columns) as f64) + basis[1] * (first.y + (i / columns) as f64);
+                let steps = first + DVec2::new((i % columns) as f64, (i / columns) as f64);
+                let exact = self.offset + basis[0] * steps.x + basis[1] * steps.y;
                 let working = (exact / pitch).round();
                 Shift { working: [working.x as i32, working.y as i32], exact }
             })

@@ -4,6 +4,7 @@
 //! where the area the texel covers is averaged. What is light is decided in the unwarped image: where it is magnified, by its
 //! confidence between pixels, so that outlines are no staircases; where it is reduced, by share of area.
 
+use super::clipping::Clipping;
 use super::exemplar::{Exemplar, LIT};
 use super::lamps::Instance;
 use super::patches::Layout;
@@ -27,6 +28,8 @@ pub struct Source<'a> {
     /// Which components of the exemplar follow the patches pixel by pixel instead.
     pub by_pixel: &'a [bool],
     pub photo: Option<(&'a Image, Homography)>,
+    /// Where the photo is clipped, the colours of the lamps it shows.
+    pub clipping: Option<Clipping>,
     /// Unwarped pixels per texel.
     pub scale: f64,
 }
@@ -114,7 +117,7 @@ impl Source<'_> {
             let light: f32 = taps.iter().map(|&(pixel, w)| w * self.light(pixel, is_magnified, &is_shown)).sum();
             if light >= LIT {
                 inside += 1;
-                colour += self.from_photo(p, spacing).unwrap_or_else(|| {
+                let value = self.from_photo(p, spacing).unwrap_or_else(|| {
                     // Only light mixes with light.
                     let lit = taps.iter().filter(|t| t.1 > 0.0 && is_shown(self.label(t.0)));
                     let sum: Vec4 = lit
@@ -124,6 +127,11 @@ impl Source<'_> {
                         .sum();
                     sum.truncate() / sum.w.max(f32::MIN_POSITIVE)
                 });
+                let lamp = taps.iter().map(|&(pixel, _)| self.label(pixel)).find(|&label| is_shown(label));
+                colour += match (&self.clipping, lamp) {
+                    (Some(clipping), Some(label)) if label != 0 => clipping.undo(label as usize - 1, value),
+                    _ => value,
+                };
             }
         }
         let samples = (n * n) as f32;

@@ -19,7 +19,7 @@ impl Design {
         let on = |x: usize, y: usize| lamp(x as f64 + 0.5, y as f64 + 0.5);
         let noise = |x: usize, y: usize, c: u64| 0.1 * Rng::new(9, &[x as u64, y as u64, c]).next_f32();
         let unwarped = Image::from_fn(width, height, |x, y| {
-            let base = if on(x, y) { [0.9, 0.8, 0.7] } else { [0.1, 0.1, 0.12] };
+            let base = if on(x, y) { [0.8, 0.7, 0.6] } else { [0.1, 0.1, 0.12] };
             std::array::from_fn::<f32, 3, _>(|c| base[c] + noise(x, y, c as u64))
         });
         let light = Image::from_fn(width, height, |x, y| {
@@ -389,4 +389,101 @@ fn what_has_no_answer_is_an_error_that_says_so() {
     assert_eq!(exemplar.run(&Params::default()).unwrap_err().kind, ErrorKind::Degenerate);
     exemplar.light = Image::new(20, 21, 1).unwrap();
     assert!(exemplar.run(&Params::default()).unwrap_err().message.contains("20 x 21"));
+}
+
+#[test]
+fn an_offset_shifts_the_lattice_and_the_copy() {
+    let exemplar = Design::new(200, 180, grid(40.0, 36.0, 14.0, 10.0));
+    let centres = |params: Params| -> Vec<DVec2> {
+        let result = exemplar.run(&params).unwrap();
+        inner(&result.luminaires, params.width, params.height).iter().map(|l| l.centre).collect()
+    };
+    // Of lamps whose period is (40, 36), a shift by (11, 25) is one by (11, -11).
+    for (width, height) in [(400, 400), (120, 100)] {
+        for offset in [DVec2::new(11.0, 25.0), DVec2::new(-29.0, -47.0)] {
+            let params = Params { width, height, ..Params::default() };
+            let (still, moved) = (centres(params.clone()), centres(Params { offset, ..params }));
+            assert!(!still.is_empty() && !moved.is_empty());
+            let phase = |c: &DVec2| (c.rem_euclid(DVec2::new(40.0, 36.0)) * 8.0).round();
+            let all_alike = |list: &[DVec2], expected: DVec2| list.iter().all(|c| phase(c) == phase(&expected));
+            assert!(all_alike(&still, still[0]), "{width}");
+            assert!(all_alike(&moved, still[0] + offset), "{width} {offset}: {} {}", still[0], moved[0]);
+        }
+    }
+}
+
+#[test]
+fn even_lamps_have_one_colour_each_and_keep_their_light() {
+    let exemplar = Design::new(200, 180, grid(40.0, 36.0, 14.0, 10.0));
+    let params = Params { width: 300, height: 300, ..Params::default() };
+    let (plain, even) = (exemplar.run(&params).unwrap(), exemplar.run(&Params { even_lamps: true, ..params }).unwrap());
+    assert_eq!(plain.mask, even.mask);
+    for (a, b) in plain.luminaires.iter().zip(&even.luminaires) {
+        assert!((a.colour - b.colour).abs().max_element() < 1e-5 && (a.flux_share - b.flux_share).abs() < 1e-6);
+        let (x, y) = (b.centre.x as usize, b.centre.y as usize);
+        assert!((even.texture.rgb(x, y) - b.colour).abs().max_element() < 1e-5);
+    }
+}
+
+#[test]
+fn clipped_lamps_of_two_colours_keep_them_in_the_texture() {
+    // Warm lamps in even columns, cool ones in odd; all far beyond white, and blurred at their edges.
+    let (warm, cool) = (Vec3::new(4.0, 2.4, 1.2), Vec3::new(1.6, 2.4, 4.0));
+    let lamp = |x: f64, y: f64| {
+        let (u, v) = ((x - 20.0).rem_euclid(40.0) - 20.0, (y - 20.0).rem_euclid(40.0) - 20.0);
+        let inside = 1.0 / (1.0 + (u.hypot(v) - 9.0).exp());
+        (if ((x - 20.0) / 40.0).floor() as i64 % 2 == 0 { warm } else { cool }) * inside as f32
+    };
+    let mut exemplar = Design::new(240, 240, |x, y| lamp(x, y).max_element() > 0.6);
+    for i in 0..240 * 240 {
+        let light = lamp((i % 240) as f64 + 0.5, (i / 240) as f64 + 0.5).min(Vec3::ONE);
+        exemplar.unwarped.data[3 * i..3 * i + 3].copy_from_slice(&light.to_array());
+    }
+    let params = Params { width: 480, height: 480, ..Params::default() };
+    let of = |clip_level: f32| exemplar.run(&Params { clip_level, ..params.clone() }).unwrap();
+    let (found, ignored) = (of(0.95), of(0.0));
+    for (lamp, before) in found.luminaires.iter().zip(&ignored.luminaires).filter(|(l, _)| l.area > 300.0) {
+        let ratio = |c: Vec3| c.x / c.z;
+        let truth = ratio(if lamp.colour.x > lamp.colour.z { warm } else { cool });
+        assert!((ratio(lamp.colour) / truth - 1.0).abs() < 0.1, "{} for {truth}", lamp.colour);
+        // Taken as it is, the photo shows the lamps almost white.
+        assert!(ratio(before.colour).ln().abs() < 0.6 * truth.ln().abs(), "{}", before.colour);
+    }
+}
+
+#[test]
+fn lamps_without_a_place_are_left_out() {
+    let exemplar = Design::new(200, 200, grid(40.0, 40.0, 14.0, 14.0));
+    let result = exemplar.run(&Params { width: 400, height: 400, ..Params::default() }).unwrap();
+    let restricted = |ground: &dyn Fn(usize, usize) -> Ground| {
+        let ground: Vec<Ground> = (0..400 * 400).map(|i| ground(i % 400, i / 400)).collect();
+        let mut emission = result.clone();
+        emission.restrict(&ground, Monitor::default().job()).map(|()| emission)
+    };
+    // A keep-out that touches one lamp takes it out, whole, and nothing else.
+    let lamp = &result.luminaires[result.luminaires.len() / 2];
+    let corner = lamp.outline[0];
+    let touched = restricted(&|x, y| {
+        let near = (x as f64 + 0.5 - corner.x).abs() < 1.0 && (y as f64 + 0.5 - corner.y).abs() < 1.0;
+        if near { Ground::KeepOut } else { Ground::Open }
+    })
+    .unwrap();
+    assert_eq!(touched.luminaires.len(), result.luminaires.len() - 1);
+    assert!(touched.luminaires.iter().all(|l| l.centre != lamp.centre));
+    let lit = |e: &Emission| e.mask.data.iter().sum::<f32>() as f64;
+    assert_eq!(lit(&touched), lit(&result) - lamp.area);
+    assert!((touched.luminaires.iter().map(|l| l.flux_share).sum::<f64>() - 1.0).abs() < 1e-6);
+    // What is hidden is cut.
+    let half = restricted(&|x, _| if x < lamp.centre.x as usize { Ground::Hidden } else { Ground::Open }).unwrap();
+    assert!(half.luminaires.iter().any(|l| (l.area - lamp.area / 2.0).abs() < 15.0));
+    assert!(half.texture.data.chunks_exact(3).enumerate().all(|(i, t)| i % 400 >= lamp.centre.x as usize || t == [0.0; 3]));
+    assert_eq!(restricted(&|_, _| Ground::KeepOut).unwrap_err().kind, ErrorKind::Degenerate);
+}
+
+#[test]
+fn an_exemplar_is_measured_in_its_own_pixels() {
+    let exemplar = Design::new(200, 180, grid(40.0, 36.0, 14.0, 10.0));
+    let measured = measure(&exemplar.input(), Monitor::default().job()).unwrap();
+    assert_eq!((measured.lamp_length, measured.width), (14.0, 200.0));
+    assert!((measured.spacing - 36.0).abs() < 1e-9);
 }

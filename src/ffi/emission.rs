@@ -17,7 +17,7 @@ use crate::emission::{self, Emission};
 use crate::error::{Error, Result};
 use crate::geometry::Homography;
 use crate::image::Image;
-use glam::DMat3;
+use glam::{DMat3, DVec2};
 use std::sync::Arc;
 
 /// An emissive texture in the making. See luxfer_emission_create.
@@ -58,19 +58,26 @@ pub struct luxfer_emission_params {
     pub seed: u64,
     /// Correlation of the lights with themselves from which they are taken for regular, in [0, 1]; default 0.6. At 0 any
     /// repetition is held to exactly, at 1 none is, and patches go anywhere.
-    pub regularity: f32,
+    pub least_regularity: f32,
     /// 1, the default, shows every lamp as one piece; with 0 seams may cut lamps.
     pub whole_lamps: u32,
+    /// Where a pattern with a lattice begins, in texels right of and below the texture's corner, each in [-1e6, 1e6]; default 0.
+    pub offset: [f64; 2],
+    /// Channel value from which the photo is clipped, in [0, 1]; default 0.95. Lamps it shows so get the colour of their rims,
+    /// as dark as the clipped channels allow. With 0 nothing is taken for clipped.
+    pub clip_level: f32,
+    /// With 1 every lamp shines evenly, in its mean colour; default 0: as in the photo.
+    pub even_lamps: u32,
 }
 
 // SAFETY: plain numbers.
 unsafe impl Versioned for luxfer_emission_params {
     const NAME: &'static str = "luxfer_emission_params";
-    const SIZES: &'static [usize] = &[48];
+    const SIZES: &'static [usize] = &[72];
     fn defaults() -> Self {
         let d = emission::Params::default();
         Self {
-            struct_size: 48,
+            struct_size: 72,
             width: d.width as u32,
             height: d.height as u32,
             block: d.block as u32,
@@ -78,8 +85,11 @@ unsafe impl Versioned for luxfer_emission_params {
             working_side: d.working_side as u32,
             metadata_weight: d.metadata_weight,
             seed: d.seed,
-            regularity: d.regularity,
+            least_regularity: d.least_regularity,
             whole_lamps: u32::from(d.whole_lamps),
+            offset: d.offset.to_array(),
+            clip_level: d.clip_level,
+            even_lamps: u32::from(d.even_lamps),
         }
     }
 }
@@ -93,8 +103,11 @@ impl luxfer_emission_params {
             block: self.block as usize,
             working_side: self.working_side as usize,
             metadata_weight: self.metadata_weight,
-            regularity: self.regularity,
+            offset: DVec2::from_array(self.offset),
+            least_regularity: self.least_regularity,
             whole_lamps: params::flag(self.whole_lamps, "whole_lamps")?,
+            even_lamps: params::flag(self.even_lamps, "even_lamps")?,
+            clip_level: self.clip_level,
             seed: self.seed,
         })
     }

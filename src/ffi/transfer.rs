@@ -7,11 +7,13 @@
 use super::context::luxfer_context;
 use super::emission::luxfer_emission_params;
 use super::features::{depth_kind, luxfer_depth_kind, luxfer_features, luxfer_features_params};
+use super::geometry::list;
 use super::guard::{enter, guard};
 use super::handle::{self, Handle, Owned, tag};
 use super::image::{Pixels, luxfer_image};
 use super::job::luxfer_job;
 use super::params::{self, Versioned};
+use super::pattern::luxfer_pattern_params;
 use super::pointer::{Out, text};
 use super::rectify::{luxfer_rectify, luxfer_rectify_params};
 use super::relight::luxfer_relight_params;
@@ -28,6 +30,7 @@ use crate::features::DepthKind;
 use crate::scene::Camera;
 use crate::segment::{self, Segmentation, StrokeSet, strokes};
 use crate::transfer::{self, Results, STAGES, Stage, TargetColour, Transfer};
+use glam::DVec4;
 use std::ffi::c_char;
 use std::sync::Arc;
 
@@ -85,16 +88,18 @@ pub struct luxfer_transfer_params {
     pub plane: *const luxfer_segment_params,
     /// Settings of the stage LIGHTS; NULL, the default, for those of luxfer_segment with channels = 7, colour only.
     pub lights: *const luxfer_segment_params,
-    /// Settings of the stage EMISSION, whose width, height and scale the transfer sets; NULL, the default, for their
+    /// Settings of the stage EMISSION, whose width, height, scale and offset the transfer sets; NULL, the default, for their
     /// defaults.
     pub emission: *const luxfer_emission_params,
     /// Settings of the stage RELIGHT; NULL, the default, for their defaults.
     pub relight: *const luxfer_relight_params,
     /// Settings of the stage RENDER; NULL, the default, for their defaults.
     pub render: *const luxfer_render_params,
+    /// How the lights lie on the surface; NULL, the default, for the defaults.
+    pub pattern: *const luxfer_pattern_params,
 }
 
-const PARAMS_SIZE: usize = 24 + 7 * size_of::<usize>();
+const PARAMS_SIZE: usize = 24 + 8 * size_of::<usize>();
 
 // SAFETY: numbers, and pointers that are checked before use.
 unsafe impl Versioned for luxfer_transfer_params {
@@ -115,6 +120,7 @@ unsafe impl Versioned for luxfer_transfer_params {
             emission: std::ptr::null(),
             relight: std::ptr::null(),
             render: std::ptr::null(),
+            pattern: std::ptr::null(),
         }
     }
 }
@@ -138,6 +144,7 @@ impl luxfer_transfer_params {
                 params::read_required(self.lights)?.params()
             },
             emission: params::read(self.emission)?.params()?,
+            pattern: params::read(self.pattern)?.pattern()?,
             plane_distance: self.plane_distance,
             max_texels: self.max_texels as usize,
             target,
@@ -156,6 +163,7 @@ pub(super) struct Inputs {
     texture: Option<Arc<Pixels>>,
     scene: Option<Arc<SceneObject>>,
     surface: String,
+    zones: Vec<DVec4>,
     camera: Option<Camera>,
 }
 
@@ -178,6 +186,7 @@ impl Inputs {
             texture: self.texture.as_ref().map(|texture| texture.shared()).transpose()?,
             scene: self.scene.as_ref().map(|scene| scene.snapshot()),
             surface: self.surface.clone(),
+            zones: self.zones.clone(),
             camera: self.camera.clone(),
         })
     }
@@ -369,6 +378,26 @@ pub unsafe extern "C" fn luxfer_transfer_add_strokes_text(
 fn add(strokes: &mut StrokeSet, more: StrokeSet) {
     strokes.plane.extend(more.plane);
     strokes.lights.extend(more.lights);
+}
+
+/// Sets rectangles of the surface that lamps keep away from, as behind ducts and sprinklers: u0, v0, u1 and v1 of each in
+/// metres from the surface's corner along its axes (luxfer_surface), with u0 <= u1 and v0 <= v1. They replace those set
+/// before; zones may be NULL if count is 0. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_transfer_set_zones(
+    transfer: *mut luxfer_transfer,
+    zones: *const f64,
+    count: usize,
+) -> luxfer_status {
+    enter(transfer, |stage| {
+        let numbers = if count == 0 { Vec::new() } else { list(zones, count.saturating_mul(4), "zones")? };
+        let zones: Vec<DVec4> = numbers.chunks_exact(4).map(DVec4::from_slice).collect();
+        transfer::check_zones(&zones)?;
+        stage.change(|inputs| {
+            inputs.zones = zones;
+            Ok(())
+        })
+    })
 }
 
 /// Removes all strokes. Any thread.

@@ -3,6 +3,7 @@
 use super::{Params, Stage, Transfer};
 use crate::error::{Error, ErrorKind, Result, check_range};
 use crate::scene::surface;
+use glam::DVec4;
 
 impl Transfer {
     /// Checks a run of the stages `from..=to`; takes no time worth speaking of.
@@ -57,6 +58,9 @@ impl Transfer {
         if reads_photo && !(stage == Stage::Emission && own_texture) && self.input.photo.is_none() {
             return Err(missing("set the photo"));
         }
+        if stage == Stage::Emission {
+            check_zones(&self.input.zones)?;
+        }
         if stage == Stage::Emission && self.input.scene.is_none() {
             return Err(missing("set the scene"));
         }
@@ -89,6 +93,7 @@ impl Params {
             Stage::Unwarp => self.unwarp.check(),
             Stage::Emission => {
                 check_range("plane_distance", self.plane_distance, 0.01, 1e4)?;
+                self.pattern.check()?;
                 check_range("max_texels", self.max_texels, 1, 16_384)?;
                 check_range("white_luminance", self.white_luminance, 1e-6, 1e9)?;
                 self.emission.check()
@@ -99,6 +104,18 @@ impl Params {
             }
             Stage::Render => self.render.check(),
         }
+    }
+}
+
+/// Checks rectangles without lamps, as of [`super::Input`].
+pub fn check_zones(zones: &[DVec4]) -> Result<()> {
+    match zones.iter().position(|z| !(z.is_finite() && z.x <= z.z && z.y <= z.w)) {
+        Some(i) => {
+            let zone = zones[i];
+            let message = format!("zone {i} is {zone}; it must be finite, u0, v0, u1, v1 with u0 <= u1 and v0 <= v1");
+            Err(Error::argument(message))
+        }
+        None => Ok(()),
     }
 }
 

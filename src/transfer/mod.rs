@@ -7,13 +7,16 @@
 
 mod check;
 mod colour;
-mod placement;
+mod ground;
+mod pattern;
 mod schedule;
 mod schedule_file;
 mod stages;
 mod viewpoint;
 
+pub use check::check_zones;
 pub use colour::TargetColour;
+pub use pattern::{Pattern, Scale};
 pub use schedule::Fixture;
 pub use schedule_file::{to_csv, to_json};
 
@@ -28,7 +31,7 @@ use crate::render::{self, Film};
 use crate::scene::surface::{Placed, Surface};
 use crate::scene::{Camera, Scene};
 use crate::segment::{self, Segmentation, StrokeSet};
-use glam::Vec3;
+use glam::{DVec4, Vec3};
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -80,6 +83,8 @@ pub struct Input {
     pub scene: Option<Arc<Scene>>,
     /// Name of the object or material of the scene that receives the lights.
     pub surface: String,
+    /// Rectangles of the surface without lamps: `(u0, v0, u1, v1)` in metres from its corner along its axes.
+    pub zones: Vec<DVec4>,
     /// Whence the result is rendered; the scene's first camera if absent, and if it has none one is chosen.
     pub camera: Option<Camera>,
 }
@@ -93,9 +98,12 @@ pub struct Params {
     pub plane: segment::Params,
     /// Second phase: the lights in it.
     pub lights: segment::Params,
-    /// `width`, `height` and `scale` are set by the transfer, from the surface's size and the two below.
+    /// `width`, `height`, `scale` and `offset` are set by the transfer, from the surface's size and the three below.
     pub emission: emission::Params,
-    /// Distance of the photo's camera from the lit plane in metres, in `[0.01, 1e4]`: it sets the scale of the pattern.
+    /// How the pattern lies on the surface.
+    pub pattern: Pattern,
+    /// Distance of the photo's camera from the lit plane in metres, in `[0.01, 1e4]`: it sets the scale of the pattern, where
+    /// nothing else does.
     pub plane_distance: f64,
     /// Longest side of the emissive texture in texels, in `[1, 16384]`.
     pub max_texels: usize,
@@ -115,6 +123,7 @@ impl Default for Params {
             plane: segment::Params::default(),
             lights: segment::Params::for_lights(),
             emission: emission::Params::default(),
+            pattern: Pattern::default(),
             plane_distance: 1.2,
             max_texels: 2048,
             target: TargetColour::Surface,

@@ -35,7 +35,7 @@ pub struct Fixture {
 }
 
 impl Transfer {
-    /// The lamps of the lit scene; all of the texture counts, also where an irregular surface leaves parts of it out.
+    /// The lamps of the lit scene.
     pub fn fixtures(&self) -> Result<Vec<Fixture>> {
         self.results.fixtures()
     }

@@ -1,7 +1,7 @@
 //! Each stage of the transfer: gathers its input from the results before it, runs it, keeps its result.
 
 use super::check::need;
-use super::{LitScene, Results, Transfer, colour, placement, viewpoint};
+use super::{LitScene, Results, Transfer, colour, ground, viewpoint};
 use crate::emission::Emission;
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::pyramid;
@@ -9,7 +9,7 @@ use crate::job::Job;
 use crate::render::World;
 use crate::scene::surface::{self, Surface};
 use crate::{emission, features, rectify, relight, render, segment};
-use glam::Vec3;
+use glam::{UVec2, Vec3};
 use std::sync::Arc;
 
 /// Standard deviation of the blur of the light mask in photo pixels.
@@ -62,11 +62,19 @@ impl Transfer {
 
     pub(super) fn synthesise(&mut self, job: Job) -> Result<()> {
         let scene = need(&self.input.scene, "set the scene")?;
-        let surface = surface::find(scene, &self.input.surface)?;
-        let emission = match &self.input.texture {
-            Some(texture) => emission::given(texture, job.part(0.0, 0.95))?,
-            None => self.texture_from_photo(&surface, job.part(0.0, 0.95))?,
+        let found = surface::find(scene, &self.input.surface)?;
+        let pattern = &self.params.pattern;
+        let surface = if pattern.rotation == 0.0 { found.clone() } else { found.turned(scene, pattern.rotation) };
+        let mut emission = match &self.input.texture {
+            Some(texture) => emission::given(texture, job.part(0.0, 0.9))?,
+            None => self.texture_from_photo(&surface, job.part(0.0, 0.9))?,
         };
+
+        // Only where there is surface, and room for lamps.
+        let size = UVec2::new(emission.texture.width as u32, emission.texture.height as u32);
+        if let Some(ground) = ground::of(scene, (&surface, &found), pattern.margin, &self.input.zones, size, job.part(0.9, 0.93))? {
+            emission.restrict(&ground, job.part(0.93, 0.95))?;
+        }
 
         // Onto the surface, as bright as the photo shows the lamps.
         let mut lit = (**scene).clone();
@@ -95,14 +103,17 @@ impl Transfer {
             valid: &unwarped.valid,
             photo: Some((photo, unwarped.to_photo)),
         };
-        let grid = placement::texel_grid(surface, unwarped, self.params.plane_distance, self.params.max_texels);
+        let pattern = &self.params.pattern;
+        let pixel = pattern.pixel_size(unwarped.pixel_size * self.params.plane_distance, &input, surface, job.part(0.1, 0.15))?;
+        let grid = pattern.texel_grid(surface, pixel, self.params.max_texels)?;
         let params = emission::Params {
             width: grid.width,
             height: grid.height,
             scale: grid.scale,
+            offset: pattern.offset * grid.density,
             ..self.params.emission.clone()
         };
-        emission::run(&input, &params, job.part(0.1, 1.0))
+        emission::run(&input, &params, job.part(0.15, 1.0))
     }
 
     pub(super) fn relight(&mut self, job: Job) -> Result<()> {

@@ -292,8 +292,9 @@ def transfer() -> Scenario:
     s.call("transfer_add_stroke", stage, 0, array("float", 2, 2, 9, 20), 2, 2.0, 1)
     s.call("transfer_clear_strokes", stage)
     s.call("transfer_add_strokes_image", stage, strokes)
+    s.call("transfer_set_zones", stage, array("double", 0, 0, 0.01, 0.01), 1)
     settings = struct(
-        "transfer_params", max_texels=64, target=1,
+        "transfer_params", max_texels=64, target=1, pattern=struct("pattern_params", scale=3),
         render=struct("render_params", width=16, height=12, samples=4), relight=struct("relight_params", paths=2048),
     )  # fmt: skip
     s.run("transfer_start", stage, 0, 7, settings)

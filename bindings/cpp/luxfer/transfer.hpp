@@ -10,6 +10,7 @@ namespace luxfer {
 
 /// Its pointers to the settings of the stages must live until start() returns.
 using TransferParams = Params<luxfer_transfer_params, luxfer_transfer_params_init>;
+using PatternParams = Params<luxfer_pattern_params, luxfer_pattern_params_init>;
 using DemoPhotoParams = Params<luxfer_demo_photo_params, luxfer_demo_photo_params_init>;
 
 /// From a photo, a few strokes and a scene to that scene lit as in the photo. See luxfer_transfer.
@@ -48,6 +49,11 @@ public:
     Result<> add_strokes(const Image &drawing) const { return call(luxfer_transfer_add_strokes_image, drawing.get()); }
     Result<> add_strokes(Text description) const { return call(luxfer_transfer_add_strokes_text, description.get()); }
     Result<> clear_strokes() const { return call(luxfer_transfer_clear_strokes); }
+
+    /// Rectangles of the surface without lamps: u0, v0, u1 and v1 of each, in metres; they replace those set before.
+    Result<> set_zones(Span<const double> zones) const {
+        return call(luxfer_transfer_set_zones, zones.data(), zones.size() / 4);
+    }
 
     // Results of the caller's in the place of its own.
 

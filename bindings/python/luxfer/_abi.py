@@ -129,6 +129,10 @@ LUXFER_UNIT_LUMINANCE = 0
 LUXFER_UNIT_ILLUMINANCE = 1
 LUXFER_DISTRIBUTION_IES = 0
 LUXFER_DISTRIBUTION_LDT = 1
+LUXFER_PATTERN_DISTANCE = 0
+LUXFER_PATTERN_LAMP = 1
+LUXFER_PATTERN_SPACING = 2
+LUXFER_PATTERN_ACROSS = 3
 LUXFER_STAGE_VIEW = 0
 LUXFER_STAGE_FEATURES = 1
 LUXFER_STAGE_PLANE = 2
@@ -585,8 +589,11 @@ class luxfer_emission_params(Structure):
         ("working_side", c_uint32),
         ("metadata_weight", c_float),
         ("seed", c_uint64),
-        ("regularity", c_float),
+        ("least_regularity", c_float),
         ("whole_lamps", c_uint32),
+        ("offset", c_double * 2),
+        ("clip_level", c_float),
+        ("even_lamps", c_uint32),
     ]
 
 
@@ -950,6 +957,21 @@ class luxfer_distribution_report(Structure):
     result = types.DistributionReport
 
 
+class luxfer_pattern_params(Structure):
+    """How the pattern lies on the surface, whose axes u and v and corner are those of Surface."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("scale", c_int32),
+        ("length", c_double),
+        ("texel_size", c_double),
+        ("rotation", c_double),
+        ("offset", c_double * 2),
+        ("margin", c_double),
+    ]
+    enumerations: dict[str, type] = {"scale": types.PatternScale}
+
+
 class luxfer_transfer_params(Structure):
     """Settings of a transfer. The structs pointed to are read during the call."""
 
@@ -966,6 +988,7 @@ class luxfer_transfer_params(Structure):
         ("emission", POINTER(luxfer_emission_params)),
         ("relight", POINTER(luxfer_relight_params)),
         ("render", POINTER(luxfer_render_params)),
+        ("pattern", POINTER(luxfer_pattern_params)),
     ]
     enumerations: dict[str, type] = {"target": types.Target}
 
@@ -1329,6 +1352,7 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_distribution_get_intensity": (c_int32, [("distribution", POINTER(luxfer_distribution)), ("c", c_double), ("gamma", c_double), ("candela", POINTER(c_double))]),
     "luxfer_distribution_retain": (c_int32, [("distribution", POINTER(luxfer_distribution))]),
     "luxfer_distribution_release": (c_int32, [("distribution", POINTER(luxfer_distribution))]),
+    "luxfer_pattern_params_init": (c_int32, [("params", POINTER(luxfer_pattern_params)), ("size", c_size_t)]),
     "luxfer_transfer_params_init": (c_int32, [("params", POINTER(luxfer_transfer_params)), ("size", c_size_t)]),
     "luxfer_transfer_create": (c_int32, [("context", POINTER(luxfer_context)), ("transfer", POINTER(POINTER(luxfer_transfer)))]),
     "luxfer_transfer_set_photo": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("photo", POINTER(luxfer_image))]),
@@ -1339,6 +1363,7 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_transfer_add_stroke": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("phase", c_int32), ("points", POINTER(c_float)), ("point_count", c_size_t), ("radius", c_float), ("positive", c_int32)]),
     "luxfer_transfer_add_strokes_image": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("drawing", POINTER(luxfer_image))]),
     "luxfer_transfer_add_strokes_text": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("description", c_char_p)]),
+    "luxfer_transfer_set_zones": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("zones", POINTER(c_double)), ("count", c_size_t)]),
     "luxfer_transfer_clear_strokes": (c_int32, [("transfer", POINTER(luxfer_transfer))]),
     "luxfer_transfer_use_rectify": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("rectify", POINTER(luxfer_rectify))]),
     "luxfer_transfer_use_features": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("features", POINTER(luxfer_features))]),

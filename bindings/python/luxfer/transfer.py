@@ -6,6 +6,8 @@ import ctypes
 import os
 from typing import TYPE_CHECKING, Any, cast
 
+import numpy as np
+
 from . import _abi, _params
 from .image import Image, image_of
 from .job import Job, Progress, StageBase
@@ -88,6 +90,12 @@ class Transfer(StageBase):
     def clear_strokes(self) -> None:
         """Removes all strokes."""
         self._call("clear_strokes")
+
+    def set_zones(self, zones: ArrayLike) -> None:
+        """Rectangles (n, 4) of the surface that lamps keep away from: u0, v0, u1, v1 in metres from its corner along its axes.
+        They replace those set before."""
+        values = np.ascontiguousarray(zones, np.float64).reshape(-1, 4)
+        self._call("set_zones", values.ctypes.data_as(ctypes.POINTER(ctypes.c_double)), len(values))
 
     # -- results of the caller's own
 

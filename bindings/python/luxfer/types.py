@@ -358,6 +358,19 @@ class DistributionFormat(IntEnum):
     """EULUMDAT."""
 
 
+class PatternScale(IntEnum):
+    """What sets the size of the pattern on the surface."""
+
+    DISTANCE = 0
+    """The distance of the photo's camera from the lit plane: plane_distance of TransferParams."""
+    LAMP = 1
+    """The length of a lamp: the longer side of the photo's, of which the median counts."""
+    SPACING = 2
+    """The mean distance from a lamp to the nearest other."""
+    ACROSS = 3
+    """The width of the surface: it becomes as many lamps wide as the photo's plane."""
+
+
 class Target(IntEnum):
     """What part of the photo gives the colour to match."""
 
@@ -1018,11 +1031,19 @@ class EmissionParams(TypedDict, total=False):
     """Weight of the metadata channels against colour, in [0, 1e3]; default 1; 0 is plain quilting."""
     seed: int
     """Seed of the synthesis; default 1."""
-    regularity: float
+    least_regularity: float
     """Correlation of the lights with themselves from which they are taken for regular, in [0, 1]; default 0.6.
     At 0 any repetition is held to exactly, at 1 none is, and patches go anywhere."""
     whole_lamps: int
     """1, the default, shows every lamp as one piece; with 0 seams may cut lamps."""
+    offset: Sequence[float]
+    """Where a pattern with a lattice begins, in texels right of and below the texture's corner, each in [-1e6,
+    1e6]; default 0."""
+    clip_level: float
+    """Channel value from which the photo is clipped, in [0, 1]; default 0.95. Lamps it shows so get the colour
+    of their rims, as dark as the clipped channels allow. With 0 nothing is taken for clipped."""
+    even_lamps: int
+    """With 1 every lamp shines evenly, in its mean colour; default 0: as in the photo."""
 
 
 @dataclass(frozen=True)
@@ -1452,6 +1473,28 @@ class DistributionReport:
     """Length, width and height of the luminous opening in metres; negative for round ones."""
 
 
+class PatternParams(TypedDict, total=False):
+    """How the pattern lies on the surface, whose axes u and v and corner are those of Surface."""
+
+    scale: PatternScale | str | int
+    """PatternScale; default PatternScale.DISTANCE."""
+    length: float
+    """What the lamp or the spacing measures, in metres, in [1e-6, 1e6]; default 1. The other scales do not read
+    it."""
+    texel_size: float
+    """Metres per texel, in [0, 1e6]; 0, the default, is as fine as the unwarped photo, where max_texels of
+    TransferParams allows it."""
+    rotation: float
+    """Turn of the pattern from u towards v in radians, in [-2 pi, 2 pi]; default 0."""
+    offset: Sequence[float]
+    """Shift of the pattern along its own axes in metres, each in [-1e6, 1e6]; default 0. Lamps without a
+    lattice go anywhere, and are not shifted."""
+    margin: float
+    """Distance in metres that lamps keep from the edge of the surface and from the zones of
+    luxfer_transfer_set_zones, in [-1, 1e6]; those that do not are left out. Below 0 the edge of the surface
+    cuts lamps; default -1."""
+
+
 class TransferParams(TypedDict, total=False):
     """Settings of a transfer. The structs pointed to are read during the call."""
 
@@ -1474,12 +1517,14 @@ class TransferParams(TypedDict, total=False):
     """Settings of the stage LIGHTS; None, the default, for those of luxfer_segment with channels = 7, colour
     only."""
     emission: EmissionParams
-    """Settings of the stage EMISSION, whose width, height and scale the transfer sets; None, the default, for
-    their defaults."""
+    """Settings of the stage EMISSION, whose width, height, scale and offset the transfer sets; None, the
+    default, for their defaults."""
     relight: RelightParams
     """Settings of the stage RELIGHT; None, the default, for their defaults."""
     render: RenderParams
     """Settings of the stage RENDER; None, the default, for their defaults."""
+    pattern: PatternParams
+    """How the lights lie on the surface; None, the default, for the defaults."""
 
 
 @dataclass(frozen=True)

@@ -45,7 +45,8 @@ fn down_of(u: DVec3, normal: DVec3) -> DVec3 {
     u.cross(normal)
 }
 
-fn bound(points: &[DVec3], centre: DVec3, u: DVec3, normal: DVec3) -> Frame {
+/// The rectangle around points with its sides along a given u.
+pub fn bound(points: &[DVec3], centre: DVec3, u: DVec3, normal: DVec3) -> Frame {
     let v = down_of(u, normal);
     let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
     for p in points {

@@ -19,7 +19,7 @@ pub use place::{Placed, cover, place};
 
 use super::Scene;
 use crate::error::{Error, Result};
-use glam::{DVec3, Vec2, Vec3};
+use glam::{DVec2, DVec3, Vec2, Vec3};
 
 /// A planar patch of the scene with a frame of its own.
 ///
@@ -41,6 +41,26 @@ pub struct Surface {
     pub size: Vec2,
     /// Area of the triangles in m².
     pub area: f32,
+}
+
+impl Surface {
+    /// The same patch with its axes turned by an angle from u towards v, in the rectangle around it along these.
+    pub fn turned(&self, scene: &Scene, angle: f64) -> Self {
+        let turn = DVec2::from_angle(angle);
+        let u = self.u_axis.as_dvec3() * turn.x + self.v_axis.as_dvec3() * turn.y;
+        let frame = frame::bound(&corners(scene, &self.triangles), self.origin.as_dvec3(), u, self.normal.as_dvec3());
+        Self {
+            origin: frame.origin.as_vec3(),
+            u_axis: frame.u.as_vec3(),
+            v_axis: frame.v.as_vec3(),
+            size: frame.size.as_vec2(),
+            ..self.clone()
+        }
+    }
+}
+
+fn corners(scene: &Scene, triangles: &[(usize, usize)]) -> Vec<DVec3> {
+    triangles.iter().flat_map(|&(m, t)| scene.meshes[m].corners(t).map(|p| p.as_dvec3())).collect()
 }
 
 /// Finds the planar patch of the object or material of that name which faces the room.
@@ -85,9 +105,7 @@ fn from_list(scene: &Scene, triangles: &[(usize, usize)]) -> Result<Surface> {
     triangles.sort_unstable();
 
     // The rectangle around it, in its plane.
-    let corners: Vec<DVec3> =
-        triangles.iter().flat_map(|&(m, t)| scene.meshes[m].corners(t).map(|p| p.as_dvec3())).collect();
-    let frame = frame::fit(&corners, chosen.centre, normal);
+    let frame = frame::fit(&corners(scene, &triangles), chosen.centre, normal);
     if frame.size.min_element() <= 0.0 || !frame.size.is_finite() {
         return Err(Error::degenerate("the surface has no extent in one direction; it must have an area"));
     }

@@ -1,0 +1,51 @@
+//! Where a texture may show light: surfaces are seldom whole rectangles, and ducts and sprinklers are in the way of lamps.
+
+use super::luminaires;
+use super::{Emission, components};
+use crate::error::{Error, Result};
+use crate::job::Job;
+
+/// What there is at a texel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ground {
+    /// Room for light.
+    Open,
+    /// Nothing that could be seen: light there is taken out.
+    Hidden,
+    /// No place for a lamp: those that reach it are taken out whole.
+    KeepOut,
+}
+
+impl Emission {
+    /// Takes out light that has no place; `ground` has one entry for each texel. The statistics stay those of the pattern.
+    ///
+    /// Errors: `Degenerate` if no lamp is left.
+    pub fn restrict(&mut self, ground: &[Ground], job: Job) -> Result<()> {
+        let (width, height) = (self.mask.width, self.mask.height);
+        // Whole lamps first: what is hidden of them counts as well.
+        let found = luminaires::components(&self.mask)?;
+        let mut is_out = vec![false; found.list.len()];
+        for (&label, _) in found.labels.iter().zip(ground).filter(|(l, g)| **l != 0 && **g == Ground::KeepOut) {
+            is_out[label as usize - 1] = true;
+        }
+        let hidden = |i: usize| ground[i] == Ground::Hidden;
+        let goes = |(i, &label): (usize, &u32)| label != 0 && (is_out[label as usize - 1] || hidden(i));
+        if !found.labels.iter().enumerate().any(goes) {
+            return Ok(());
+        }
+        job.check()?;
+        for (i, _) in found.labels.iter().enumerate().filter(|&(i, label)| goes((i, label))) {
+            self.texture.data[3 * i..3 * i + 3].fill(0.0);
+            self.mask.data[i] = 0.0;
+        }
+        let left = components::find(width, height, |i| self.mask.data[i] > 0.5)?;
+        if left.list.is_empty() {
+            return Err(Error::degenerate(format!(
+                "none of the {} lamps has a place on the surface: lessen the margin, or take zones away",
+                found.list.len()
+            )));
+        }
+        self.luminaires = luminaires::find(&self.texture, &left, job)?;
+        Ok(())
+    }
+}

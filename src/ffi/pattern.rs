@@ -1,0 +1,89 @@
+//! Pattern
+//!
+//! How the lights of a transfer lie on the surface: how large, how turned, from where on, and where not.
+
+use super::guard::guard;
+use super::params::{self, Versioned};
+use super::status::luxfer_status;
+use crate::error::{Error, Result};
+use crate::transfer::{Pattern, Scale};
+use glam::DVec2;
+
+/// What sets the size of the pattern on the surface: a LUXFER_PATTERN_ value.
+pub type luxfer_pattern_scale = i32;
+/// The distance of the photo's camera from the lit plane: plane_distance of luxfer_transfer_params.
+pub const LUXFER_PATTERN_DISTANCE: luxfer_pattern_scale = 0;
+/// The length of a lamp: the longer side of the photo's, of which the median counts.
+pub const LUXFER_PATTERN_LAMP: luxfer_pattern_scale = 1;
+/// The mean distance from a lamp to the nearest other.
+pub const LUXFER_PATTERN_SPACING: luxfer_pattern_scale = 2;
+/// The width of the surface: it becomes as many lamps wide as the photo's plane.
+pub const LUXFER_PATTERN_ACROSS: luxfer_pattern_scale = 3;
+
+/// How the pattern lies on the surface, whose axes u and v and corner are those of luxfer_surface. Fill it with
+/// luxfer_pattern_params_init.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_pattern_params {
+    /// sizeof(luxfer_pattern_params), set by luxfer_pattern_params_init.
+    pub struct_size: u32,
+    /// LUXFER_PATTERN_ value; default LUXFER_PATTERN_DISTANCE.
+    pub scale: luxfer_pattern_scale,
+    /// What the lamp or the spacing measures, in metres, in [1e-6, 1e6]; default 1. The other scales do not read it.
+    pub length: f64,
+    /// Metres per texel, in [0, 1e6]; 0, the default, is as fine as the unwarped photo, where max_texels of
+    /// luxfer_transfer_params allows it.
+    pub texel_size: f64,
+    /// Turn of the pattern from u towards v in radians, in [-2 pi, 2 pi]; default 0.
+    pub rotation: f64,
+    /// Shift of the pattern along its own axes in metres, each in [-1e6, 1e6]; default 0. Lamps without a lattice go anywhere,
+    /// and are not shifted.
+    pub offset: [f64; 2],
+    /// Distance in metres that lamps keep from the edge of the surface and from the zones of luxfer_transfer_set_zones, in
+    /// [-1, 1e6]; those that do not are left
+    /// out. Below 0 the edge of the surface cuts lamps; default -1.
+    pub margin: f64,
+}
+
+// SAFETY: plain numbers.
+unsafe impl Versioned for luxfer_pattern_params {
+    const NAME: &'static str = "luxfer_pattern_params";
+    const SIZES: &'static [usize] = &[56];
+    fn defaults() -> Self {
+        let d = Pattern::default();
+        Self {
+            struct_size: 56,
+            scale: LUXFER_PATTERN_DISTANCE,
+            length: 1.0,
+            texel_size: d.texel_size,
+            rotation: d.rotation,
+            offset: d.offset.to_array(),
+            margin: d.margin,
+        }
+    }
+}
+
+impl luxfer_pattern_params {
+    pub(super) fn pattern(&self) -> Result<Pattern> {
+        let scale = match self.scale {
+            LUXFER_PATTERN_DISTANCE => Scale::Distance,
+            LUXFER_PATTERN_LAMP => Scale::Lamp(self.length),
+            LUXFER_PATTERN_SPACING => Scale::Spacing(self.length),
+            LUXFER_PATTERN_ACROSS => Scale::Across,
+            other => return Err(Error::argument(format!("scale is {other}; it must be a LUXFER_PATTERN_ value"))),
+        };
+        Ok(Pattern {
+            scale,
+            texel_size: self.texel_size,
+            rotation: self.rotation,
+            offset: DVec2::from_array(self.offset),
+            margin: self.margin,
+        })
+    }
+}
+
+/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_pattern_params_init(params: *mut luxfer_pattern_params, size: usize) -> luxfer_status {
+    guard(|| params::init(params, size))
+}

@@ -1,0 +1,175 @@
+//! Where on the surface's rectangle there is room for light.
+
+use crate::emission::Ground;
+use crate::error::Result;
+use crate::image::{Image, try_vec};
+use crate::job::Job;
+use crate::scene::Scene;
+use crate::scene::surface::Surface;
+use crate::segment;
+use glam::{DVec2, DVec3, DVec4, UVec2};
+
+/// Texels by which triangles are widened, so that none is lost between two of them.
+const CRACK: f64 = 1e-3;
+/// A surface that covers this share of its rectangle covers all of it.
+const FULL: f32 = 0.9999;
+
+/// What there is at each texel of a texture of the given size over the rectangle of `surface`; nothing where all is open.
+/// `untouched` is the same surface before it was turned, along whose axes zones are given.
+pub(super) fn of(
+    scene: &Scene,
+    (surface, untouched): (&Surface, &Surface),
+    margin: f64,
+    zones: &[DVec4],
+    size: UVec2,
+    job: Job,
+) -> Result<Option<Vec<Ground>>> {
+    let is_full = surface.area >= FULL * surface.size.element_product();
+    let keeps_margin = margin >= 0.0;
+    if is_full && !keeps_margin && zones.is_empty() {
+        return Ok(None);
+    }
+    let (width, height) = (size.x as usize, size.y as usize);
+    let density = size.as_dvec2() / surface.size.as_dvec2();
+
+    // What the surface covers; cut at its edge, light stays wherever a texel may be seen.
+    let slack = if keeps_margin { CRACK } else { 1.0 };
+    let covered = coverage(scene, surface, size, slack)?;
+
+    // Where lamps may not reach: zones, and with a margin whatever is not surface; grown by the margin.
+    let mut blocked = Image::new(width, height, 1)?;
+    for (i, out) in blocked.data.iter_mut().enumerate() {
+        let texel = DVec2::new((i % width) as f64 + 0.5, (i / width) as f64 + 0.5);
+        let at = on_other(surface, untouched, texel / density);
+        let in_zone = zones.iter().any(|z| at.x >= z.x && at.x <= z.z && at.y >= z.y && at.y <= z.w);
+        *out = f32::from(in_zone || (keeps_margin && !covered[i]));
+    }
+    let radius = (margin.max(0.0) * density.min_element()).min(65_536.0);
+    let blocked = segment::dilate(&blocked, radius as f32, job)?;
+    let beyond = |x: usize, y: usize| {
+        let edge = (x.min(y).min(width - 1 - x).min(height - 1 - y)) as f64;
+        keeps_margin && edge < radius.max(1.0)
+    };
+
+    let mut ground = try_vec(width * height, Ground::Open)?;
+    for (i, out) in ground.iter_mut().enumerate() {
+        *out = match () {
+            _ if blocked.data[i] > 0.5 || beyond(i % width, i / width) => Ground::KeepOut,
+            _ if !covered[i] => Ground::Hidden,
+            _ => Ground::Open,
+        };
+    }
+    Ok(Some(ground))
+}
+
+/// A point of one surface, in metres from its corner, as one of another in the same plane.
+fn on_other(from: &Surface, to: &Surface, at: DVec2) -> DVec2 {
+    let point = from.origin.as_dvec3() + from.u_axis.as_dvec3() * at.x + from.v_axis.as_dvec3() * at.y;
+    let offset = point - to.origin.as_dvec3();
+    DVec2::new(offset.dot(to.u_axis.as_dvec3()), offset.dot(to.v_axis.as_dvec3()))
+}
+
+/// The texels whose centre lies in a triangle of the surface, or within `slack` texels of it.
+fn coverage(scene: &Scene, surface: &Surface, size: UVec2, slack: f64) -> Result<Vec<bool>> {
+    let (width, height) = (size.x as usize, size.y as usize);
+    let mut covered = try_vec(width * height, false)?;
+    let density = size.as_dvec2() / surface.size.as_dvec2();
+    for &(mesh, triangle) in &surface.triangles {
+        let mut corners = scene.meshes[mesh].corners(triangle).map(|p| {
+            let from: DVec3 = p.as_dvec3() - surface.origin.as_dvec3();
+            DVec2::new(from.dot(surface.u_axis.as_dvec3()), from.dot(surface.v_axis.as_dvec3())) * density
+        });
+        if (corners[1] - corners[0]).perp_dot(corners[2] - corners[0]) < 0.0 {
+            corners.swap(1, 2);
+        }
+        // Distances to the three edges, positive inside.
+        let edges = [0, 1, 2].map(|i| {
+            let along = (corners[(i + 1) % 3] - corners[i]).normalize_or_zero();
+            (corners[i], along)
+        });
+        let (low, high) = corners.iter().fold((corners[0], corners[0]), |(l, h), c| (l.min(*c), h.max(*c)));
+        let first = (low - slack - 0.5).ceil().max(DVec2::ZERO).as_uvec2();
+        let end = (high + slack + 0.5).floor().max(DVec2::ZERO).as_uvec2().min(size);
+        for y in first.y..end.y {
+            for x in first.x..end.x {
+                let texel = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
+                if edges.iter().all(|(from, along)| along.perp_dot(texel - *from) >= -slack) {
+                    covered[y as usize * width + x as usize] = true;
+                }
+            }
+        }
+    }
+    Ok(covered)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::job::Monitor;
+    use crate::scene::{Mesh, surface};
+    use glam::Vec3;
+
+    /// An L of 6 × 4 m less its corner of 2 × 2 m, seen from below, beneath it a floor.
+    fn l_shaped() -> (Scene, Surface) {
+        let corners = [[0., 0.], [6., 0.], [6., 2.], [4., 2.], [4., 4.], [0., 4.]];
+        let ceiling = Mesh {
+            name: "Ceiling".into(),
+            positions: corners.map(|[x, z]| Vec3::new(x, 3.0, z)).into(),
+            triangles: vec![[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 5]],
+            ..Mesh::default()
+        };
+        let floor = Mesh { positions: ceiling.positions.iter().map(|p| p.with_y(0.0)).collect(), ..ceiling.clone() };
+        let floor = Mesh { name: "Floor".into(), ..floor };
+        let scene =
+            Scene { meshes: vec![ceiling, floor], materials: vec![crate::scene::Material::default()], ..Scene::default() };
+        let surface = surface::find(&scene, "Ceiling").unwrap();
+        (scene, surface)
+    }
+
+    fn share(ground: &[Ground], of: Ground) -> f64 {
+        ground.iter().filter(|g| **g == of).count() as f64 / ground.len() as f64
+    }
+
+    #[test]
+    fn what_the_surface_does_not_cover_is_hidden_or_kept_out() {
+        let (scene, surface) = l_shaped();
+        let size = UVec2::new(600, 400);
+        let of = |margin: f64, zones: &[DVec4]| {
+            of(&scene, (&surface, &surface), margin, zones, size, Monitor::default().job()).unwrap().unwrap()
+        };
+        // 4 of 24 m², less the texel's breadth along its two inner edges.
+        let cut = of(-1.0, &[]);
+        assert!((share(&cut, Ground::Hidden) - 1.0 / 6.0).abs() < 0.004 && share(&cut, Ground::KeepOut) == 0.0);
+        // With a margin of 0.3 m what is open is the L shrunk by it, whose inner corner is a quarter of a disc.
+        let kept = of(0.3, &[]);
+        let exact = 5.4 * 3.4 - (2.0 * 2.0 + std::f64::consts::FRAC_PI_4 * 0.09 - 0.09);
+        assert!((share(&kept, Ground::Open) * 24.0 - exact).abs() < 0.08, "{}", share(&kept, Ground::Open) * 24.0);
+        // A zone of 2 × 1 m within the L.
+        let zone = of(-1.0, &[DVec4::new(1.0, 2.5, 3.0, 3.5)]);
+        assert!((share(&zone, Ground::KeepOut) * 24.0 - 2.0).abs() < 0.05);
+        assert_eq!(zone[300 * 600 + 200], Ground::KeepOut);
+    }
+
+    #[test]
+    fn turned_surfaces_keep_their_zones_and_their_area() {
+        let (scene, surface) = l_shaped();
+        let turned = surface.turned(&scene, 0.5);
+        let size = (turned.size * 100.0).round().as_uvec2();
+        let zone = DVec4::new(1.0, 2.5, 3.0, 3.5);
+        let ground = of(&scene, (&turned, &surface), 0.0, &[zone], size, Monitor::default().job()).unwrap().unwrap();
+        let area = f64::from(turned.size.element_product());
+        assert!((share(&ground, Ground::Open) * area - 18.0).abs() < 0.15, "{}", share(&ground, Ground::Open) * area);
+        assert!((turned.size.x - (6.0 * 0.5f32.cos() + 2.0 * 0.5f32.sin())).abs() < 1.5);
+    }
+
+    #[test]
+    fn a_whole_rectangle_without_wishes_needs_nothing() {
+        let (mut scene, _) = l_shaped();
+        scene.meshes[0].positions[3] = Vec3::new(6.0, 3.0, 3.0);
+        scene.meshes[0].positions[4] = Vec3::new(6.0, 3.0, 4.0);
+        let surface = surface::find(&scene, "Ceiling").unwrap();
+        let size = UVec2::new(60, 40);
+        let job = Monitor::default();
+        assert!(of(&scene, (&surface, &surface), -1.0, &[], size, job.job()).unwrap().is_none());
+    }
+}

@@ -1,0 +1,163 @@
+//! How the pattern of lights lies on the surface: how large, how turned, from where on, and where not.
+
+use crate::emission;
+use crate::error::{Error, Result, check_range};
+use crate::job::Job;
+use crate::scene::surface::Surface;
+use glam::DVec2;
+use std::f64::consts::TAU;
+
+/// What sets the size of the pattern on the surface. Lengths are in metres, in `[1e-6, 1e6]`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Scale {
+    /// The distance of the photo's camera from the lit plane, [`super::Params::plane_distance`].
+    Distance,
+    /// The longer side of a lamp, the median of the photo's, is this long.
+    Lamp(f64),
+    /// The mean distance from a lamp to the nearest other is this long.
+    Spacing(f64),
+    /// The surface is as many lamps wide as the photo's plane.
+    Across,
+}
+
+/// How the pattern lies on the surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pattern {
+    pub scale: Scale,
+    /// Metres per texel, in `[0, 1e6]`; 0: as fine as the unwarped photo, where `max_texels` allow it.
+    pub texel_size: f64,
+    /// Turn of the pattern from the surface's u axis towards v, in radians, in `[-2π, 2π]`.
+    pub rotation: f64,
+    /// Shift of the pattern along its own axes in metres, each in `[-1e6, 1e6]`.
+    pub offset: DVec2,
+    /// Distance in metres that lamps keep from the surface's edge and from the zones of the input, in `[-1, 1e6]`; those that
+    /// do not are left out. Below 0 the surface's edge cuts lamps.
+    pub margin: f64,
+}
+
+impl Default for Pattern {
+    fn default() -> Self {
+        Self {
+            scale: Scale::Distance,
+            texel_size: 0.0,
+            rotation: 0.0,
+            offset: DVec2::ZERO,
+            margin: -1.0,
+        }
+    }
+}
+
+pub(super) struct TexelGrid {
+    pub width: usize,
+    pub height: usize,
+    /// Unwarped pixels per texel.
+    pub scale: f64,
+    /// Texels per metre along u and v.
+    pub density: DVec2,
+}
+
+impl Pattern {
+    pub(super) fn check(&self) -> Result<()> {
+        match self.scale {
+            Scale::Distance | Scale::Across => {}
+            Scale::Lamp(length) => drop(check_range("pattern.lamp_length", length, 1e-6, 1e6)?),
+            Scale::Spacing(length) => drop(check_range("pattern.spacing", length, 1e-6, 1e6)?),
+        }
+        check_range("pattern.texel_size", self.texel_size, 0.0, 1e6)?;
+        check_range("pattern.rotation", self.rotation, -TAU, TAU)?;
+        check_range("pattern.offset.u", self.offset.x, -1e6, 1e6)?;
+        check_range("pattern.offset.v", self.offset.y, -1e6, 1e6)?;
+        check_range("pattern.margin", self.margin, -1.0, 1e6)?;
+        Ok(())
+    }
+
+    /// Metres per unwarped pixel, where the photo's camera is so many metres from its plane that a pixel is `at_distance`.
+    pub(super) fn pixel_size(
+        &self,
+        at_distance: f64,
+        exemplar: &emission::Input,
+        surface: &Surface,
+        job: Job,
+    ) -> Result<f64> {
+        let measure = || emission::measure(exemplar, job);
+        let length = |metres: f64, pixels: f64, what: &str| match pixels > 0.0 {
+            true => Ok(metres / pixels),
+            false => Err(Error::degenerate(format!(
+                "the pattern cannot be scaled by {what}: the photo shows too few whole ones; scale it by the distance"
+            ))),
+        };
+        match self.scale {
+            Scale::Distance => Ok(at_distance),
+            Scale::Lamp(metres) => length(metres, measure()?.lamp_length, "its lamps"),
+            Scale::Spacing(metres) => length(metres, measure()?.spacing, "the spacing of its lamps"),
+            Scale::Across => length(surface.size.x.into(), measure()?.width, "its width"),
+        }
+    }
+
+    /// Texels of the given size, or as fine as unwarped pixels, but no more than `max_texels` along the longer side.
+    pub(super) fn texel_grid(&self, surface: &Surface, pixel: f64, max_texels: usize) -> Result<TexelGrid> {
+        let size = surface.size.as_dvec2();
+        let least = size.max_element() / max_texels as f64;
+        if self.texel_size > 0.0 && self.texel_size < least * (1.0 - 1e-9) {
+            return Err(Error::argument(format!(
+                "pattern.texel_size is {} m; with max_texels = {max_texels} on a surface {} m long it must be at least {least}",
+                self.texel_size,
+                size.max_element()
+            )));
+        }
+        let texel = if self.texel_size > 0.0 { self.texel_size } else { pixel.max(least) };
+        let count = |length: f64| ((length / texel).round() as usize).clamp(1, max_texels);
+        let (width, height) = (count(size.x), count(size.y));
+        let density = DVec2::new(width as f64, height as f64) / size;
+        Ok(TexelGrid { width, height, scale: texel / pixel, density })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::{Vec2, Vec3};
+
+    fn surface(size: Vec2) -> Surface {
+        let (u_axis, v_axis, normal) = (Vec3::X, Vec3::Z, Vec3::NEG_Y);
+        Surface { triangles: vec![], origin: Vec3::ZERO, u_axis, v_axis, normal, size, area: size.x * size.y }
+    }
+
+    #[test]
+    fn lamps_keep_their_size_in_metres() {
+        // A pixel is 2 cm: 300 × 150 texels of it, or 100 × 50 of 6 cm, each three pixels wide.
+        let grid = |size, pixel, most| Pattern::default().texel_grid(&surface(size), pixel, most).unwrap();
+        let fine = grid(Vec2::new(6.0, 3.0), 0.02, 2048);
+        assert_eq!((fine.width, fine.height), (300, 150));
+        assert!((fine.scale - 1.0).abs() < 1e-6 && (fine.density.x - 50.0).abs() < 1e-6);
+        let coarse = grid(Vec2::new(6.0, 3.0), 0.02, 100);
+        assert_eq!((coarse.width, coarse.height), (100, 50));
+        assert!((coarse.scale - 3.0).abs() < 1e-6);
+        // A surface thinner than a texel still has one.
+        assert_eq!(grid(Vec2::new(1e-9, 1.0), 0.01, 64).width, 1);
+    }
+
+    #[test]
+    fn texels_may_be_given_a_size_within_their_number() {
+        let pattern = Pattern { texel_size: 0.05, ..Pattern::default() };
+        let grid = pattern.texel_grid(&surface(Vec2::new(6.0, 3.0)), 0.02, 2048).unwrap();
+        assert_eq!((grid.width, grid.height), (120, 60));
+        assert!((grid.scale - 2.5).abs() < 1e-6);
+        let error = pattern.texel_grid(&surface(Vec2::new(6.0, 3.0)), 0.02, 100).err().unwrap();
+        assert!(error.message.contains("texel_size is 0.05") && error.message.contains("0.06"), "{}", error.message);
+    }
+
+    #[test]
+    fn settings_out_of_range_are_named() {
+        let wrong = |change: &dyn Fn(&mut Pattern)| {
+            let mut pattern = Pattern::default();
+            change(&mut pattern);
+            pattern.check().unwrap_err().message
+        };
+        assert!(wrong(&|p| p.scale = Scale::Lamp(0.0)).contains("pattern.lamp_length is 0"));
+        assert!(wrong(&|p| p.scale = Scale::Spacing(f64::NAN)).contains("pattern.spacing is NaN"));
+        assert!(wrong(&|p| p.rotation = 7.0).contains("pattern.rotation is 7"));
+        assert!(wrong(&|p| p.offset.y = f64::INFINITY).contains("pattern.offset.v is inf"));
+        assert!(wrong(&|p| p.margin = -2.0).contains("pattern.margin is -2"));
+    }
+}
