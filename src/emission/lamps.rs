@@ -32,8 +32,18 @@ pub struct Instance {
     pub shift: DVec2,
 }
 
+/// What lamps may do.
+#[derive(Clone, Copy)]
+pub struct Rules {
+    /// They lie on a lattice: rounding alone can make them meet.
+    pub is_lattice: bool,
+    /// What leaves the texture on one side comes in on the other.
+    pub wraps: bool,
+}
+
 /// The lamps shown by a layout, best supported first, each as the photo shows it or one like it best.
-pub fn resolve(exemplar: &Exemplar, layout: &Layout, is_lattice: bool, seed: u64, job: Job) -> Result<Vec<Instance>> {
+pub fn resolve(exemplar: &Exemplar, layout: &Layout, rules: Rules, seed: u64, job: Job) -> Result<Vec<Instance>> {
+    let Rules { is_lattice, wraps } = rules;
     let footprints = footprints(exemplar);
     let working = &exemplar.working;
     let mut lamp_at = try_vec(working.width * working.height, u32::MAX)?;
@@ -53,12 +63,16 @@ pub fn resolve(exemplar: &Exemplar, layout: &Layout, is_lattice: bool, seed: u64
     }
 
     // Against how many there are within the texture.
+    let texel = move |x: i32, y: i32| {
+        let side = |at: i32, side: usize| match wraps {
+            true => Some(at.rem_euclid(side as i32) as usize),
+            false => usize::try_from(at).ok().filter(|&at| at < side),
+        };
+        side(x, layout.width).zip(side(y, layout.height))
+    };
     let place = |k: u32, label: u32| {
         let [dx, dy] = layout.shifts[label as usize].working;
-        footprints[k as usize].iter().filter_map(move |&[x, y]| {
-            let (x, y) = (usize::try_from(x + dx).ok()?, usize::try_from(y + dy).ok()?);
-            (x < layout.width && y < layout.height).then_some((x, y))
-        })
+        footprints[k as usize].iter().filter_map(move |&[x, y]| texel(x + dx, y + dy))
     };
     let mut claims: Vec<(f64, u32, u32)> =
         shown.iter().map(|(&(k, label), &n)| (n as f64 / place(k, label).count() as f64, k, label)).collect();
@@ -68,12 +82,11 @@ pub fn resolve(exemplar: &Exemplar, layout: &Layout, is_lattice: bool, seed: u64
     // Best first; who comes late finds the place taken. Free lamps keep a pixel between them.
     let mut taken = try_vec(layout.width * layout.height, false)?;
     let mut instances = Vec::new();
-    let margin = usize::from(!is_lattice);
+    let margin = i32::from(!is_lattice);
     for (_, k, label) in claims {
         let near = |x: usize, y: usize| {
-            let columns = x.saturating_sub(margin)..(x + margin + 1).min(layout.width);
-            (y.saturating_sub(margin)..(y + margin + 1).min(layout.height))
-                .any(|v| columns.clone().any(|u| taken[v * layout.width + u]))
+            let around = |at: usize| at as i32 - margin..=at as i32 + margin;
+            around(y).any(|v| around(x).filter_map(|u| texel(u, v)).any(|(u, v)| taken[v * layout.width + u]))
         };
         let clashes = place(k, label).filter(|&(x, y)| near(x, y)).count();
         let allowed = if is_lattice { LATTICE_SLACK * place(k, label).count() as f64 } else { 0.0 };
@@ -84,6 +97,12 @@ pub fn resolve(exemplar: &Exemplar, layout: &Layout, is_lattice: bool, seed: u64
     }
     show_sharply(exemplar, &mut instances, seed);
     Ok(instances)
+}
+
+/// Every lamp again where it comes in when it leaves a texture of this size, in unwarped pixels.
+pub fn wrapped(instances: &[Instance], size: DVec2) -> Vec<Instance> {
+    let turns = || (-1..=1).flat_map(|y| (-1..=1).map(move |x| DVec2::new(f64::from(x), f64::from(y))));
+    instances.iter().flat_map(|i| turns().map(|t| Instance { shift: i.shift + t * size, ..*i })).collect()
 }
 
 /// Puts in the place of a lamp that the photo shows small one like it that it shows large. Which of several is drawn, so

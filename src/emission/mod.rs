@@ -15,7 +15,7 @@
 //!
 //! Beyond the paper: the lattice, and lamps as pieces; image quilting alone lets regular patterns drift and cuts lamps; the
 //! colour of lamps that the photo shows clipped ([`clipping`]); and lamps kept off where they have no place ([`ground`]).
-//! Not modelled: tileable textures, and several exemplars in one texture.
+//! Not modelled: several exemplars in one texture.
 
 mod clipping;
 mod components;
@@ -44,6 +44,7 @@ use clipping::Clipping;
 use components::Components;
 use exemplar::{AreaSums, Exemplar};
 use glam::{DVec2, Vec3};
+use lamps::Rules;
 use patches::{Guide, Layout, Shift};
 use statistics::{Pattern, Statistics};
 
@@ -88,6 +89,10 @@ pub struct Params {
     pub whole_lamps: bool,
     /// Every lamp shines evenly, in its mean colour.
     pub even_lamps: bool,
+    /// The texture may be repeated: what leaves it on one side comes in on the other. Lattices are stretched, by less than half
+    /// a period over the whole, so that a whole number of periods fits. Needs `whole_lamps`; lights that run out of the
+    /// exemplar are no lamps, and meet at the border on a lattice only.
+    pub tileable: bool,
     /// Channel value from which the photo is clipped, in `[0, 1]`; lamps there get the colour of their rims. 0: nothing is.
     pub clip_level: f32,
     pub seed: u64,
@@ -106,6 +111,7 @@ impl Default for Params {
             least_regularity: 0.6,
             whole_lamps: true,
             even_lamps: false,
+            tileable: false,
             clip_level: 0.95,
             seed: 1,
         }
@@ -166,6 +172,9 @@ impl Params {
         check_range("emission.offset.y", self.offset.y, -1e6, 1e6)?;
         check_range("emission.least_regularity", self.least_regularity, 0.0, 1.0)?;
         check_range("emission.clip_level", self.clip_level, 0.0, 1.0)?;
+        if self.tileable && !self.whole_lamps {
+            return Err(Error::argument("emission.tileable is set; it needs emission.whole_lamps"));
+        }
         Ok(())
     }
 }
@@ -249,11 +258,15 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Emission> {
     let working = &exemplar.working;
 
     // How the pattern goes on, the size of a patch, and the metadata at that scale.
-    let window = window(&exemplar, params)?;
+    let window = if params.tileable { None } else { window(&exemplar, params)? };
     let inside = window.as_ref().filter(|w| w.is_shown).map(|w| w.corner);
     let (continuation, regularity) = match inside {
         Some(_) => (Continuation::Copy, 0.0),
-        None => period::find(&exemplar, params.least_regularity, job.part(0.1, 0.2))?,
+        None => {
+            let (found, regularity) = period::find(&exemplar, params.least_regularity, job.part(0.1, 0.2))?;
+            let size = DVec2::new(params.width as f64, params.height as f64) * params.scale;
+            (if params.tileable { found.fitted(size)? } else { found }, regularity)
+        }
     };
     let block = if params.block > 0 { params.block } else { default_block(&exemplar, continuation) };
     let reach = continuation
@@ -279,8 +292,11 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Emission> {
     // Whole lamps as pieces, the rest as the patches have it; then full detail.
     let (instances, by_pixel) = match inside {
         None if params.whole_lamps => {
-            let is_lattice = continuation.lattice().is_some();
-            let instances = lamps::resolve(&exemplar, &layout, is_lattice, params.seed, job.part(0.8, 0.85))?;
+            let rules = Rules { is_lattice: continuation.lattice().is_some(), wraps: params.tileable };
+            let mut instances = lamps::resolve(&exemplar, &layout, rules, params.seed, job.part(0.8, 0.85))?;
+            if params.tileable {
+                instances = lamps::wrapped(&instances, size);
+            }
             (instances, exemplar.whole.iter().zip(&exemplar.cut).map(|(whole, cut)| !whole && !cut).collect())
         }
         _ => (Vec::new(), vec![true; exemplar.whole.len()]),

@@ -7,7 +7,7 @@
 
 use super::correlation::Autocorrelation;
 use super::exemplar::Exemplar;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::image::{Image, pyramid};
 use crate::job::Job;
 use glam::{DMat2, DVec2};
@@ -47,6 +47,32 @@ impl Continuation {
             Self::Lattice(basis) | Self::Row(basis) | Self::Tile(basis) => Some(basis),
             Self::Copy | Self::Free => None,
         }
+    }
+
+    /// The same with its lattice stretched so that a whole number of periods, one at least, fits a size.
+    ///
+    /// Errors: `Degenerate` where that leaves no lattice.
+    pub fn fitted(self, size: DVec2) -> Result<Self> {
+        let fit = |[a, b]: [DVec2; 2]| {
+            // Steps along both periods to the far ends of the two sides.
+            let inverse = DMat2::from_cols(a, b).inverse();
+            let steps = |side: DVec2| (inverse * side).round();
+            let whole = DMat2::from_cols(steps(DVec2::X * size.x), steps(DVec2::Y * size.y)).inverse();
+            let basis = DMat2::from_diagonal(size) * whole;
+            match basis.is_finite() {
+                true => Ok([basis.x_axis, basis.y_axis]),
+                false => Err(Error::degenerate(format!(
+                    "a texture of {} x {} unwarped pixels is less than a period of its lights and cannot repeat: enlarge it",
+                    size.x, size.y
+                ))),
+            }
+        };
+        Ok(match self {
+            Self::Lattice(basis) => Self::Lattice(fit(basis)?),
+            Self::Row(basis) => Self::Row(fit(basis)?),
+            Self::Tile(basis) => Self::Tile(fit(basis)?),
+            Self::Copy | Self::Free => self,
+        })
     }
 
     /// The period along x and along y, in unwarped pixels, where the lattice has one there; that of a copy is infinite.

@@ -487,3 +487,44 @@ fn an_exemplar_is_measured_in_its_own_pixels() {
     assert_eq!((measured.lamp_length, measured.width), (14.0, 200.0));
     assert!((measured.spacing - 36.0).abs() < 1e-9);
 }
+
+#[test]
+fn tileable_textures_repeat_without_a_seam() {
+    let lattice = Design::new(300, 280, grid(37.3, 51.7, 11.0, 23.0)).with_corners_cut();
+    let hexagonal = Design::new(320, 300, |x, y| {
+        let (u, v) = ((x - 9.0).rem_euclid(44.0) - 22.0, (y - 5.0).rem_euclid(76.0) - 38.0);
+        u.hypot(v) < 9.0 || (u.abs() - 22.0).hypot(v.abs() - 38.0) < 9.0
+    });
+    let (free, _) = blobs(256, 256, 26.0);
+    for (name, exemplar, width, height, scale) in
+        [("lattice", lattice, 500, 470, 1.0), ("hexagonal", hexagonal, 333, 420, 1.3), ("free", free, 500, 450, 1.0)]
+    {
+        let params = Params { width, height, scale, tileable: true, ..Params::default() };
+        let result = exemplar.run(&params).unwrap();
+        assert_eq!(matches!(result.continuation, Continuation::Free), name == "free");
+        // Lamps of the texture repeated twice each way. Those whose centre lies in the middle, a period wide and high, are
+        // each of them once, and whole.
+        let again = |i: usize| (i / (2 * width) % height) * width + i % (2 * width) % width;
+        let repeated = components::find(2 * width, 2 * height, |i| result.mask.data[again(i)] > 0.5).unwrap();
+        let size = DVec2::new(width as f64, height as f64);
+        let in_middle = |c: &&components::Component| {
+            let from_corner = c.centre - size / 2.0;
+            from_corner.cmpge(DVec2::ZERO).all() && from_corner.cmplt(size).all()
+        };
+        let areas: Vec<f64> = repeated.list.iter().filter(in_middle).map(|c| c.area as f64).collect();
+        let (least, most) = (areas.iter().copied().fold(f64::MAX, f64::min), areas.iter().copied().fold(0.0, f64::max));
+        assert_eq!(areas.iter().sum::<f64>(), result.mask.data.iter().sum::<f32>() as f64, "{name}");
+        match name {
+            // Of radii from 4 to 7, cut by pixels.
+            "free" => assert!(least > 0.9 * 16.0 * std::f64::consts::PI && most < 160.0, "{least} {most}"),
+            _ => assert!(least > 0.85 * most, "{name}: lamps of {least} to {most} texels"),
+        }
+        if let Some([a, b]) = result.continuation.lattice() {
+            let steps = DMat2::from_cols(a, b).inverse() * DVec2::new(width as f64 * scale, 0.0);
+            assert!((steps - steps.round()).length() < 1e-9);
+        }
+    }
+    let exemplar = Design::new(200, 200, grid(40.0, 40.0, 14.0, 14.0));
+    let small = exemplar.run(&Params { width: 9, height: 9, tileable: true, ..Params::default() }).unwrap_err();
+    assert_eq!(small.kind, ErrorKind::Degenerate);
+}

@@ -68,16 +68,21 @@ pub struct luxfer_emission_params {
     pub clip_level: f32,
     /// With 1 every lamp shines evenly, in its mean colour; default 0: as in the photo.
     pub even_lamps: u32,
+    /// With 1 the texture may be repeated: what leaves it on one side comes in on the other, and a lattice is stretched, by less
+    /// than half a period over the whole, to fit. Needs whole_lamps. Default 0.
+    pub tileable: u32,
+    /// Must be 0.
+    pub reserved: u32,
 }
 
 // SAFETY: plain numbers.
 unsafe impl Versioned for luxfer_emission_params {
     const NAME: &'static str = "luxfer_emission_params";
-    const SIZES: &'static [usize] = &[72];
+    const SIZES: &'static [usize] = &[80];
     fn defaults() -> Self {
         let d = emission::Params::default();
         Self {
-            struct_size: 72,
+            struct_size: 80,
             width: d.width as u32,
             height: d.height as u32,
             block: d.block as u32,
@@ -90,6 +95,8 @@ unsafe impl Versioned for luxfer_emission_params {
             offset: d.offset.to_array(),
             clip_level: d.clip_level,
             even_lamps: u32::from(d.even_lamps),
+            tileable: u32::from(d.tileable),
+            reserved: 0,
         }
     }
 }
@@ -107,6 +114,7 @@ impl luxfer_emission_params {
             least_regularity: self.least_regularity,
             whole_lamps: params::flag(self.whole_lamps, "whole_lamps")?,
             even_lamps: params::flag(self.even_lamps, "even_lamps")?,
+            tileable: params::flag(self.tileable, "tileable")?,
             clip_level: self.clip_level,
             seed: self.seed,
         })
