@@ -91,6 +91,19 @@ class AddOn(unittest.TestCase):
         for name, shares in far:
             self.assertTrue((shares <= 1).all(), f"{name}: {shares} of the interval")
 
+    def test_lamps_lie_as_far_apart_as_asked(self):
+        self.load_photo()
+        settings = self.scene.luxfer
+        settings.scale, settings.length, settings.keep_whole, settings.margin = "SPACING", 0.5, True, 0.1
+        self.assertEqual(bpy.ops.luxfer.transfer(), {"FINISHED"})
+        rows = [line.split(",") for line in bpy.data.texts[lighting.LAMPS].as_string().splitlines()[1:]]
+        places = np.array([[float(v) for v in row[:2]] for row in rows])
+        self.assertGreater(len(places), 3)
+        apart = np.linalg.norm(places[:, None] - places[None], axis=-1)
+        apart[apart == 0] = np.inf
+        self.assertAlmostEqual(np.median(apart.min(0)), 0.5, delta=0.05)
+        self.assertTrue((places > 0.1).all() and (places < np.array(SIZE[:2]) - 0.1).all())
+
     def test_applying_can_be_undone(self):
         self.load_photo()
         bpy.ops.ed.undo_push(message="before")

@@ -172,7 +172,17 @@ def transfer_work(scene: bpy.types.Scene) -> tuple[Generator[luxfer.Job, Any, No
     transfer = prepared(scene)
     room, name = convert.scene(work.context(), scene), settings.target.name
     transfer.set_scene(room, name)
-    params = {"max_texels": settings.texels, "plane_distance": settings.distance, "white_luminance": settings.white}
+    pattern = {
+        "scale": settings.scale.lower(),
+        "length": settings.length,
+        "margin": settings.margin if settings.keep_whole else -1.0,
+    }
+    params = {
+        "max_texels": settings.texels,
+        "plane_distance": settings.distance,
+        "white_luminance": settings.white,
+        "pattern": pattern,
+    }
     return transfer_steps(transfer, photo_pixels(scene), room, name, params, settings.apply_when_done), 1
 
 

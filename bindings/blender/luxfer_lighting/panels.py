@@ -50,8 +50,17 @@ class LightingPanel(Sidebar):
         box.operator("luxfer.preview_masks", icon="MOD_MASK")
         layout.prop(settings, "target")
         column = layout.column(align=True)
-        for name in ("distance", "white", "texels"):
-            column.prop(settings, name)
+        column.prop(settings, "scale")
+        if settings.scale == "DISTANCE":
+            column.prop(settings, "distance")
+        elif settings.scale != "ACROSS":
+            column.prop(settings, "length")
+        column.prop(settings, "keep_whole")
+        if settings.keep_whole:
+            column.prop(settings, "margin")
+        column = layout.column(align=True)
+        column.prop(settings, "white")
+        column.prop(settings, "texels")
         layout.prop(settings, "apply_when_done")
         layout.operator("luxfer.transfer", icon="LIGHT")
         if lighting.result is not None:

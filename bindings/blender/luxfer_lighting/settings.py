@@ -20,6 +20,37 @@ class LuxferSettings(bpy.types.PropertyGroup):
     target: PointerProperty(
         type=bpy.types.Object, name="Surface", poll=is_mesh, description="Object whose flat side receives the lights"
     )
+    scale: EnumProperty(
+        name="Scale",
+        items=(
+            ("DISTANCE", "Distance", "The distance of the photo's camera from the plane of the lights sets how large they are"),
+            ("LAMP", "Lamp Length", "Lamps are of this length"),
+            ("SPACING", "Spacing", "Lamps are this far apart"),
+            ("ACROSS", "Lamps Across", "The surface is as many lamps wide as the photo's plane"),
+        ),
+        default="DISTANCE",
+    )
+    length: FloatProperty(
+        name="Length",
+        default=0.6,
+        min=1e-3,
+        max=1e4,
+        subtype="DISTANCE",
+        unit="LENGTH",
+        description="Length of a lamp, or distance from one to the nearest other",
+    )
+    keep_whole: BoolProperty(
+        name="Whole Lamps Only", default=False, description="Leave out lamps that the surface's edge would cut"
+    )
+    margin: FloatProperty(
+        name="Margin",
+        default=0.0,
+        min=0.0,
+        max=1e4,
+        subtype="DISTANCE",
+        unit="LENGTH",
+        description="Distance that whole lamps keep from the surface's edge",
+    )
     distance: FloatProperty(
         name="Distance",
         default=1.2,
