@@ -251,8 +251,14 @@ fn knobs() {
             .iter()
             .map(|relative| {
                 let block = (relative * 60.0 * working_side as f64 / 480.0) as usize;
-                let params =
-                    Params { width: 1024, height: 1024, working_side, block, least_regularity: 1.0, ..Params::default() };
+                let params = Params {
+                    width: 1024,
+                    height: 1024,
+                    working_side,
+                    block,
+                    least_regularity: 1.0,
+                    ..Params::default()
+                };
                 let (seconds, result) = time(Clock::Wall, || exemplar.run(&params));
                 let score = Score::of(&result, design);
                 table.row([

@@ -1,7 +1,7 @@
 //! Where a texture may show light: surfaces are seldom whole rectangles, and ducts and sprinklers are in the way of lamps.
 
+use super::Emission;
 use super::luminaires;
-use super::{Emission, components};
 use crate::error::{Error, Result};
 use crate::job::Job;
 
@@ -21,24 +21,20 @@ impl Emission {
     ///
     /// Errors: `Degenerate` if no lamp is left.
     pub fn restrict(&mut self, ground: &[Ground], job: Job) -> Result<()> {
-        let (width, height) = (self.mask.width, self.mask.height);
         // Whole lamps first: what is hidden of them counts as well.
         let found = luminaires::components(&self.mask)?;
         let mut is_out = vec![false; found.list.len()];
         for (&label, _) in found.labels.iter().zip(ground).filter(|(l, g)| **l != 0 && **g == Ground::KeepOut) {
             is_out[label as usize - 1] = true;
         }
-        let hidden = |i: usize| ground[i] == Ground::Hidden;
-        let goes = |(i, &label): (usize, &u32)| label != 0 && (is_out[label as usize - 1] || hidden(i));
-        if !found.labels.iter().enumerate().any(goes) {
+        let goes = |lamp: usize, i: usize| is_out[lamp] || ground[i] == Ground::Hidden;
+        let lit = found.labels.iter().enumerate().filter(|(_, label)| **label != 0);
+        if !lit.map(|(i, &label)| (label as usize - 1, i)).any(|(lamp, i)| goes(lamp, i)) {
             return Ok(());
         }
         job.check()?;
-        for (i, _) in found.labels.iter().enumerate().filter(|&(i, label)| goes((i, label))) {
-            self.texture.data[3 * i..3 * i + 3].fill(0.0);
-            self.mask.data[i] = 0.0;
-        }
-        let left = components::find(width, height, |i| self.mask.data[i] > 0.5)?;
+        luminaires::take_out(&mut self.texture, &mut self.mask, &found, goes);
+        let left = luminaires::components(&self.mask)?;
         if left.list.is_empty() {
             return Err(Error::degenerate(format!(
                 "none of the {} lamps has a place on the surface: lessen the margin, or take zones away",

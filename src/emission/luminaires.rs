@@ -17,13 +17,34 @@ pub fn sweep(texture: &mut Image, mask: &mut Image, least: f64) -> Result<Compon
     if found.list.iter().all(|piece| piece.area as f64 >= least) {
         return Ok(found);
     }
-    for (i, _) in
-        found.labels.iter().enumerate().filter(|(_, l)| **l != 0 && (found.list[**l as usize - 1].area as f64) < least)
-    {
-        texture.data[3 * i..3 * i + 3].fill(0.0);
-        mask.data[i] = 0.0;
-    }
+    take_out(texture, mask, &found, |k, _| (found.list[k].area as f64) < least);
     components(mask)
+}
+
+/// Takes out the texels of lamps that `goes` names by lamp and texel, and rims whose lamps all go: texels less than half of
+/// which is light, which the mask leaves out.
+pub fn take_out(texture: &mut Image, mask: &mut Image, found: &Components, goes: impl Fn(usize, usize) -> bool) {
+    let (width, height) = (mask.width, mask.height);
+    let lamp = |i: usize| (found.labels[i] as usize).checked_sub(1);
+    for i in 0..width * height {
+        let is_out = match lamp(i) {
+            Some(k) => goes(k, i),
+            None if texture.data[3 * i..3 * i + 3] == [0.0; 3] => false,
+            None => {
+                let (x, y) = (i % width, i / width);
+                let columns = x.saturating_sub(1)..(x + 2).min(width);
+                let rows = y.saturating_sub(1)..(y + 2).min(height);
+                let mut near =
+                    rows.flat_map(|v| columns.clone().map(move |u| v * width + u)).filter_map(|j| Some((lamp(j)?, j)));
+                let first = near.next();
+                first.into_iter().chain(near).all(|(k, j)| goes(k, j)) && first.is_some()
+            }
+        };
+        if is_out {
+            texture.data[3 * i..3 * i + 3].fill(0.0);
+            mask.data[i] = 0.0;
+        }
+    }
 }
 
 /// Gives every texel of a lamp the lamp's mean colour.

@@ -117,7 +117,7 @@ fn ratio(part: f64, whole: f64) -> f64 {
 }
 
 /// From each point the distance to the nearest other; infinite for one alone. They are swept in the order of x.
-fn nearest_distances(points: &[DVec2]) -> Vec<f64> {
+pub fn nearest_distances(points: &[DVec2]) -> Vec<f64> {
     let mut order: Vec<usize> = (0..points.len()).collect();
     order.sort_unstable_by(|&i, &j| points[i].x.total_cmp(&points[j].x));
     let mut nearest = vec![f64::INFINITY; points.len()];

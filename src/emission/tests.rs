@@ -473,19 +473,41 @@ fn lamps_without_a_place_are_left_out() {
     let lit = |e: &Emission| e.mask.data.iter().sum::<f32>() as f64;
     assert_eq!(lit(&touched), lit(&result) - lamp.area);
     assert!((touched.luminaires.iter().map(|l| l.flux_share).sum::<f64>() - 1.0).abs() < 1e-6);
+    // Nothing of it is left, of its rim neither: coarser texels have rims.
+    let coarse = exemplar.run(&Params { width: 150, height: 150, scale: 2.7, ..Params::default() }).unwrap();
+    let lamp_out = &coarse.luminaires[coarse.luminaires.len() / 2];
+    let at = lamp_out.centre.y as usize * 150 + lamp_out.centre.x as usize;
+    let mut without = coarse.clone();
+    let ground: Vec<Ground> = (0..150 * 150).map(|i| if i == at { Ground::KeepOut } else { Ground::Open }).collect();
+    without.restrict(&ground, Monitor::default().job()).unwrap();
+    let near = |i: usize| DVec2::new((i % 150) as f64 + 0.5, (i / 150) as f64 + 0.5).distance(lamp_out.centre) < 7.0;
+    assert!((0..150 * 150).filter(|&i| near(i)).all(|i| without.texture.data[3 * i..3 * i + 3] == [0.0; 3]));
+    assert!(
+        (0..150 * 150)
+            .filter(|&i| !near(i))
+            .all(|i| without.texture.pixel(i % 150, i / 150) == coarse.texture.pixel(i % 150, i / 150))
+    );
     // What is hidden is cut.
     let half = restricted(&|x, _| if x < lamp.centre.x as usize { Ground::Hidden } else { Ground::Open }).unwrap();
     assert!(half.luminaires.iter().any(|l| (l.area - lamp.area / 2.0).abs() < 15.0));
-    assert!(half.texture.data.chunks_exact(3).enumerate().all(|(i, t)| i % 400 >= lamp.centre.x as usize || t == [0.0; 3]));
+    assert!(
+        half.texture.data.chunks_exact(3).enumerate().all(|(i, t)| i % 400 >= lamp.centre.x as usize || t == [0.0; 3])
+    );
     assert_eq!(restricted(&|_, _| Ground::KeepOut).unwrap_err().kind, ErrorKind::Degenerate);
 }
 
 #[test]
 fn an_exemplar_is_measured_in_its_own_pixels() {
     let exemplar = Design::new(200, 180, grid(40.0, 36.0, 14.0, 10.0));
-    let measured = measure(&exemplar.input(), Monitor::default().job()).unwrap();
+    let of = |exemplar: &Design| measure(&exemplar.input(), &Params::default(), Monitor::default().job()).unwrap();
+    let measured = of(&exemplar);
     assert_eq!((measured.lamp_length, measured.width), (14.0, 200.0));
-    assert!((measured.spacing - 36.0).abs() < 1e-9);
+    assert!((measured.spacing - 36.0).abs() < 0.1, "{}", measured.spacing);
+    // Without a lattice, from lamp to lamp: at least the gap that these keep.
+    let scattered = of(&blobs(256, 256, 26.0).0).spacing;
+    assert!(scattered > 24.0 && scattered < 32.0, "{scattered}");
+    let alone = of(&Design::new(80, 60, |x, y| (x - 40.0).abs() < 10.0 && (y - 25.0).abs() < 8.0));
+    assert_eq!((alone.lamp_length, alone.spacing), (20.0, 0.0));
 }
 
 #[test]

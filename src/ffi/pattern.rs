@@ -15,7 +15,7 @@ pub type luxfer_pattern_scale = i32;
 pub const LUXFER_PATTERN_DISTANCE: luxfer_pattern_scale = 0;
 /// The length of a lamp: the longer side of the photo's, of which the median counts.
 pub const LUXFER_PATTERN_LAMP: luxfer_pattern_scale = 1;
-/// The mean distance from a lamp to the nearest other.
+/// The shorter period of the lattice of lamps; without a lattice, the median distance from a lamp to the nearest other.
 pub const LUXFER_PATTERN_SPACING: luxfer_pattern_scale = 2;
 /// The width of the surface: it becomes as many lamps wide as the photo's plane.
 pub const LUXFER_PATTERN_ACROSS: luxfer_pattern_scale = 3;

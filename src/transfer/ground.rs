@@ -120,8 +120,11 @@ mod tests {
         };
         let floor = Mesh { positions: ceiling.positions.iter().map(|p| p.with_y(0.0)).collect(), ..ceiling.clone() };
         let floor = Mesh { name: "Floor".into(), ..floor };
-        let scene =
-            Scene { meshes: vec![ceiling, floor], materials: vec![crate::scene::Material::default()], ..Scene::default() };
+        let scene = Scene {
+            meshes: vec![ceiling, floor],
+            materials: vec![crate::scene::Material::default()],
+            ..Scene::default()
+        };
         let surface = surface::find(&scene, "Ceiling").unwrap();
         (scene, surface)
     }

@@ -14,7 +14,7 @@ pub enum Scale {
     Distance,
     /// The longer side of a lamp, the median of the photo's, is this long.
     Lamp(f64),
-    /// The mean distance from a lamp to the nearest other is this long.
+    /// The shorter period of their lattice is this long; without a lattice, the median distance from a lamp to the nearest other.
     Spacing(f64),
     /// The surface is as many lamps wide as the photo's plane.
     Across,
@@ -37,13 +37,7 @@ pub struct Pattern {
 
 impl Default for Pattern {
     fn default() -> Self {
-        Self {
-            scale: Scale::Distance,
-            texel_size: 0.0,
-            rotation: 0.0,
-            offset: DVec2::ZERO,
-            margin: -1.0,
-        }
+        Self { scale: Scale::Distance, texel_size: 0.0, rotation: 0.0, offset: DVec2::ZERO, margin: -1.0 }
     }
 }
 
@@ -75,11 +69,11 @@ impl Pattern {
     pub(super) fn pixel_size(
         &self,
         at_distance: f64,
-        exemplar: &emission::Input,
+        (exemplar, params): (&emission::Input, &emission::Params),
         surface: &Surface,
         job: Job,
     ) -> Result<f64> {
-        let measure = || emission::measure(exemplar, job);
+        let measure = || emission::measure(exemplar, params, job);
         let length = |metres: f64, pixels: f64, what: &str| match pixels > 0.0 {
             true => Ok(metres / pixels),
             false => Err(Error::degenerate(format!(

@@ -72,7 +72,9 @@ impl Transfer {
 
         // Only where there is surface, and room for lamps.
         let size = UVec2::new(emission.texture.width as u32, emission.texture.height as u32);
-        if let Some(ground) = ground::of(scene, (&surface, &found), pattern.margin, &self.input.zones, size, job.part(0.9, 0.93))? {
+        if let Some(ground) =
+            ground::of(scene, (&surface, &found), pattern.margin, &self.input.zones, size, job.part(0.9, 0.93))?
+        {
             emission.restrict(&ground, job.part(0.93, 0.95))?;
         }
 
@@ -104,7 +106,9 @@ impl Transfer {
             photo: Some((photo, unwarped.to_photo)),
         };
         let pattern = &self.params.pattern;
-        let pixel = pattern.pixel_size(unwarped.pixel_size * self.params.plane_distance, &input, surface, job.part(0.1, 0.15))?;
+        let at_distance = unwarped.pixel_size * self.params.plane_distance;
+        let exemplar = (&input, &self.params.emission);
+        let pixel = pattern.pixel_size(at_distance, exemplar, surface, job.part(0.1, 0.15))?;
         let grid = pattern.texel_grid(surface, pixel, self.params.max_texels)?;
         let params = emission::Params {
             width: grid.width,
