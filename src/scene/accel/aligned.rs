@@ -24,8 +24,8 @@ impl Aligned {
         // Zero times an infinity or NaN is NaN.
         let is_finite = (origin * 0.0 + direction * 0.0).cmpeq(Vec4::ZERO).all();
         let is_dominant = size.cmpeq(Vec4::splat(along));
-        let divisor = size.max(Vec4::splat(along * 1e-12)).copysign(direction);
-        let inverse = finite(Vec4::ONE / divisor);
+        let most = finite(Vec4::splat(1e12 / along));
+        let inverse = (Vec4::ONE / direction).max(-most).min(most);
         (is_finite && along > 0.0 && ray.t_max > 0.0).then_some(Self { origin, direction, inverse, is_dominant })
     }
 

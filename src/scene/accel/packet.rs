@@ -37,7 +37,34 @@ impl Packet {
     /// Mask of the triangles hit at distances in `(0, t_max]`, distances within rounding of 0 left out.
     #[inline(always)]
     pub fn intersect<L: Lanes>(&self, ray: &TriangleRay, t_max: f32) -> (u32, PacketHits<L>) {
-        // Move the origin of space to the ray's, and shear it so that the ray runs along the third axis.
+        let [x, y, z] = self.sheared::<L>(ray);
+        let mut edge = edges(&x, &y);
+        let mut hit = inside(&edge);
+        let zero = L::splat(0.0);
+        if L::bits(hit) == 0 {
+            return (0, PacketHits { t: zero, u: zero, v: zero });
+        }
+        // Only those that came out as zero are settled in f64: the neighbour across the edge has the same value with the
+        // other sign, whichever way it was found. (A zero between edges of unlike signs is outside either way.)
+        if L::bits(L::or(L::or(edge[0].eq(zero), edge[1].eq(zero)), edge[2].eq(zero))) != 0 {
+            edge = self.settled_edges(ray);
+            hit = inside(&edge);
+        }
+        // Distances, from those of the corners. A determinant of zero gives a NaN or an infinity, which fail below.
+        let corner = z.map(|z| z.mul(L::splat(ray.shear[2])));
+        let reciprocal = L::splat(1.0).div(edge[0].add(edge[1]).add(edge[2]));
+        let (b0, u, v) = (edge[0].mul(reciprocal), edge[1].mul(reciprocal), edge[2].mul(reciprocal));
+        let t = b0.mul(corner[0]).add(u.mul(corner[1])).add(v.mul(corner[2]));
+        // A hit nearer than its own rounding error is the surface the ray starts on.
+        let farthest = corner[0].abs().max(corner[1].abs()).max(corner[2].abs());
+        let far_enough = farthest.mul(L::splat(NEAREST)).lt(t);
+        let hit = L::and(L::and(hit, far_enough), t.le(L::splat(t_max)));
+        (L::bits(hit), PacketHits { t, u, v })
+    }
+
+    /// Coordinates of the corners where the ray starts at the origin and runs along the third axis.
+    #[inline(always)]
+    fn sheared<L: Lanes>(&self, ray: &TriangleRay) -> [[L; 3]; 3] {
         let relative = |corner: usize, k: usize| {
             // SAFETY: `axes` is a permutation of 0, 1, 2.
             let row = unsafe { self.corners[corner].get_unchecked(ray.axes[k]) };
@@ -45,37 +72,27 @@ impl Packet {
         };
         let z = [relative(0, 2), relative(1, 2), relative(2, 2)];
         let sheared = |corner: usize, k: usize| relative(corner, k).sub(z[corner].mul(L::splat(ray.shear[k])));
-        let x = [sheared(0, 0), sheared(1, 0), sheared(2, 0)];
-        let y = [sheared(0, 1), sheared(1, 1), sheared(2, 1)];
-        // Scaled barycentric coordinates: on which side of each edge the ray passes.
-        let side = |a: usize, b: usize| x[a].mul(y[b]).sub(y[a].mul(x[b]));
-        let mut edge = [side(2, 1), side(0, 2), side(1, 0)];
-        let zero = L::splat(0.0);
-        let inside = |edge: &[L; 3]| {
-            let least = edge[0].min(edge[1]).min(edge[2]);
-            let most = edge[0].max(edge[1]).max(edge[2]);
-            L::or(zero.le(least), most.le(zero))
-        };
-        let mut hit = inside(&edge);
-        if L::bits(hit) == 0 {
-            return (0, PacketHits { t: zero, u: zero, v: zero });
-        }
-        // Only those that came out as zero are settled in f64: the neighbour across the edge has the same value with the
-        // other sign, whichever way it was found. (A zero between edges of unlike signs is outside either way.)
-        if L::bits(L::or(L::or(edge[0].eq(zero), edge[1].eq(zero)), edge[2].eq(zero))) != 0 {
-            edge = settle_zeros(&x, &y, &edge);
-            hit = inside(&edge);
-        }
-        let determinant = edge[0].add(edge[1]).add(edge[2]);
-        // Distances, from the depths of the corners. A determinant of zero gives a NaN or an infinity, which fail below.
-        let reciprocal = L::splat(1.0).div(determinant);
-        let (b0, u, v) = (edge[0].mul(reciprocal), edge[1].mul(reciprocal), edge[2].mul(reciprocal));
-        let t = b0.mul(z[0]).add(u.mul(z[1])).add(v.mul(z[2])).mul(L::splat(ray.shear[2]));
-        // A hit nearer than its own rounding error is the surface the ray starts on.
-        let depth = z[0].abs().max(z[1].abs()).max(z[2].abs());
-        let far_enough = depth.mul(L::splat(ray.nearest)).lt(t);
-        let hit = L::and(L::and(hit, far_enough), t.le(L::splat(t_max)));
-        (L::bits(hit), PacketHits { t, u, v })
+        [[sheared(0, 0), sheared(1, 0), sheared(2, 0)], [sheared(0, 1), sheared(1, 1), sheared(2, 1)], z]
+    }
+
+    /// The edge functions with their zeros computed without cancellation: products of two `f32` are exact in `f64`, so the
+    /// sign is. It starts from the corners again, so that those who need it not need not keep them.
+    #[cold]
+    #[inline(never)]
+    fn settled_edges<L: Lanes>(&self, ray: &TriangleRay) -> [L; 3] {
+        let [x, y, _] = self.sheared::<L>(ray);
+        let edge = edges(&x, &y).map(L::store);
+        let (x, y) = (x.map(L::store), y.map(L::store));
+        [(2, 1), (0, 2), (1, 0)].map(|(a, b)| {
+            let mut row = edge[3 - a - b];
+            for lane in 0..WIDTH {
+                if row.0[lane] == 0.0 {
+                    let product = |p: &Row, q: &Row| f64::from(p.0[lane]) * f64::from(q.0[lane]);
+                    row.0[lane] = (product(&x[a], &y[b]) - product(&y[a], &x[b])) as f32;
+                }
+            }
+            L::load(&row)
+        })
     }
 
     #[inline(always)]
@@ -84,23 +101,19 @@ impl Packet {
     }
 }
 
-/// The edge functions with their zeros computed without cancellation: products of two `f32` are exact in `f64`, so the
-/// sign is.
-#[cold]
-#[inline(never)]
-fn settle_zeros<L: Lanes>(x: &[L; 3], y: &[L; 3], edge: &[L; 3]) -> [L; 3] {
-    let (x, y) = (x.map(L::store), y.map(L::store));
-    let exact = |found: L, a: usize, b: usize| {
-        let mut row = found.store();
-        for lane in 0..WIDTH {
-            if row.0[lane] == 0.0 {
-                let product = |p: &Row, q: &Row| f64::from(p.0[lane]) * f64::from(q.0[lane]);
-                row.0[lane] = (product(&x[a], &y[b]) - product(&y[a], &x[b])) as f32;
-            }
-        }
-        L::load(&row)
-    };
-    [exact(edge[0], 2, 1), exact(edge[1], 0, 2), exact(edge[2], 1, 0)]
+/// Scaled barycentric coordinates: on which side of each edge the ray passes.
+#[inline(always)]
+fn edges<L: Lanes>(x: &[L; 3], y: &[L; 3]) -> [L; 3] {
+    let side = |a: usize, b: usize| x[a].mul(y[b]).sub(y[a].mul(x[b]));
+    [side(2, 1), side(0, 2), side(1, 0)]
+}
+
+#[inline(always)]
+fn inside<L: Lanes>(edge: &[L; 3]) -> L::Mask {
+    let zero = L::splat(0.0);
+    let least = edge[0].min(edge[1]).min(edge[2]);
+    let most = edge[0].max(edge[1]).max(edge[2]);
+    L::or(zero.le(least), most.le(zero))
 }
 
 pub(super) struct PacketHits<L> {
@@ -137,8 +150,6 @@ pub(super) struct TriangleRay {
     origin: [f32; 3],
     axes: [usize; 3],
     shear: [f32; 3],
-    /// What a triangle's depth is multiplied by to give the least distance.
-    nearest: f32,
 }
 
 impl TriangleRay {
@@ -152,7 +163,6 @@ impl TriangleRay {
             origin: [origin[x], origin[y], origin[z]],
             axes: [x, y, z],
             shear: [d[x] * inverse, d[y] * inverse, inverse],
-            nearest: inverse.abs() * NEAREST,
         }
     }
 }
