@@ -7,7 +7,7 @@
 //! The tree is cut into parts near its root, which are done in parallel. Where it is cut depends on the tree alone.
 
 use super::costs::{Binary, Branch, Content, Scale, Source, distribute};
-use super::lines::Lines;
+use super::lines::{Draft, Lines};
 use super::node::{Child, Node};
 use super::packet::{Packet, WIDTH};
 use super::{Accel, pages};
@@ -57,8 +57,8 @@ pub(super) fn run(source: &Source, accel: &mut Accel, job: Job) -> Result<()> {
     accel.root = top.root;
     accel.stack_need = accel.stack_need.max(top.stack_need);
     done.insert(0, top);
-    let parts: Vec<_> = done.iter().map(|wide| wide.lines.as_slice()).collect();
-    accel.lines = Lines::of(pages::join(&parts)?);
+    let drafts: Vec<Draft> = done.into_iter().map(|wide| wide.lines).collect();
+    accel.lines = Lines::join(&drafts)?;
     Ok(())
 }
 
@@ -96,7 +96,7 @@ type Place = (usize, usize);
 /// Wide nodes of a subtree.
 #[derive(Default)]
 struct Wide {
-    lines: Lines,
+    lines: Draft,
     root: Child,
     /// Where each node is.
     nodes: Vec<usize>,
@@ -146,7 +146,7 @@ impl Choice<'_> {
 
     /// The wide subtree of a place; within other parts than its own, children are left to be done if `leave`.
     fn widen(&self, root: Place, leave: bool) -> Result<Wide> {
-        let mut wide = Wide { lines: Lines::with_room(self.branch(root).lines())?, ..Wide::default() };
+        let mut wide = Wide { lines: Draft::with_room(self.branch(root).lines())?, ..Wide::default() };
         if self.is_packet(root) {
             wide.root = Child::of_packet(wide.lines.push(&self.packet(&self.triangles(root)))?);
             return Ok(wide);

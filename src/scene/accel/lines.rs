@@ -5,17 +5,21 @@
 
 use super::node::Node;
 use super::packet::Packet;
-use super::pages;
+use super::pages::{self, Pages};
 use crate::error::Result;
+use std::ops::DerefMut;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(64))]
 pub(super) struct Line([u32; 16]);
 
 #[derive(Default)]
-pub(super) struct Lines {
-    list: Vec<Line>,
+pub(super) struct Lines<List = Pages<Line>> {
+    list: List,
 }
+
+/// Lines that more are added to.
+pub(super) type Draft = Lines<Vec<Line>>;
 
 /// What may lie in lines: whole ones, of plain numbers, any bits of which are valid.
 ///
@@ -32,15 +36,29 @@ const fn lines_of<T>() -> usize {
     size_of::<T>() / size_of::<Line>()
 }
 
-impl Lines {
-    pub fn of(list: Vec<Line>) -> Self {
-        Self { list }
-    }
-
+impl Draft {
     pub fn with_room(len: usize) -> Result<Self> {
         Ok(Self { list: pages::reserve(len)? })
     }
 
+    /// Appends a node or a packet; gives its line.
+    pub fn push<T: Plain>(&mut self, item: &T) -> Result<usize> {
+        let line = self.list.len();
+        pages::make_room(&mut self.list, lines_of::<T>())?;
+        // SAFETY: `T` is plain, and as large and aligned as these.
+        self.list.extend_from_slice(unsafe { std::slice::from_raw_parts((&raw const *item).cast(), lines_of::<T>()) });
+        Ok(line)
+    }
+}
+
+impl Lines {
+    pub fn join(drafts: &[Draft]) -> Result<Self> {
+        let parts: Vec<&[Line]> = drafts.iter().map(Draft::as_slice).collect();
+        Ok(Self { list: Pages::join(&parts)? })
+    }
+}
+
+impl<List: DerefMut<Target = [Line]>> Lines<List> {
     pub fn as_slice(&self) -> &[Line] {
         &self.list
     }
@@ -52,15 +70,6 @@ impl Lines {
     /// Memory held.
     pub fn bytes(&self) -> usize {
         size_of_val(&*self.list)
-    }
-
-    /// Appends a node or a packet; gives its line.
-    pub fn push<T: Plain>(&mut self, item: &T) -> Result<usize> {
-        let line = self.list.len();
-        pages::make_room(&mut self.list, lines_of::<T>())?;
-        // SAFETY: `T` is plain, and as large and aligned as these.
-        self.list.extend_from_slice(unsafe { std::slice::from_raw_parts((&raw const *item).cast(), lines_of::<T>()) });
-        Ok(line)
     }
 
     pub fn get_mut<T: Plain>(&mut self, line: usize) -> &mut T {

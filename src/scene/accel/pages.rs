@@ -8,22 +8,81 @@ use crate::error::{Error, ErrorKind, Result};
 use rayon::prelude::*;
 use std::hint::black_box;
 use std::mem::MaybeUninit;
+use std::ops::{Deref, DerefMut};
 
-/// All parts one after the other, copied in parallel.
-pub(super) fn join<T: Send + Sync + Copy>(parts: &[&[T]]) -> Result<Vec<T>> {
-    let len = parts.iter().map(|part| part.len()).sum();
-    let mut all = room(len)?;
-    let mut rest: &mut [MaybeUninit<T>] = &mut all.spare_capacity_mut()[..len];
-    let mut targets = Vec::with_capacity(parts.len());
-    for &part in parts {
-        let (target, after) = rest.split_at_mut(part.len());
-        targets.push((part, target));
-        rest = after;
+/// Bytes of a huge page.
+const HUGE: usize = 2 << 20;
+/// Bytes from which on a huge page takes no longer to get than the small ones it replaces.
+const WORTH: usize = HUGE / 4;
+
+/// A finished list that starts with a huge page, if it is long enough for one.
+pub(super) struct Pages<T> {
+    room: Vec<MaybeUninit<T>>,
+    first: usize,
+    len: usize,
+}
+
+impl<T> Default for Pages<T> {
+    fn default() -> Self {
+        Self { room: Vec::new(), first: 0, len: 0 }
     }
-    targets.into_par_iter().for_each(|(part, target)| _ = target.write_copy_of_slice(part));
-    // SAFETY: the targets make up the first `len` items and each of them was written.
-    unsafe { all.set_len(len) };
-    Ok(all)
+}
+
+impl<T: Send + Sync + Copy> Pages<T> {
+    /// All parts one after the other, copied in parallel.
+    pub fn join(parts: &[&[T]]) -> Result<Self> {
+        let len = parts.iter().map(|part| part.len()).sum();
+        let (mut room, first) = room_on_huge_pages(len)?;
+        let mut rest = &mut room[first..first + len];
+        let mut targets = Vec::with_capacity(parts.len());
+        for &part in parts {
+            let (target, after) = rest.split_at_mut(part.len());
+            targets.push((part, target));
+            rest = after;
+        }
+        targets.into_par_iter().for_each(|(part, target)| _ = target.write_copy_of_slice(part));
+        Ok(Self { room, first, len })
+    }
+}
+
+impl<T> Deref for Pages<T> {
+    type Target = [T];
+
+    #[inline(always)]
+    fn deref(&self) -> &[T] {
+        // SAFETY: `join` wrote that many items there.
+        unsafe { std::slice::from_raw_parts(self.room.as_ptr().add(self.first).cast(), self.len) }
+    }
+}
+
+impl<T> DerefMut for Pages<T> {
+    fn deref_mut(&mut self) -> &mut [T] {
+        // SAFETY: as above.
+        unsafe { std::slice::from_raw_parts_mut(self.room.as_mut_ptr().add(self.first).cast(), self.len) }
+    }
+}
+
+/// Room for a list, and where in it the list is to start. What lies around it is never touched, and so takes no memory.
+fn room_on_huge_pages<T>(len: usize) -> Result<(Vec<MaybeUninit<T>>, usize)> {
+    const { assert!(HUGE.is_multiple_of(size_of::<T>())) };
+    let bytes = len * size_of::<T>();
+    // The last page is a huge one too where most of its small ones would be needed.
+    let huge = if bytes % HUGE >= WORTH { bytes.next_multiple_of(HUGE) } else { bytes / HUGE * HUGE };
+    let around = if huge == 0 { 0 } else { 2 * HUGE / size_of::<T>() };
+    let mut room = reserve::<MaybeUninit<T>>(len.saturating_add(around))?;
+    // SAFETY: such items need not be initialised.
+    unsafe { room.set_len(len + around) };
+    if huge == 0 {
+        return Ok((room, 0));
+    }
+    let first = (room.as_ptr() as usize).wrapping_neg() % HUGE / size_of::<T>();
+    #[cfg(target_os = "linux")]
+    // SAFETY: the range is part of one allocation. The advice changes nothing that can be observed but speed, and where
+    // it is not taken, nothing at all: its result does not matter.
+    unsafe {
+        libc::madvise(room.as_mut_ptr().add(first).cast(), huge, libc::MADV_HUGEPAGE);
+    }
+    Ok((room, first))
 }
 
 /// An error where there is no room for so many bytes.
@@ -65,24 +124,6 @@ pub(super) fn reserve<T>(len: usize) -> Result<Vec<T>> {
 fn no_room<T>(len: usize) -> Error {
     let mib = (len as f64) * size_of::<T>() as f64 / (1 << 20) as f64;
     Error::new(ErrorKind::OutOfMemory, format!("could not allocate {mib:.1} MiB"))
-}
-
-/// The same on huge pages.
-fn room<T>(len: usize) -> Result<Vec<T>> {
-    let list = reserve::<T>(len)?;
-    #[cfg(target_os = "linux")]
-    {
-        // Whole huge pages inside of it only.
-        const HUGE: usize = 2 << 20;
-        let start = (list.as_ptr() as usize).next_multiple_of(HUGE);
-        let end = (list.as_ptr() as usize + len * size_of::<T>()) / HUGE * HUGE;
-        if start < end {
-            // SAFETY: the range is part of one allocation. The advice changes nothing that can be observed but speed, and
-            // where it is not taken, nothing at all: its result does not matter.
-            unsafe { libc::madvise(start as *mut libc::c_void, end - start, libc::MADV_HUGEPAGE) };
-        }
-    }
-    Ok(list)
 }
 
 #[cfg(test)]
