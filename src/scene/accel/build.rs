@@ -4,13 +4,13 @@ use super::collapse;
 use super::costs::Source;
 use super::lines::Lines;
 use super::node::Child;
+use super::reinsert::Reinsertion;
 use super::{Accel, SHORT_STACK, pages, units};
 use crate::error::{Error, Result};
 use crate::job::Job;
 use glam::{Vec3, Vec4};
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
-use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 
 /// Bytes that the builder of the binary tree takes per leaf, with a margin: boxes (32) and indices (4); two lists of nodes
@@ -20,6 +20,9 @@ const BUILDER_BYTES: usize = 256;
 /// Nodes that the first round of reinsertion tries to move, within limits of 8 and 16 % of all: more make a better
 /// tree, but take their time.
 const REINSERTED: f32 = 13_000.0;
+/// Units from which on the structure is larger than caches. There each node that a ray is saved saves it a wait for
+/// memory, so that as many are tried as in small scenes.
+const BEYOND_CACHES: usize = 1 << 19;
 /// Rounds of reinsertion, as shares of the first; the largest nodes are tried in every one. More of them gain nothing.
 const ROUNDS: [f32; 3] = [1.0, 0.2, 0.1];
 
@@ -71,8 +74,12 @@ fn binary_tree(boxes: &[Aabb], job: Job) -> Result<Bvh2> {
         PlocBuilder::with_capacity(boxes.len()).build(PlocSearchDistance::Low, boxes, indices, SortPrecision::U64, 0);
     job.check()?;
     job.report(0.7);
-    let share = (REINSERTED / boxes.len() as f32).clamp(0.08, 0.16);
-    ReinsertionOptimizer::default().run(&mut tree, share, Some(ROUNDS.to_vec()));
+    let nodes = tree.nodes.len();
+    let share = if boxes.len() < BEYOND_CACHES { (REINSERTED / boxes.len() as f32).clamp(0.08, 0.16) } else { 0.16 };
+    let mut reinsertion = Reinsertion::new(&mut tree)?;
+    for round in ROUNDS {
+        reinsertion.round((nodes as f32 * share * round) as usize, job)?;
+    }
     job.check()?;
     job.report(1.0);
     Ok(tree)

@@ -1,7 +1,8 @@
 //! Acceleration structure over triangles: nearest hits and occlusion.
 //!
-//! A binary tree is built by obvhs (parallel locally-ordered clustering, Meister and Bittner 2018, with reinsertion,
-//! 2022) and collapsed into nodes of eight children whose leaves hold up to eight triangles, tested at once.
+//! A binary tree is built by obvhs (parallel locally-ordered clustering, Meister and Bittner 2018), improved by
+//! reinsertion (the same authors, 2018) and collapsed into nodes of eight children whose leaves hold up to eight
+//! triangles, tested at once.
 //!
 //! The triangle test is watertight (Woop, Benthin and Wald 2013), the box test conservative to match it: a ray never
 //! slips through a shared edge or vertex. The nearest hit is a function of the triangles alone: equal distances are
@@ -18,6 +19,7 @@ mod lines;
 mod node;
 mod packet;
 mod pages;
+mod reinsert;
 mod stack;
 mod units;
 
