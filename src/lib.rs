@@ -39,6 +39,7 @@ pub mod job;
 pub mod photometry;
 pub mod rng;
 pub mod scene;
+mod simd;
 
 pub mod emission;
 pub mod features;

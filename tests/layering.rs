@@ -9,15 +9,16 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("job", &["error"]),
     ("exec", &["error", "job"]),
     ("rng", &[]),
-    ("image", &["error", "job", "exec"]),
+    ("simd", &[]),
+    ("image", &["error", "job", "exec", "simd"]),
     ("geometry", &["error", "rng"]),
     ("photometry", &["error", "image"]),
     ("scene", &["error", "job", "exec", "rng", "image", "geometry"]),
     ("render", &["error", "job", "exec", "rng", "image", "geometry", "scene"]),
     ("patch", &["error", "job", "exec", "rng", "image"]),
     // Stages: never each other. Segmentation knows how many channels the features have.
-    ("features", &["error", "job", "exec", "rng", "image", "geometry"]),
-    ("segment", &["error", "job", "exec", "rng", "image", "geometry", "features"]),
+    ("features", &["simd", "error", "job", "exec", "rng", "image", "geometry"]),
+    ("segment", &["simd", "error", "job", "exec", "rng", "image", "geometry", "features"]),
     ("rectify", &["error", "job", "exec", "rng", "image", "geometry"]),
     ("emission", &["error", "job", "exec", "rng", "image", "geometry", "patch"]),
     ("relight", &["error", "job", "exec", "rng", "image", "geometry", "scene", "render"]),
@@ -49,6 +50,8 @@ const ARROWS: &[(&str, &[&str])] = &[
 
 /// Files that may contain `unsafe` beside `ffi`: SIMD kernels, chosen at run time, and the memory they work on.
 const UNSAFE: &[&str] = &[
+    "simd.rs",
+    "image/pages.rs",
     "scene/accel/lanes.rs",
     "scene/accel/lines.rs",
     "scene/accel/mod.rs",

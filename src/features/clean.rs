@@ -4,21 +4,25 @@ use crate::error::Result;
 use crate::exec;
 use crate::image::Image;
 use crate::job::Job;
+use std::borrow::Cow;
 
 /// Values above this are as good as infinite: their squares would overflow.
 const LARGEST: f32 = 1e18;
 
-/// The photo as RGB with bad pixels replaced by the nearest good one of their row or column (black if there is none),
-/// and how many they were.
-pub fn clean(photo: &Image, job: Job) -> Result<(Image, usize)> {
-    let mut rgb = photo.to_rgb()?;
-    let is_good = |p: &[f32]| p.iter().all(|v| (0.0..=LARGEST).contains(v));
-    let width = rgb.width;
-    let bad_in_rows = exec::map(rgb.height, job, |y| rgb.row(y).chunks_exact(3).filter(|p| !is_good(p)).count())?;
+/// The photo with bad pixels replaced by the nearest good one of their row or column (black if there is none), as RGB if
+/// there were any, and how many they were.
+pub fn clean<'a>(photo: &'a Image, job: Job) -> Result<(Cow<'a, Image>, usize)> {
+    let is_good = |p: &[f32]| p[..p.len().min(3)].iter().all(|v| (0.0..=LARGEST).contains(v));
+    let (width, channels) = (photo.width, if photo.channels < 3 { 1 } else { 3 });
+    let bad_in_rows = exec::map(photo.height, job, |y| {
+        let pixels = photo.row(y).chunks_exact(photo.channels);
+        pixels.map(|p| usize::from(!is_good(&p[..channels]))).sum::<usize>()
+    })?;
     let non_finite: usize = bad_in_rows.iter().sum();
     if non_finite == 0 {
-        return Ok((rgb, 0));
+        return Ok((Cow::Borrowed(photo), 0));
     }
+    let mut rgb = photo.to_rgb()?;
     // Along rows first; rows without any good pixel are then copied from the nearest row that has one.
     let good_rows: Vec<usize> = (0..rgb.height).filter(|&y| bad_in_rows[y] < width).collect();
     exec::for_rows(&mut rgb.data, width * 3, job, |y, row| {
@@ -38,7 +42,7 @@ pub fn clean(photo: &Image, job: Job) -> Result<(Image, usize)> {
             rgb.data.copy_within(from..from + 3 * width, y * 3 * width);
         }
     }
-    Ok((rgb, non_finite))
+    Ok((Cow::Owned(rgb), non_finite))
 }
 
 /// The element of a sorted, non-empty list nearest to `x`.

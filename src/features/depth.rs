@@ -21,6 +21,8 @@ pub struct Surface {
 const NEUTRAL_CONFIDENCE: f32 = 0.05;
 /// Depths are kept within this factor of the median: beyond it there is nothing to tell apart.
 const LARGEST_RATIO: f32 = 1e4;
+/// Most depths that the scale is found from.
+const QUANTILE_SAMPLES: usize = 1 << 16;
 
 /// The caller's depth, scaled so that its 2 % quantile lies on the near plane, holes filled from their surroundings.
 pub fn from_map(map: &DepthMap, frustum: &Frustum, radius: usize, job: Job) -> Result<Surface> {
@@ -43,7 +45,7 @@ pub fn from_map(map: &DepthMap, frustum: &Frustum, radius: usize, job: Job) -> R
     })?;
 
     // The scale: only ratios of depth mean anything.
-    let mut known: Vec<f32> = inverse.data.iter().copied().filter(|&w| w > 0.0 && w.is_finite()).collect();
+    let mut known = sample_known(&inverse, job.part(0.1, 0.15))?;
     if known.is_empty() {
         return Err(Error::degenerate(format!(
             "depth has no positive finite value in its {width} x {height} pixels; leave it out to use the built-in layout"
@@ -56,19 +58,40 @@ pub fn from_map(map: &DepthMap, frustum: &Frustum, radius: usize, job: Job) -> R
     let (median, nearest) = (quantile(0.5), quantile(0.98));
     let (low, high) = (median / LARGEST_RATIO, median.min(f32::MAX / LARGEST_RATIO) * LARGEST_RATIO);
     let nearest = nearest.clamp(low, high);
-    let mut confidence = Image::new(width, height, 1)?;
-    for (w, c) in inverse.data.iter_mut().zip(&mut confidence.data) {
-        if *w > 0.0 {
-            *w = (w.clamp(low, high) / nearest) / frustum.near;
-            *c = 1.0;
+    exec::for_rows(&mut inverse.data, width, job.part(0.15, 0.2), |_, row| {
+        for w in row {
+            *w = if *w > 0.0 { (w.clamp(low, high) / nearest) / frustum.near } else { 0.0 };
         }
-    }
+    })?;
+    let mut confidence = Image::new(width, height, 1)?;
+    exec::for_rows(&mut confidence.data, width, job.part(0.2, 0.25), |y, row| {
+        row.iter_mut().zip(inverse.row(y)).for_each(|(c, &w)| *c = f32::from(w > 0.0));
+    })?;
 
     // Normals from measured pixels only, then the holes.
-    let normals = normals::fit(&inverse, &confidence, frustum, radius, job.part(0.1, 0.8))?;
+    let normals = normals::fit(&inverse, &confidence, frustum, radius, job.part(0.25, 0.8))?;
     let mut surface = Surface { inverse_depth: inverse, normals, confidence };
     fill_holes(&mut surface, job.part(0.8, 1.0))?;
     Ok(surface)
+}
+
+/// Known inverse depths, evenly spaced among all there are, enough for quantiles to a thousandth.
+fn sample_known(inverse: &Image, job: Job) -> Result<Vec<f32>> {
+    let is_known = |w: &&f32| **w > 0.0 && w.is_finite();
+    let counts =
+        exec::map(inverse.height, job, |y| inverse.row(y).iter().map(|w| usize::from(is_known(&w))).sum::<usize>())?;
+    let stride = counts.iter().sum::<usize>().div_ceil(QUANTILE_SAMPLES).max(1);
+    let mut sampled = Vec::with_capacity(QUANTILE_SAMPLES);
+    let mut before = 0usize;
+    for (y, count) in counts.into_iter().enumerate() {
+        // The next of the row is the one that makes a whole number of strides.
+        let skip = before.next_multiple_of(stride) - before;
+        if skip < count {
+            sampled.extend(inverse.row(y).iter().filter(is_known).skip(skip).step_by(stride));
+        }
+        before += count;
+    }
+    Ok(sampled)
 }
 
 /// A guess that knows nothing of the photo but that it is an interior: farthest at mid-height, nearer towards the

@@ -20,11 +20,13 @@
 //!
 //! Not modelled: lens distortion, and anything but one box for the built-in layout (furniture, beams, two-part rooms).
 
+mod assemble;
 mod clean;
 mod depth;
 mod frustum;
 mod layout;
 mod normals;
+mod plane_fit;
 mod score;
 #[cfg(test)]
 mod tests;
@@ -35,10 +37,9 @@ pub use layout::Layout;
 use crate::error::{Error, Result, check_range};
 use crate::exec;
 use crate::geometry::{Perspective, Segment};
-use crate::image::{Image, colour};
+use crate::image::Image;
 use crate::job::Job;
-use depth::Surface;
-use glam::Vec3;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Number of feature channels: L*, a*, b*, depth, x, y, z, and the normal's x, y, z.
 pub const CHANNELS: usize = 10;
@@ -136,12 +137,10 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Features> {
         None => Frustum::paper(params.near, params.far),
     };
 
-    // Colour.
     let (photo, non_finite) = clean::clean(input.photo, job.part(0.0, 0.1))?;
-    let lab = colour::image_to_lab(&photo, job.part(0.1, 0.3))?;
 
     // Depth and normals, from the best source there is.
-    let geometry_job = job.part(0.3, 0.8);
+    let geometry_job = job.part(0.1, 0.7);
     let radius = if params.normal_radius > 0 { params.normal_radius } else { (width / 100).clamp(2, 64) };
     let (surface, depth_source, layout) = match (&input.depth, &input.room) {
         (Some(map), _) => {
@@ -156,24 +155,19 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Features> {
         (None, None) => (depth::neutral(width, height, &frustum, radius, geometry_job)?, DepthSource::Neutral, None),
     };
 
-    // Positions by Eq. 1, turned into room axes.
+    // All channels together, in room axes.
     let to_room = perspective.map_or(glam::Mat3::IDENTITY, |p| layout::facing_axes(p).transpose().as_mat3());
     let mut image = Image::new(width, height, CHANNELS)?;
-    let Surface { inverse_depth, normals, confidence } = surface;
-    exec::for_rows(&mut image.data, width * CHANNELS, job.part(0.8, 1.0), |y, row| {
-        for (x, out) in row.chunks_exact_mut(CHANNELS).enumerate() {
-            let screen_depth = frustum.screen_depth(inverse_depth.pixel(x, y)[0]);
-            let ndc = frustum.ndc(x, y, width, height);
-            let position = to_room * frustum.unproject(Vec3::new(ndc.x, ndc.y, screen_depth));
-            let normal = to_room * Vec3::from_slice(normals.pixel(x, y));
-            out[..3].copy_from_slice(lab.pixel(x, y));
-            out[3] = screen_depth;
-            position.write_to_slice(&mut out[4..7]);
-            normal.write_to_slice(&mut out[7..10]);
+    let is_finite = AtomicBool::new(true);
+    exec::for_rows(&mut image.data, width * CHANNELS, job.part(0.7, 1.0), |y, row| {
+        assemble::row(&photo, &surface, &frustum, to_room, y, row);
+        if !row.iter().fold(true, |all, v| all & v.is_finite()) {
+            is_finite.store(false, Ordering::Relaxed);
         }
     })?;
-    if image.count_non_finite() > 0 {
+    if !is_finite.into_inner() {
         return Err(Error::argument("the photo holds values beyond 1e30; scale it so that 1 is display white"));
     }
+    let confidence = surface.confidence;
     Ok(Features { image, depth_confidence: confidence, depth_source, layout, non_finite })
 }

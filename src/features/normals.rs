@@ -1,219 +1,121 @@
 //! Normals from the pixel grid: a plane through each pixel's neighbours.
 //!
 //! On a plane `n · p = c` the point of a pixel is `p = z ray`, so that `1/z = (n / c) · ray`: inverse depth is affine
-//! in pixel coordinates, and the plane fit is a linear regression of `1/z` over a window, exact for exact planes. At
-//! depth edges and creases the window must stay on one side: each pixel takes the best of the fits of its own window
-//! and of the eight windows that have it on their border (Kuwahara et al. 1976, with planes for constants).
+//! in pixel coordinates, and the plane fit is a linear regression of `1/z` over a window (see `plane_fit`), exact for exact
+//! planes. At depth edges and creases the window must stay on one side: each pixel takes the best of the fits of its own
+//! window and of the eight windows that have it on their border (Kuwahara et al. 1976, with planes for constants).
 
 use super::Frustum;
+use super::plane_fit::{self, FitRow};
 use crate::error::Result;
 use crate::exec;
-use crate::geometry::linear;
 use crate::image::Image;
 use crate::job::Job;
-use glam::Vec3;
+use crate::simd::widest;
 
-/// Rows worked on together: their horizontal sums are shared.
-const BAND: usize = 32;
+/// Rows worked on together: their sums slide down from one to the next.
+const BAND: usize = 64;
 /// A shifted window must fit this much better than the centred one to be taken.
 const PREFER_CENTRED: f32 = 0.5;
+/// Steps, in radii, to the centres of the windows that hold a pixel; of equal fits the first is taken.
+const SHIFTS: [[isize; 2]; 9] = [[0, 0], [-1, -1], [1, -1], [-1, 1], [1, 1], [0, -1], [-1, 0], [1, 0], [0, 1]];
 
-/// Sums over a row of a window, `i` being the column offset and `w` the inverse depth.
-#[derive(Clone, Copy, Default)]
-struct RowSums {
-    n: f64,
-    i: f64,
-    ii: f64,
-    w: f64,
-    iw: f64,
-    ww: f64,
+/// The best plane so far of each pixel of a row: its cost, and the steps of inverse depth along it.
+struct Best {
+    cost: Vec<f32>,
+    dx: Vec<f32>,
+    dy: Vec<f32>,
 }
 
-impl RowSums {
-    fn of(i: f64, w: f64) -> Self {
-        Self { n: 1.0, i, ii: i * i, w, iw: i * w, ww: w * w }
-    }
-
-    fn plus(&self, other: &Self, sign: f64) -> Self {
-        Self {
-            n: self.n + sign * other.n,
-            i: self.i + sign * other.i,
-            ii: self.ii + sign * other.ii,
-            w: self.w + sign * other.w,
-            iw: self.iw + sign * other.iw,
-            ww: self.ww + sign * other.ww,
-        }
-    }
-
-    /// The same sums with columns counted from `x`.
-    fn about(&self, x: f64) -> Self {
-        Self {
-            i: self.i - x * self.n,
-            ii: self.ii - 2.0 * x * self.i + x * x * self.n,
-            iw: self.iw - x * self.w,
-            ..*self
-        }
-    }
-}
-
-/// A regression plane about its pixel: `w ≈ value + dx i + dy j`, and the mean square of what it leaves.
+/// How the rays of a frustum change from pixel to pixel of a row.
 #[derive(Clone, Copy)]
-struct Fit {
-    value: f32,
-    dx: f32,
-    dy: f32,
-    residual: f32,
+struct Rays {
+    /// x of the first ray, and of each step.
+    first_x: f32,
+    step_x: f32,
+    /// y of all, and its step to the next row.
+    y: f32,
+    step_y: f32,
 }
-
-const NO_FIT: Fit = Fit { value: 0.0, dx: 0.0, dy: 0.0, residual: f32::INFINITY };
 
 /// Unit normals in camera space, towards the camera. Pixels with confidence 0 do not count and face the camera.
 pub fn fit(inverse_depth: &Image, confidence: &Image, frustum: &Frustum, radius: usize, job: Job) -> Result<Image> {
     let (width, height) = (inverse_depth.width, inverse_depth.height);
-    let bands = exec::map(height.div_ceil(BAND), job.part(0.0, 0.7), |band| {
-        fit_band(inverse_depth, confidence, radius, band * BAND, ((band + 1) * BAND).min(height))
+    let bands = exec::map(height.div_ceil(BAND), job.part(0.0, 0.6), |band| {
+        plane_fit::band(inverse_depth, confidence, radius, band * BAND..((band + 1) * BAND).min(height))
     })?;
-    let fit_at = |x: usize, y: usize| bands[y / BAND][(y % BAND) * width + x];
+    let fits_of = |y: usize| FitRow::of(&bands[y / BAND], y % BAND, width);
 
     let mut normals = Image::new(width, height, 3)?;
+    let origin = frustum.ray(frustum.ndc(0, 0, width, height));
+    let step_x = (frustum.right - frustum.left) / (frustum.near * width as f32);
+    let step_y = (frustum.bottom - frustum.top) / (frustum.near * height as f32);
     let r = radius as isize;
-    // Steps of normalised device coordinates, and of rays, per pixel.
-    let ray_step = (frustum.right - frustum.left) / (frustum.near * width as f32);
-    let ray_step_y = (frustum.bottom - frustum.top) / (frustum.near * height as f32);
-    exec::for_rows(&mut normals.data, width * 3, job.part(0.7, 1.0), |y, row| {
-        for (x, out) in row.chunks_exact_mut(3).enumerate() {
-            let mut normal = Vec3::NEG_Z;
-            if confidence.pixel(x, y)[0] > 0.0 {
-                // The best window with this pixel in it, judged also by how well it meets the pixel itself.
-                let w = inverse_depth.pixel(x, y)[0];
-                let (mut best, mut best_cost) = (fit_at(x, y), f32::INFINITY);
-                for (sx, sy) in [(0, 0), (-1, -1), (1, -1), (-1, 1), (1, 1), (0, -1), (-1, 0), (1, 0), (0, 1)] {
-                    let (cx, cy) = (x as isize + sx * r, y as isize + sy * r);
-                    if cx < 0 || cy < 0 || cx >= width as isize || cy >= height as isize {
-                        continue;
-                    }
-                    let fit = fit_at(cx as usize, cy as usize);
-                    let off = fit.value - fit.dx * (sx * r) as f32 - fit.dy * (sy * r) as f32 - w;
-                    let centred = if (sx, sy) == (0, 0) { PREFER_CENTRED } else { 1.0 };
-                    let cost = centred * (fit.residual + off * off / (2.0 * radius as f32 + 1.0));
-                    if cost < best_cost {
-                        (best, best_cost) = (fit, cost);
-                    }
-                }
-                if best_cost.is_finite() {
-                    normal = plane_normal(
-                        best.dx,
-                        best.dy,
-                        w,
-                        ray_step,
-                        ray_step_y,
-                        frustum.ray(frustum.ndc(x, y, width, height)),
-                    );
-                }
+    exec::for_rows(&mut normals.data, width * 3, job.part(0.6, 1.0), |y, row| {
+        // The best window with the pixel in it, judged also by how well it meets the pixel itself.
+        let w = inverse_depth.row(y);
+        let mut best = Best { cost: vec![f32::INFINITY; width], dx: vec![0.0; width], dy: vec![0.0; width] };
+        for [sx, sy] in SHIFTS {
+            let (shift, centre) = (sx * r, y as isize + sy * r);
+            let here = (-shift).max(0) as usize..width.saturating_sub(shift.max(0) as usize);
+            if centre < 0 || centre >= height as isize || here.is_empty() {
+                continue;
             }
-            normal.write_to_slice(out);
+            let there = here.start.wrapping_add_signed(shift)..here.end.wrapping_add_signed(shift);
+            let favour = if (sx, sy) == (0, 0) { PREFER_CENTRED } else { 1.0 };
+            let off_weight = 1.0 / (2.0 * radius as f32 + 1.0);
+            let fits = fits_of(centre as usize).columns(there);
+            let steps = [shift as f32, (sy * r) as f32];
+            prefer(
+                &w[here.clone()],
+                fits,
+                steps,
+                [favour, off_weight],
+                [&mut best.cost[here.clone()], &mut best.dx[here.clone()], &mut best.dy[here]],
+            );
         }
+        let rays = Rays { first_x: origin.x, step_x, y: origin.y + step_y * y as f32, step_y };
+        plane_normals(w, confidence.row(y), &best, rays, row);
     })?;
     Ok(normals)
 }
 
-/// The normal of the plane `1/z = a · ray` from its inverse depth and its steps at a pixel, turned to the camera.
-fn plane_normal(dx: f32, dy: f32, w: f32, step_x: f32, step_y: f32, ray: Vec3) -> Vec3 {
-    let (ax, ay) = (dx / step_x, dy / step_y);
-    let a = Vec3::new(ax, ay, w - ax * ray.x - ay * ray.y);
-    // a · ray = w > 0: `a` points away from the camera.
-    (-a).try_normalize().unwrap_or(Vec3::NEG_Z)
-}
-
-/// The fits of all pixels of rows `from..to`.
-fn fit_band(inverse_depth: &Image, confidence: &Image, radius: usize, from: usize, to: usize) -> Vec<Fit> {
-    let (width, height) = (inverse_depth.width, inverse_depth.height);
-    let (first, last) = (from.saturating_sub(radius), (to + radius).min(height));
-
-    // Along rows: differences of running sums, about each pixel's own column.
-    let mut sums = Vec::with_capacity((last - first) * width);
-    let mut running = Vec::with_capacity(width + 1);
-    for y in first..last {
-        running.clear();
-        let mut s = RowSums::default();
-        running.push(s);
-        for (x, (&w, &c)) in inverse_depth.row(y).iter().zip(confidence.row(y)).enumerate() {
-            if c > 0.0 {
-                s = s.plus(&RowSums::of(x as f64, f64::from(w)), 1.0);
-            }
-            running.push(s);
-        }
-        for x in 0..width {
-            let (a, b) = (x.saturating_sub(radius), (x + radius + 1).min(width));
-            sums.push(running[b].plus(&running[a], -1.0).about(x as f64));
+widest! {
+    /// Takes the fits that cost less than the best so far: `steps` away from them, `weights` of the whole and of how far
+    /// they miss the pixel.
+    fn prefer(w: &[f32], fits: FitRow, steps: [f32; 2], weights: [f32; 2], best: [&mut [f32]; 3]) {
+        let n = w.len();
+        let [cost, dx, dy] = best;
+        let (cost, dx, dy) = (&mut cost[..n], &mut dx[..n], &mut dy[..n]);
+        let (value, fit_dx, fit_dy, residual) =
+            (&fits.value[..n], &fits.dx[..n], &fits.dy[..n], &fits.residual[..n]);
+        for x in 0..n {
+            let off = value[x] - fit_dx[x] * steps[0] - fit_dy[x] * steps[1] - w[x];
+            let new = weights[0] * (residual[x] + off * off * weights[1]);
+            let is_better = new < cost[x];
+            cost[x] = if is_better { new } else { cost[x] };
+            dx[x] = if is_better { fit_dx[x] } else { dx[x] };
+            dy[x] = if is_better { fit_dy[x] } else { dy[x] };
         }
     }
+}
 
-    // Along columns, sums that slide down by a row at a time; then the regression.
-    let row = |y: usize| &sums[(y - first) * width..(y - first + 1) * width];
-    let r = radius as f64;
-    let mut windows = vec![WindowSums::default(); width];
-    let mut fits = Vec::with_capacity((to - from) * width);
-    for y in from..to {
-        if y == from {
-            for k in first..(y + radius + 1).min(height) {
-                let j = k as f64 - y as f64;
-                windows.iter_mut().zip(row(k)).for_each(|(window, sums)| window.add(sums, j, 1.0));
-            }
-        } else {
-            if y > radius {
-                let leaving = row(y - radius - 1);
-                windows.iter_mut().zip(leaving).for_each(|(window, sums)| window.add(sums, -r, -1.0));
-            }
-            windows.iter_mut().for_each(WindowSums::move_down);
-            if y + radius < height {
-                windows.iter_mut().zip(row(y + radius)).for_each(|(window, sums)| window.add(sums, r, 1.0));
-            }
+widest! {
+    /// Normals of planes `1/z = a · ray` from the inverse depth `w` and its steps, turned to the camera.
+    fn plane_normals(w: &[f32], confidence: &[f32], best: &Best, rays: Rays, out: &mut [f32]) {
+        let n = w.len();
+        let (confidence, cost, dx, dy) = (&confidence[..n], &best.cost[..n], &best.dx[..n], &best.dy[..n]);
+        let (per_x, per_y) = (1.0 / rays.step_x, 1.0 / rays.step_y);
+        for (x, out) in out.chunks_exact_mut(3).enumerate().take(n) {
+            // a · ray = w > 0: `a` points away from the camera.
+            let (ax, ay) = (dx[x] * per_x, dy[x] * per_y);
+            let az = w[x] - ax * (rays.first_x + rays.step_x * x as f32) - ay * rays.y;
+            let length = (ax * ax + ay * ay + az * az).sqrt();
+            let is_plane = confidence[x] > 0.0 && cost[x] < f32::INFINITY && length > 0.0 && length < f32::INFINITY;
+            let scale = if is_plane { -1.0 / length } else { 0.0 };
+            out[0] = if is_plane { ax * scale } else { 0.0 };
+            out[1] = if is_plane { ay * scale } else { 0.0 };
+            out[2] = if is_plane { az * scale } else { -1.0 };
         }
-        fits.extend(windows.iter().map(|t| regress(&t.sums, t.j, t.jj, t.ij, t.jw)));
     }
-    fits
-}
-
-/// Sums over a window, `j` being the row offset.
-#[derive(Clone, Copy, Default)]
-struct WindowSums {
-    sums: RowSums,
-    j: f64,
-    jj: f64,
-    ij: f64,
-    jw: f64,
-}
-
-impl WindowSums {
-    /// A row at offset `j` comes (`sign` 1) or goes (-1).
-    fn add(&mut self, row: &RowSums, j: f64, sign: f64) {
-        self.sums = self.sums.plus(row, sign);
-        let j = sign * j;
-        self.j += j * row.n;
-        self.jj += j * j * sign * row.n;
-        self.ij += j * row.i;
-        self.jw += j * row.w;
-    }
-
-    /// Offsets counted from the next row.
-    fn move_down(&mut self) {
-        self.jj += self.sums.n - 2.0 * self.j;
-        self.j -= self.sums.n;
-        self.ij -= self.sums.i;
-        self.jw -= self.sums.w;
-    }
-}
-
-/// Least squares of `w` on `(1, i, j)`, about the means; no fit where the points lie on one line.
-fn regress(t: &RowSums, tj: f64, tjj: f64, tij: f64, tjw: f64) -> Fit {
-    if t.n < 3.0 {
-        return NO_FIT;
-    }
-    let (mi, mj, mw) = (t.i / t.n, tj / t.n, t.w / t.n);
-    let (cii, cij, cjj) = (t.ii - t.n * mi * mi, tij - t.n * mi * mj, tjj - t.n * mj * mj);
-    let (ciw, cjw) = (t.iw - t.n * mi * mw, tjw - t.n * mj * mw);
-    let Some([dx, dy]) = linear::solve([[cii, cij], [cij, cjj]], [ciw, cjw]) else { return NO_FIT };
-    let left = (t.ww - t.n * mw * mw - dx * ciw - dy * cjw).max(0.0) / t.n;
-    Fit { value: (mw - dx * mi - dy * mj) as f32, dx: dx as f32, dy: dy as f32, residual: left as f32 }
 }

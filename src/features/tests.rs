@@ -6,7 +6,7 @@ use crate::exec::Pool;
 use crate::geometry::FocalSource;
 use crate::job::Monitor;
 use crate::rng::Rng;
-use glam::{DMat3, DVec2, DVec3};
+use glam::{DMat3, DVec2, DVec3, Vec3};
 
 fn camera(yaw: f64, pitch: f64, roll: f64, width: usize, height: usize) -> Perspective {
     let to_room = DMat3::from_rotation_y(yaw) * DMat3::from_rotation_x(pitch) * DMat3::from_rotation_z(roll);

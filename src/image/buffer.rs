@@ -1,5 +1,6 @@
 //! The owned image.
 
+use super::pages::prefer_huge;
 use crate::error::{Error, ErrorKind, Result};
 use glam::Vec3;
 
@@ -26,6 +27,7 @@ pub fn try_vec<T: Clone>(len: usize, value: T) -> Result<Vec<T>> {
 pub fn try_with_capacity<T>(len: usize) -> Result<Vec<T>> {
     let mut data = Vec::new();
     data.try_reserve_exact(len).map_err(|_| no_memory::<T>(len))?;
+    prefer_huge(&data);
     Ok(data)
 }
 

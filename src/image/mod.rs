@@ -7,6 +7,7 @@
 mod buffer;
 pub mod colour;
 pub mod io;
+pub(crate) mod pages;
 pub mod patches;
 pub mod pyramid;
 pub mod view;

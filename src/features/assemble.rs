@@ -1,0 +1,75 @@
+//! The last step: colour, depth, positions by Eq. 1 and normals of a row, interleaved.
+
+use super::depth::Surface;
+use super::{CHANNELS, Frustum};
+use crate::image::{Image, colour};
+use crate::simd::widest;
+use glam::{Mat3, Vec2, Vec3};
+
+/// Pixels worked on together: their planes stay in the first-level cache.
+const TILE: usize = 64;
+
+/// A feature of the pixels of a tile.
+type Plane = [f32; TILE];
+
+/// What the geometry of a tile is made from.
+struct Geometry<'a> {
+    inverse_depth: &'a [f32],
+    /// Interleaved.
+    normals: &'a [f32],
+    frustum: &'a Frustum,
+    to_room: Mat3,
+    /// Normalised device coordinates of the first pixel, and the step from one to the next.
+    start: Vec2,
+    step: f32,
+}
+
+/// All channels of row `y`; `to_room` turns camera axes into the room's.
+pub fn row(photo: &Image, surface: &Surface, frustum: &Frustum, to_room: Mat3, y: usize, out: &mut [f32]) {
+    let (width, height) = (photo.width, photo.height);
+    let mut planes = [[0.0; TILE]; CHANNELS];
+    for (t, out) in out.chunks_mut(TILE * CHANNELS).enumerate() {
+        let (x, n) = (t * TILE, out.len() / CHANNELS);
+        let [r, g, b, ..] = &mut planes;
+        let pixels = photo.row(y)[x * photo.channels..][..n * photo.channels].chunks_exact(photo.channels);
+        for (k, p) in pixels.enumerate() {
+            (r[k], g[k], b[k]) = if p.len() < 3 { (p[0], p[0], p[0]) } else { (p[0], p[1], p[2]) };
+        }
+        colour::planes_to_lab(r, g, b);
+        let geometry = Geometry {
+            inverse_depth: &surface.inverse_depth.row(y)[x..x + n],
+            normals: &surface.normals.row(y)[3 * x..3 * (x + n)],
+            frustum,
+            to_room,
+            start: frustum.ndc(x, y, width, height),
+            step: 2.0 / width as f32,
+        };
+        place(&geometry, &mut planes);
+        interleave(&planes, out);
+    }
+}
+
+widest! {
+    fn place(from: &Geometry, planes: &mut [Plane; CHANNELS]) {
+        let [_, _, _, depth, px, py, pz, nx, ny, nz] = planes;
+        let n = from.inverse_depth.len().min(TILE);
+        let (inverse_depth, normals) = (&from.inverse_depth[..n], &from.normals[..3 * n]);
+        for k in 0..n {
+            let screen_depth = from.frustum.screen_depth(inverse_depth[k]);
+            let ndc = Vec3::new(from.start.x + from.step * k as f32, from.start.y, screen_depth);
+            let position = from.to_room * from.frustum.unproject(ndc);
+            let normal = from.to_room * Vec3::new(normals[3 * k], normals[3 * k + 1], normals[3 * k + 2]);
+            depth[k] = screen_depth;
+            (px[k], py[k], pz[k]) = (position.x, position.y, position.z);
+            (nx[k], ny[k], nz[k]) = (normal.x, normal.y, normal.z);
+        }
+    }
+}
+
+fn interleave(planes: &[Plane; CHANNELS], out: &mut [f32]) {
+    for (k, out) in out.chunks_exact_mut(CHANNELS).enumerate().take(TILE) {
+        for (out, plane) in out.iter_mut().zip(planes) {
+            *out = plane[k];
+        }
+    }
+}

@@ -1,0 +1,188 @@
+//! Regression planes of inverse depth over the windows about all pixels, by sums that slide: down the columns from row to
+//! row, and along the rows as differences of running sums. In `f64`, because the differences cancel.
+
+use crate::image::Image;
+use crate::simd::widest;
+use std::ops::Range;
+
+/// Determinants below this share of the product of the variances are those of points on one line. The smallest of points
+/// that are not, with whole coordinates in the largest window, is 1e-9; rounding makes 1e-15.
+const SINGULAR: f64 = 1e-12;
+
+/// The regression planes of a row, each about its own pixel: `w ≈ value + dx i + dy j`, and the mean square of what that
+/// leaves, infinite where there is no plane.
+#[derive(Clone, Copy)]
+pub struct FitRow<'a> {
+    pub value: &'a [f32],
+    pub dx: &'a [f32],
+    pub dy: &'a [f32],
+    pub residual: &'a [f32],
+}
+
+impl<'a> FitRow<'a> {
+    /// Row `y` of what [`band`] gave.
+    pub fn of(band: &'a [f32], y: usize, width: usize) -> Self {
+        let plane = |k: usize| &band[(4 * y + k) * width..(4 * y + k + 1) * width];
+        Self { value: plane(0), dx: plane(1), dy: plane(2), residual: plane(3) }
+    }
+
+    pub fn columns(self, x: Range<usize>) -> Self {
+        let Range { start, end } = x;
+        Self {
+            value: &self.value[start..end],
+            dx: &self.dx[start..end],
+            dy: &self.dy[start..end],
+            residual: &self.residual[start..end],
+        }
+    }
+}
+
+/// Sums over the window's part of each column: `j` is the row offset, `w` the inverse depth.
+struct Columns {
+    n: Vec<f64>,
+    j: Vec<f64>,
+    jj: Vec<f64>,
+    w: Vec<f64>,
+    jw: Vec<f64>,
+    ww: Vec<f64>,
+}
+
+/// Sums over columns before each one, `i` being the column: differences of two are sums over windows. There are as many
+/// places before the first column and after the last as the window reaches beyond them.
+struct Running {
+    /// n, i, ii, j, jj, ij, w, iw, jw, ww.
+    sums: [Vec<f64>; 10],
+    radius: usize,
+}
+
+/// The fits of all pixels of some rows: for each row values, steps along x, steps along y, and residuals (see [`FitRow`]).
+pub fn band(inverse_depth: &Image, confidence: &Image, radius: usize, rows: Range<usize>) -> Vec<f32> {
+    let (width, height) = (inverse_depth.width, inverse_depth.height);
+    let zeros = || vec![0.0; width];
+    let mut columns = Columns { n: zeros(), j: zeros(), jj: zeros(), w: zeros(), jw: zeros(), ww: zeros() };
+    let mut running = Running { sums: std::array::from_fn(|_| vec![0.0; width + 2 * radius + 1]), radius };
+    let mut fits = vec![0.0; 4 * width * rows.len()];
+    let r = radius as f64;
+    for (y, out) in rows.clone().zip(fits.chunks_exact_mut(4 * width)) {
+        if y == rows.start {
+            for k in y.saturating_sub(radius)..(y + radius + 1).min(height) {
+                columns.add(inverse_depth.row(k), confidence.row(k), k as f64 - y as f64, 1.0);
+            }
+        } else {
+            if y > radius {
+                let leaving = y - radius - 1;
+                columns.add(inverse_depth.row(leaving), confidence.row(leaving), -r, -1.0);
+            }
+            move_down(&mut columns);
+            if y + radius < height {
+                columns.add(inverse_depth.row(y + radius), confidence.row(y + radius), r, 1.0);
+            }
+        }
+        running.fill(&columns);
+        regress(&running, out);
+    }
+    fits
+}
+
+impl Columns {
+    /// A row at offset `j` comes (`sign` 1) or goes (-1).
+    fn add(&mut self, w: &[f32], confidence: &[f32], j: f64, sign: f64) {
+        add_row(self, w, confidence, j, sign);
+    }
+}
+
+widest! {
+    fn add_row(to: &mut Columns, w: &[f32], confidence: &[f32], j: f64, sign: f64) {
+        let width = w.len();
+        let confidence = &confidence[..width];
+        let (n, js, jj) = (&mut to.n[..width], &mut to.j[..width], &mut to.jj[..width]);
+        let (ws, jw, ww) = (&mut to.w[..width], &mut to.jw[..width], &mut to.ww[..width]);
+        for x in 0..width {
+            let count = if confidence[x] > 0.0 { sign } else { 0.0 };
+            let w = f64::from(w[x]);
+            n[x] += count;
+            js[x] += count * j;
+            jj[x] += count * j * j;
+            ws[x] += count * w;
+            jw[x] += count * j * w;
+            ww[x] += count * w * w;
+        }
+    }
+}
+
+widest! {
+    /// Offsets counted from the next row.
+    fn move_down(columns: &mut Columns) {
+        let width = columns.n.len();
+        let (n, w) = (&columns.n[..width], &columns.w[..width]);
+        let (j, jj, jw) = (&mut columns.j[..width], &mut columns.jj[..width], &mut columns.jw[..width]);
+        for x in 0..width {
+            jj[x] += n[x] - 2.0 * j[x];
+            j[x] -= n[x];
+            jw[x] -= w[x];
+        }
+    }
+}
+
+impl Running {
+    fn fill(&mut self, columns: &Columns) {
+        let width = columns.n.len();
+        let Columns { n, j, jj, w, jw, ww } = columns;
+        let (n, j, jj, w, jw, ww) = (&n[..width], &j[..width], &jj[..width], &w[..width], &jw[..width], &ww[..width]);
+        let mut total = [0.0; 10];
+        let [q0, q1, q2, q3, q4, q5, q6, q7, q8, q9] =
+            self.sums.each_mut().map(|sums| &mut sums[self.radius + 1..][..width]);
+        for x in 0..width {
+            let i = x as f64;
+            let terms = [n[x], i * n[x], i * i * n[x], j[x], jj[x], i * j[x], w[x], i * w[x], jw[x], ww[x]];
+            total.iter_mut().zip(terms).for_each(|(t, v)| *t += v);
+            [q0[x], q1[x], q2[x], q3[x], q4[x], q5[x], q6[x], q7[x], q8[x], q9[x]] = total;
+        }
+        for (sums, total) in self.sums.iter_mut().zip(total) {
+            sums[self.radius + 1 + width..].fill(total);
+        }
+    }
+}
+
+widest! {
+    /// Least squares of `w` on `(1, i, j)`, about the means, for the windows of a row; no fit where the points lie on one line.
+    fn regress(running: &Running, out: &mut [f32]) {
+        let width = out.len() / 4;
+        let [n, i, ii, j, jj, ij, w, iw, jw, ww] = running.sums.each_ref().map(|sums| {
+            (&sums[..width], &sums[2 * running.radius + 1..][..width])
+        });
+        let (value, rest) = out.split_at_mut(width);
+        let (dx, rest) = rest.split_at_mut(width);
+        let (dy, residual) = rest.split_at_mut(width);
+        let residual = &mut residual[..width];
+        for x in 0..width {
+            // Sums over the window, columns counted from its own.
+            let at = x as f64;
+            let (n, j, w) = (n.1[x] - n.0[x], j.1[x] - j.0[x], w.1[x] - w.0[x]);
+            let (jj, jw, ww) = (jj.1[x] - jj.0[x], jw.1[x] - jw.0[x], ww.1[x] - ww.0[x]);
+            let (sum_i, sum_ii) = (i.1[x] - i.0[x], ii.1[x] - ii.0[x]);
+            let i = sum_i - at * n;
+            let ii = sum_ii - 2.0 * at * sum_i + at * at * n;
+            let ij = ij.1[x] - ij.0[x] - at * j;
+            let iw = iw.1[x] - iw.0[x] - at * w;
+
+            // About the means.
+            let per_n = 1.0 / n.max(1.0);
+            let (mi, mj) = (i * per_n, j * per_n);
+            let (cii, cij, cjj) = (ii - mi * i, ij - mi * j, jj - mj * j);
+            let (ciw, cjw) = (iw - mi * w, jw - mj * w);
+
+            let determinant = cii * cjj - cij * cij;
+            let is_plane = n >= 3.0 && determinant > SINGULAR * (cii * cjj);
+            let inverse = 1.0 / if is_plane { determinant } else { 1.0 };
+            let slope_x = (ciw * cjj - cjw * cij) * inverse;
+            let slope_y = (cjw * cii - ciw * cij) * inverse;
+            let mean = w * per_n;
+            let left = (ww - mean * w - slope_x * ciw - slope_y * cjw).max(0.0) * per_n;
+            value[x] = (mean - slope_x * mi - slope_y * mj) as f32;
+            dx[x] = slope_x as f32;
+            dy[x] = slope_y as f32;
+            residual[x] = if is_plane { left as f32 } else { f32::INFINITY };
+        }
+    }
+}
