@@ -74,6 +74,28 @@ pub fn for_rows<T: Send>(
     })
 }
 
+/// The same for the rows of three images at once, of `row_len` items each.
+pub fn for_rows_of_three<T: Send>(
+    images: [&mut [T]; 3],
+    row_len: usize,
+    job: Job,
+    work: impl Fn(usize, [&mut [T]; 3]) + Sync,
+) -> Result<()> {
+    let [a, b, c] = images;
+    if row_len == 0 || a.is_empty() {
+        return job.check();
+    }
+    let rows = a.len() / row_len;
+    let done = AtomicUsize::new(0);
+    let rows_of = |image| <[T]>::par_chunks_exact_mut(image, row_len);
+    rows_of(a).zip(rows_of(b)).zip(rows_of(c)).enumerate().try_for_each(|(y, ((a, b), c))| {
+        job.check()?;
+        work(y, [a, b, c]);
+        job.report((done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / rows as f64);
+        Ok(())
+    })
+}
+
 /// Computes `work(i)` for `i` in `0..count` in parallel; results come back in order of `i` whatever the thread count, so
 /// that a reduction over them is the same to the bit.
 pub fn map<T: Send>(count: usize, job: Job, work: impl Fn(usize) -> T + Sync) -> Result<Vec<T>> {

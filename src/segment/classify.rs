@@ -6,9 +6,14 @@ use crate::error::Result;
 use crate::exec;
 use crate::image::Image;
 use crate::job::Job;
+use crate::simd::widest;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Pixels worked on together: their planes stay in the first-level cache.
 const TILE: usize = 64;
+
+/// A feature of the pixels of a tile.
+type Plane = [f32; TILE];
 
 pub struct Classified {
     pub mask: Image,
@@ -16,6 +21,18 @@ pub struct Classified {
     pub unseen: Image,
     /// Mean of `unseen` over the pixels looked at.
     pub mean_unseen: f64,
+    /// Feature values that are NaN or infinite.
+    pub bad: usize,
+}
+
+/// Everything that answers for a tile.
+struct Judge {
+    mean: Vec<f32>,
+    scale: Vec<f32>,
+    logit: Form,
+    seen: Vec<Form>,
+    /// Factors on logits where features are like those painted, and where not.
+    calibration: [f32; 2],
 }
 
 /// `xᵀAx + bᵀx + c` of standardised features; `a` holds the upper triangle row by row, empty if `A` is zero.
@@ -45,7 +62,8 @@ impl Form {
         Self { a, b: pull.iter().map(|p| -2.0 * *p as f32).collect(), c: c as f32 }
     }
 
-    fn evaluate(&self, planes: &[[f32; TILE]]) -> [f32; TILE] {
+    #[inline(always)]
+    fn evaluate(&self, planes: &[Plane]) -> Plane {
         let mut sum = [self.c; TILE];
         let mut rest = self.a.as_slice();
         for (i, x) in planes.iter().enumerate() {
@@ -55,7 +73,9 @@ impl Form {
                 let (row, after) = rest.split_at(planes.len() - i);
                 rest = after;
                 for (a, y) in row.iter().zip(&planes[i..]) {
-                    factor.iter_mut().zip(y).for_each(|(f, y)| *f += a * y);
+                    for k in 0..TILE {
+                        factor[k] += a * y[k];
+                    }
                 }
             }
             for k in 0..TILE {
@@ -66,67 +86,91 @@ impl Form {
     }
 }
 
-pub fn run(
-    features: &Image,
-    within: Option<&Image>,
-    channels: &[usize],
-    chosen: &Chosen,
-    job: Job,
-) -> Result<Classified> {
-    let (width, height, d) = (features.width, features.height, channels.len());
-    let logit = Form::of_model(chosen, d);
-    let seen: Vec<Form> = chosen.seen.iter().map(Form::of_ellipsoid).collect();
-    let mean: Vec<f32> = chosen.standard.mean.iter().map(|&v| v as f32).collect();
-    let scale: Vec<f32> = chosen.standard.scale.iter().map(|&v| v as f32).collect();
-
-    let (familiar, unfamiliar) = (chosen.familiar.scale as f32, chosen.unfamiliar.scale as f32);
-
-    // Confidence and unseen in one pass, interleaved.
-    let mut both = Image::new(width, height, 2)?;
-    let is_outside = |i: usize| within.is_some_and(|w| w.data[i].is_nan() || w.data[i] <= 0.5);
-    exec::for_rows(&mut both.data, width * 2, job.part(0.0, 0.8), |y, row| {
-        let source = features.row(y);
-        let mut planes = vec![[0.0f32; TILE]; d];
-        for (t, out) in row.chunks_mut(2 * TILE).enumerate() {
-            let pixels = source[t * TILE * features.channels..].chunks_exact(features.channels).take(TILE);
-            for (k, pixel) in pixels.enumerate() {
-                for (i, &c) in channels.iter().enumerate() {
-                    planes[i][k] = (pixel[c] - mean[i]) * scale[i];
-                }
-            }
-            let z = logit.evaluate(&planes);
-            let distance = seen.iter().map(|form| form.evaluate(&planes));
-            let nearest = distance.fold([f32::INFINITY; TILE], |a, b| std::array::from_fn(|k| a[k].min(b[k])));
-            let beyond: [f32; TILE] = std::array::from_fn(|k| 1.0 - exp(1.0 - nearest[k].max(1.0).sqrt()));
-            let probability: [f32; TILE] = std::array::from_fn(|k| {
-                let calibration = familiar + (unfamiliar - familiar) * beyond[k];
-                1.0 / (1.0 + exp(-calibration * z[k]))
-            });
-            for (k, out) in out.chunks_exact_mut(2).enumerate() {
-                let answer = [probability[k], beyond[k]];
-                out.copy_from_slice(if is_outside(y * width + t * TILE + k) { &[0.0; 2] } else { &answer });
+widest! {
+    /// Probability and distance from what was seen of a tile whose planes hold raw features.
+    fn judge(judge: &Judge, planes: &mut [Plane], probability: &mut Plane, beyond: &mut Plane) {
+        for (plane, (mean, scale)) in planes.iter_mut().zip(judge.mean.iter().zip(&judge.scale)) {
+            for v in plane {
+                *v = (*v - mean) * scale;
             }
         }
-    })?;
+        let mut nearest = [f32::INFINITY; TILE];
+        for form in &judge.seen {
+            let distance = form.evaluate(planes);
+            for k in 0..TILE {
+                nearest[k] = if distance[k] < nearest[k] { distance[k] } else { nearest[k] };
+            }
+        }
+        let logit = judge.logit.evaluate(planes);
+        let [familiar, unfamiliar] = judge.calibration;
+        for k in 0..TILE {
+            let distance = if nearest[k] > 1.0 { nearest[k].sqrt() } else { 1.0 };
+            beyond[k] = 1.0 - exp(1.0 - distance);
+            let calibration = familiar + (unfamiliar - familiar) * beyond[k];
+            probability[k] = 1.0 / (1.0 + exp(-calibration * logit[k]));
+        }
+    }
+}
 
-    // Apart.
-    let (mut confidence, mut unseen) = (Image::new(width, height, 1)?, Image::new(width, height, 1)?);
-    let mut mask = Image::new(width, height, 1)?;
-    let split = |image: &mut Image, value: &(dyn Fn([f32; 2]) -> f32 + Sync), job: Job| {
-        exec::for_rows(&mut image.data, width, job, |y, row| {
-            row.iter_mut().zip(both.row(y).chunks_exact(2)).for_each(|(out, v)| *out = value([v[0], v[1]]));
-        })
+/// Classifies every pixel by the `channels` of its features; outside `within` (above one half) all answers are 0.
+pub fn run(features: &Image, within: Option<&Image>, channels: &[usize], chosen: &Chosen, job: Job) -> Result<Classified> {
+    let (width, height, d) = (features.width, features.height, channels.len());
+    let single = |values: &[f64]| values.iter().map(|&v| v as f32).collect();
+    let judges = Judge {
+        mean: single(&chosen.standard.mean),
+        scale: single(&chosen.standard.scale),
+        logit: Form::of_model(chosen, d),
+        seen: chosen.seen.iter().map(Form::of_ellipsoid).collect(),
+        calibration: [chosen.familiar.scale as f32, chosen.unfamiliar.scale as f32],
     };
-    split(&mut confidence, &|v| v[0], job.part(0.8, 0.85))?;
-    split(&mut unseen, &|v| v[1], job.part(0.85, 0.9))?;
-    split(&mut mask, &|v| f32::from(v[0] > 0.5), job.part(0.9, 0.95))?;
-    let sums = exec::map(height, job.part(0.95, 1.0), |y| unseen.row(y).iter().map(|&u| f64::from(u)).sum::<f64>())?;
+    let black = || Image::new(width, height, 1);
+    let (mut mask, mut confidence, mut unseen) = (black()?, black()?, black()?);
+    let bad = AtomicUsize::new(0);
+    let images = [&mut mask, &mut confidence, &mut unseen].map(|image| image.data.as_mut_slice());
+    exec::for_rows_of_three(images, width, job.part(0.0, 0.9), |y, [mask, confidence, unseen]| {
+        let source = features.row(y);
+        let bad_here = count_bad(source);
+        if bad_here > 0 {
+            bad.fetch_add(bad_here, Ordering::Relaxed);
+        }
+        let mut planes = vec![[0.0f32; TILE]; d];
+        let (mut probability, mut beyond) = ([0.0; TILE], [0.0; TILE]);
+        for x in (0..width).step_by(TILE) {
+            let n = TILE.min(width - x);
+            let pixels = source[x * features.channels..(x + n) * features.channels].chunks_exact(features.channels);
+            for (k, pixel) in pixels.enumerate() {
+                for (plane, &c) in planes.iter_mut().zip(channels) {
+                    plane[k] = pixel[c];
+                }
+            }
+            judge(&judges, &mut planes, &mut probability, &mut beyond);
+            if let Some(within) = within {
+                for (k, &w) in within.row(y)[x..x + n].iter().enumerate() {
+                    if w.is_nan() || w <= 0.5 {
+                        (probability[k], beyond[k]) = (0.0, 0.0);
+                    }
+                }
+            }
+            confidence[x..x + n].copy_from_slice(&probability[..n]);
+            unseen[x..x + n].copy_from_slice(&beyond[..n]);
+            mask[x..x + n].iter_mut().zip(&probability).for_each(|(m, &p)| *m = f32::from(p > 0.5));
+        }
+    })?;
+    let sums = exec::map(height, job.part(0.9, 1.0), |y| unseen.row(y).iter().map(|&u| f64::from(u)).sum::<f64>())?;
     let looked_at = within.map_or(width * height, |w| w.data.iter().filter(|w| **w > 0.5).count());
     let mean_unseen = sums.iter().sum::<f64>() / looked_at.max(1) as f64;
-    Ok(Classified { mask, confidence, unseen, mean_unseen })
+    Ok(Classified { mask, confidence, unseen, mean_unseen, bad: bad.into_inner() })
+}
+
+widest! {
+    /// The number of values that are NaN or infinite.
+    pub fn count_bad(values: &[f32]) -> usize {
+        values.iter().map(|v| u32::from(!v.is_finite())).sum::<u32>() as usize
+    }
 }
 
 /// `eˣ` for x in `[-87, 88]`, beyond that its value at the end: within 3e-7 of it, and the same on all machines.
+#[inline(always)]
 fn exp(x: f32) -> f32 {
     const LN_2: [f32; 2] = [0.693_359_4, -2.121_944_4e-4];
     // Adding 1.5 × 2²³ rounds to a whole number, which then stands in the lowest bits.

@@ -2,6 +2,7 @@
 
 use crate::error::Result;
 use crate::job::Job;
+use crate::simd::widest;
 
 /// Weighted examples: rows of `dimension` terms of which the last is the constant.
 #[derive(Clone, Copy)]
@@ -14,8 +15,9 @@ pub struct Problem<'a> {
 }
 
 /// The weights that minimise the mean log loss plus `ridge / 2 |w|²`, the constant term being free. The ridge makes
-/// the solution finite and unique even for separable, duplicated or constant terms. Starts at `start`.
-pub fn fit(problem: &Problem, ridge: f64, start: &[f64], job: Job) -> Result<Vec<f64>> {
+/// the solution finite and unique even for separable, duplicated or constant terms. Starts at `start`, and ends when a step
+/// gains less than `precision`.
+pub fn fit(problem: &Problem, ridge: f64, start: &[f64], precision: f64, job: Job) -> Result<Vec<f64>> {
     let d = problem.dimension;
     let total: f64 = problem.weights.iter().sum();
     let mut w = start.to_vec();
@@ -26,19 +28,7 @@ pub fn fit(problem: &Problem, ridge: f64, start: &[f64], job: Job) -> Result<Vec
         // Gradient and Hessian (lower triangle).
         let mut gradient = vec![0.0; d];
         let mut hessian = vec![0.0; d * d];
-        for ((x, &positive), &weight) in problem.rows.chunks_exact(d).zip(problem.positive).zip(problem.weights) {
-            if weight == 0.0 {
-                continue;
-            }
-            let p = sigmoid(dot(&w, x));
-            let slope = weight / total * (p - f64::from(positive));
-            let curvature = weight / total * (p * (1.0 - p)).max(1e-12);
-            for i in 0..d {
-                gradient[i] += slope * x[i];
-                let c = curvature * x[i];
-                hessian[i * d..=i * d + i].iter_mut().zip(x).for_each(|(h, v)| *h += c * v);
-            }
-        }
+        derivatives(problem, total, &w, &mut gradient, &mut hessian);
         for i in 0..d {
             // The constant has a trace of a ridge too: one class could be all the weight there is.
             let r = if i + 1 == d { 1e-6 * ridge } else { ridge };
@@ -62,11 +52,33 @@ pub fn fit(problem: &Problem, ridge: f64, start: &[f64], job: Job) -> Result<Vec
             break;
         }
         (w, value) = (next, next_value);
-        if gain < 1e-9 {
+        if gain < precision {
             break;
         }
     }
     Ok(w)
+}
+
+widest! {
+    /// Adds the gradient and the lower triangle of the Hessian of the mean log loss.
+    fn derivatives(problem: &Problem, total: f64, w: &[f64], gradient: &mut [f64], hessian: &mut [f64]) {
+        let d = problem.dimension;
+        for ((x, &positive), &weight) in problem.rows.chunks_exact(d).zip(problem.positive).zip(problem.weights) {
+            if weight == 0.0 {
+                continue;
+            }
+            let p = sigmoid(dot(w, x));
+            let slope = weight / total * (p - f64::from(positive));
+            let curvature = weight / total * (p * (1.0 - p)).max(1e-12);
+            for i in 0..d {
+                gradient[i] += slope * x[i];
+                let c = curvature * x[i];
+                for (h, v) in hessian[i * d..=i * d + i].iter_mut().zip(x) {
+                    *h += c * v;
+                }
+            }
+        }
+    }
 }
 
 fn objective(problem: &Problem, ridge: f64, total: f64, w: &[f64]) -> f64 {
@@ -131,7 +143,7 @@ mod tests {
     fn the_constant_model_is_the_logit_of_the_share() {
         let positive: Vec<bool> = (0..100).map(|i| i % 4 == 0).collect();
         let problem = Problem { rows: &[1.0; 100], dimension: 1, positive: &positive, weights: &[1.0; 100] };
-        let w = fit(&problem, 1e-6, &[0.0], Monitor::default().job()).unwrap();
+        let w = fit(&problem, 1e-6, &[0.0], 1e-9, Monitor::default().job()).unwrap();
         assert!((w[0] - (1.0f64 / 3.0).ln()).abs() < 1e-5, "{w:?}");
     }
 
@@ -146,7 +158,7 @@ mod tests {
             rows.extend(x);
         }
         let problem = Problem { rows: &rows, dimension: 3, positive: &positive, weights: &vec![1.0; 20_000] };
-        let w = fit(&problem, 1e-9, &[0.0; 3], Monitor::default().job()).unwrap();
+        let w = fit(&problem, 1e-9, &[0.0; 3], 1e-9, Monitor::default().job()).unwrap();
         // Standard errors are about 0.02 to 0.03: five of them.
         assert!(w.iter().zip(&truth).all(|(w, t)| (w - t).abs() < 0.13), "{w:?}");
     }
@@ -161,7 +173,7 @@ mod tests {
             .collect();
         let positive: Vec<bool> = (0..40).map(|i| i >= 20).collect();
         let problem = Problem { rows: &rows, dimension: 4, positive: &positive, weights: &[1.0; 40] };
-        let w = fit(&problem, 1e-3, &[0.0; 4], Monitor::default().job()).unwrap();
+        let w = fit(&problem, 1e-3, &[0.0; 4], 1e-9, Monitor::default().job()).unwrap();
         assert!(w.iter().all(|v| v.is_finite()));
         assert!((w[0] - w[1]).abs() < 1e-9 && w[0] > 0.0 && w[2] == 0.0 && w[3].abs() < 1e-6, "{w:?}");
     }

@@ -1,7 +1,7 @@
 //! Guided segmentation: strokes on the photo to a mask with per-pixel confidence ("Lighting Style Transfer", §4.2).
 //!
 //! ```text
-//! strokes ─▶ samples ─▶ standardise ─▶ logistic models ─▶ cross-validation over strokes ─▶ the better one, calibrated
+//! strokes ─▶ samples ─▶ standardise ─▶ logistic models ─▶ cross-validation over strokes ─▶ the best one, calibrated 
 //!                                                                                            │
 //! features ─────────────────────────────────────────────────────────────────────▶ classify ◀─┘ ─▶ mask, confidence, unseen
 //! ```
@@ -33,11 +33,13 @@ mod tests;
 pub use distance::dilate;
 pub use strokes::{Stroke, StrokeSet};
 
+
 use crate::error::{Error, Result, check_range};
 use crate::exec;
 use crate::features::CHANNELS;
 use crate::image::Image;
 use crate::job::Job;
+use select::Question;
 
 #[derive(Clone, Copy)]
 pub struct Input<'a> {
@@ -53,16 +55,21 @@ pub struct Input<'a> {
 pub struct Params {
     /// Samples drawn from the strokes of each class, in `[1, 1e6]`.
     pub samples_per_class: usize,
-    /// Which feature channels to use; bit `i` is channel `i`.
+    /// Which feature channels to use; bit `i` is channel `i`. 0: of [`CHANNELS`] channels those of [`SUBSETS`] that do best on
+    /// strokes they have not seen, of any other number all.
     pub channels: u32,
     /// Strength of the prior that keeps weights small, relative to the data, in `[1e-9, 1e3]`.
     pub ridge: f64,
     pub seed: u64,
 }
 
+/// What is chosen from where the caller does not: colour; colour and position; colour and normal; everything. More is not
+/// better: what does not tell the classes apart still leads astray where no stroke is.
+pub const SUBSETS: [u32; 4] = [0b111, 0b111_0_111, 0b111_000_0_111, (1 << CHANNELS) - 1];
+
 impl Default for Params {
     fn default() -> Self {
-        Self { samples_per_class: 1000, channels: (1 << CHANNELS) - 1, ridge: 1e-3, seed: 1 }
+        Self { samples_per_class: 1000, channels: 0, ridge: 1e-3, seed: 1 }
     }
 }
 
@@ -101,6 +108,8 @@ pub struct Segmentation {
     /// pixels are like those painted, the error on wholly held-out strokes where they are `unseen`.
     pub error: f64,
     pub model: Model,
+    /// The channels it looks at; bit `i` is channel `i`.
+    pub channels: u32,
     /// Samples used of the negative and the positive class.
     pub samples: [usize; 2],
     /// Pixels that strokes of both classes cover; the later stroke won.
@@ -127,6 +136,7 @@ impl Segmentation {
             unseen: Image::new(confidence.width, confidence.height, 1)?,
             error: 0.0,
             model: Model::Linear,
+            channels: 0,
             samples: [0, 0],
             contradictory: 0,
             off_image: 0,
@@ -134,38 +144,59 @@ impl Segmentation {
     }
 }
 
+/// The subsets of an image's channels to choose from.
+fn subsets(count: usize, wanted: u32) -> Result<Vec<u32>> {
+    let all = (1 << count) - 1;
+    match wanted {
+        0 if count == CHANNELS => Ok(SUBSETS.to_vec()),
+        0 => Ok(vec![all]),
+        _ if wanted & all == 0 => Err(Error::argument(format!(
+            "channels is {wanted:#b}; at least one of the lowest {count} bits must be set, or none at all to leave the choice open"
+        ))),
+        _ => Ok(vec![wanted & all]),
+    }
+}
+
+fn not_finite(bad: usize) -> Error {
+    Error::argument(format!("features has {bad} values that are NaN or infinite; all must be finite"))
+}
+
 /// Segments an image by examples. Fails where either class has no pixel in the image.
 pub fn run(input: &Input, params: &Params, job: Job) -> Result<Segmentation> {
     let features = input.features;
     params.check()?;
     check_range("the number of feature channels", features.channels, 1, 16)?;
-    let channels: Vec<usize> = (0..features.channels).filter(|c| params.channels >> c & 1 == 1).collect();
-    if channels.is_empty() {
-        return Err(Error::argument(format!(
-            "channels is {:#b}; at least one of the lowest {} bits must be set",
-            params.channels, features.channels
-        )));
-    }
+    let subsets = subsets(features.channels, params.channels)?;
     if let Some(within) = input.within {
         features.check_same_size("features", within, "within")?;
         check_range("the number of channels of within", within.channels, 1, 1)?;
     }
-    let bad =
-        exec::map(features.height, job.part(0.0, 0.05), |y| features.row(y).iter().filter(|v| !v.is_finite()).count())?;
-    let bad: usize = bad.iter().sum();
-    if bad > 0 {
-        return Err(Error::argument(format!("features has {bad} values that are NaN or infinite; all must be finite")));
-    }
 
     // Examples.
+    let channels: Vec<usize> = (0..features.channels).filter(|c| subsets.iter().any(|s| s >> c & 1 == 1)).collect();
     let samples = samples::draw(input, &channels, params)?;
     job.check()?;
+    let probe = samples::probe(input, &channels);
+    if !samples.values.iter().chain(&probe).all(|v| v.is_finite()) {
+        return Err(not_finite(exec::map(features.height, job, |y| classify::count_bad(features.row(y)))?.iter().sum()));
+    }
 
-    // The model that does best on strokes it has not seen.
-    let chosen = select::choose(&samples, params.ridge, job.part(0.05, 0.4))?;
+    // The model and the channels that do best on strokes they have not seen.
+    let columns = |subset: &u32| (0..channels.len()).filter(|&i| subset >> channels[i] & 1 == 1).collect();
+    let question = Question {
+        samples: &samples,
+        subsets: &subsets.iter().map(columns).collect::<Vec<Vec<usize>>>(),
+        probe: &probe,
+        ridge: params.ridge,
+    };
+    let chosen = select::choose(&question, job.part(0.05, 0.4))?;
+    let channels: Vec<usize> = chosen.columns.iter().map(|&i| channels[i]).collect();
 
     // Every pixel.
     let classified = classify::run(features, input.within, &channels, &chosen, job.part(0.4, 1.0))?;
+    if classified.bad > 0 {
+        return Err(not_finite(classified.bad));
+    }
     let unseen = classified.mean_unseen;
     let error = chosen.familiar.error * (1.0 - unseen) + chosen.unfamiliar.error * unseen;
     Ok(Segmentation {
@@ -174,6 +205,7 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Segmentation> {
         unseen: classified.unseen,
         error,
         model: chosen.model,
+        channels: channels.iter().map(|c| 1 << c).sum(),
         samples: samples.counts,
         contradictory: samples.contradictory,
         off_image: samples.off_image,

@@ -30,8 +30,24 @@ pub struct Samples {
     pub off_image: usize,
 }
 
+impl Samples {
+    /// The same samples with some of their columns only.
+    pub fn subset(&self, columns: &[usize]) -> Self {
+        let rows = self.values.chunks_exact(self.dimension);
+        Self {
+            values: rows.flat_map(|row| columns.iter().map(|&c| row[c])).collect(),
+            dimension: columns.len(),
+            channels: columns.iter().map(|&c| self.channels[c]).collect(),
+            origins: self.origins.clone(),
+            ..*self
+        }
+    }
+}
+
 /// Parts a stroke is split into for cross-validation.
 pub const PARTS: usize = 4;
+/// Most pixels of a probe.
+const PROBES: usize = 2048;
 
 /// Draws the samples. Later strokes win where strokes disagree.
 pub fn draw(input: &Input, channels: &[usize], params: &Params) -> Result<Samples> {
@@ -108,6 +124,20 @@ pub fn draw(input: &Input, channels: &[usize], params: &Params) -> Result<Sample
         }
     }
     Ok(samples)
+}
+
+/// Features of some pixels all over the place to be segmented, `channels.len()` values each.
+pub fn probe(input: &Input, channels: &[usize]) -> Vec<f64> {
+    let features = input.features;
+    // A lattice whose step is no divisor of the width, or it would sample a few columns only.
+    let step = (features.width * features.height).div_ceil(PROBES) | 1;
+    let step = if features.width % step == 0 && step > 1 { step + 2 } else { step };
+    let looked_at = |p: &usize| input.within.is_none_or(|w| w.data[*p] > 0.5);
+    (0..features.width * features.height)
+        .step_by(step)
+        .filter(looked_at)
+        .flat_map(|p| channels.iter().map(move |&c| f64::from(features.data[p * features.channels + c])))
+        .collect()
 }
 
 /// How many of `total` samples each stroke gives: equal shares, what small strokes lack going to the larger ones.

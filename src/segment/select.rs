@@ -1,4 +1,4 @@
-//! Which model, and how far to trust it: cross-validation, then calibration on what was held out.
+//! Which model, on which features, and how far to trust it: cross-validation, and calibration on what was held out.
 //!
 //! Two questions, two ways to hold out. Parts of strokes: how well does the model do on what the user has painted? Whole
 //! strokes: how well does it carry on to what the user has not? Each has its own error and its own calibration, and
@@ -8,7 +8,7 @@ use super::Model;
 use super::logistic::{self, Problem};
 use super::samples::{PARTS, Samples};
 use super::standardise::{Standard, term_count, terms};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::exec;
 use crate::image::try_with_capacity;
 use crate::job::Job;
@@ -19,12 +19,15 @@ const FOLDS: usize = 8;
 const CV_SAMPLES: usize = 250;
 /// Calibration never multiplies logits by more or less than this: a handful of strokes cannot tell.
 const CALIBRATION: [f64; 2] = [0.1, 2.0];
-/// The quadratic model must have this much less loss than the linear one, which carries on more safely, to be taken.
-const PREFER_LINEAR: f64 = 0.97;
+/// Gain in mean log loss below which a fit ends: of those that are compared, and of the one that is used.
+const CV_PRECISION: f64 = 1e-5;
+const PRECISION: f64 = 1e-9;
 
 /// The classifier, in standardised features, and what is expected of it.
 pub struct Chosen {
     pub model: Model,
+    /// The samples' columns it looks at.
+    pub columns: Vec<usize>,
     pub standard: Standard,
     /// Weights of the terms (see `standardise::terms`), not calibrated.
     pub weights: Vec<f64>,
@@ -54,43 +57,124 @@ pub struct Trust {
     loss: f64,
 }
 
-/// One family's fit to all samples, and the terms it was fitted on.
-struct Fitted {
+/// What is asked of the choice.
+pub struct Question<'a> {
+    pub samples: &'a Samples,
+    /// Subsets of the samples' columns to choose from.
+    pub subsets: &'a [Vec<usize>],
+    /// Features of pixels all over the place that is to be segmented, as `samples.values`.
+    pub probe: &'a [f64],
+    pub ridge: f64,
+}
+
+/// A family of models on a subset of the features: its terms at all samples.
+struct Candidate {
     model: Model,
+    standard: Standard,
     rows: Vec<f64>,
     dimension: usize,
+}
+
+/// Where classes and strokes are, and how samples are held out.
+struct Trial<'a> {
+    samples: &'a Samples,
+    positive: Vec<bool>,
+    by_part: Vec<usize>,
+    by_stroke: Vec<usize>,
+    /// Weights of the samples that comparisons use.
     weights: Vec<f64>,
+    ridge: f64,
 }
 
-pub fn choose(samples: &Samples, ridge: f64, job: Job) -> Result<Chosen> {
-    let standard = Standard::of(samples);
-    let x: Vec<Vec<f64>> = samples.values.chunks_exact(samples.dimension).map(|v| standard.apply(v)).collect();
+/// Chooses the model and the features whose loss over the whole image is expected to be least: the loss on held-out parts
+/// of strokes where pixels are like those painted, on whole held-out strokes where they are not, and Akaike's price of a
+/// term, one sample's worth, which decides between equals for the simpler one.
+pub fn choose(question: &Question, job: Job) -> Result<Chosen> {
+    let samples = question.samples;
     let positive: Vec<bool> = samples.origins.iter().map(|o| o.positive).collect();
-    let (by_part, by_stroke) = (folds_of_parts(samples), folds_of_strokes(samples));
-
-    let judge = |model: Model, job: Job| -> Result<(Fitted, Trust, Trust)> {
-        let fitted = fit(samples, &x, &positive, model, ridge, job.part(0.0, 0.2))?;
-        let familiar = validate(samples, &positive, &fitted, &by_part, ridge, job.part(0.2, 0.5))?;
-        let unfamiliar = validate(samples, &positive, &fitted, &by_stroke, ridge, job.part(0.5, 1.0))?;
-        Ok((fitted, familiar, unfamiliar))
+    let trial = Trial {
+        samples,
+        by_part: folds_of_parts(samples),
+        by_stroke: folds_of_strokes(samples),
+        weights: balanced(&positive, |i| i % stride(samples, positive[i]) == 0),
+        positive,
+        ridge: question.ridge,
     };
-    let linear = judge(Model::Linear, job.part(0.0, 0.2))?;
-    let quadratic = judge(Model::Quadratic, job.part(0.2, 1.0))?;
-    let loss = |j: &(Fitted, Trust, Trust)| j.1.loss + j.2.loss;
-    let is_quadratic = loss(&quadratic) < PREFER_LINEAR * loss(&linear);
-    let (best, familiar, unfamiliar) = if is_quadratic { quadratic } else { linear };
+    let mut order: Vec<(usize, Model, &Vec<usize>)> = (question.subsets.iter())
+        .flat_map(|subset| {
+            [Model::Linear, Model::Quadratic].map(|model| (term_count(model, subset.len()), model, subset))
+        })
+        .collect();
+    order.sort_by_key(|candidate| candidate.0);
 
-    let seen = [false, true].iter().map(|&class| ellipsoid(samples, &x, class)).collect();
-    Ok(Chosen { model: best.model, standard, weights: best.weights, familiar, unfamiliar, seen })
+    let mut best: Option<(f64, Chosen, Candidate)> = None;
+    let rounds = order.len() as f64;
+    for (k, (terms, model, subset)) in order.into_iter().enumerate() {
+        // No loss is less than nothing: the price alone may rule a candidate out, and all after it.
+        let price = terms as f64 / samples.origins.len() as f64;
+        if best.as_ref().is_some_and(|(least, ..)| price >= *least) {
+            break;
+        }
+        let job = job.part(0.9 * k as f64 / rounds, 0.9 * (k + 1) as f64 / rounds);
+        let part = samples.subset(subset);
+        let candidate = Candidate::new(model, &part)?;
+        let weights = trial.fit(&candidate, &trial.weights, &vec![0.0; candidate.dimension], CV_PRECISION, job)?;
+        let familiar = validate(&trial, &candidate, &weights, &trial.by_part, job.part(0.1, 0.4))?;
+        let unfamiliar = validate(&trial, &candidate, &weights, &trial.by_stroke, job.part(0.4, 1.0))?;
+        let seen: Vec<Ellipsoid> = [false, true].iter().map(|&c| ellipsoid(&part, &candidate.standard, c)).collect();
+        let unseen = mean_unseen(question.probe, samples.dimension, subset, &candidate.standard, &seen);
+        let expected = familiar.loss * (1.0 - unseen) + unfamiliar.loss * unseen + price;
+        if best.as_ref().is_none_or(|(least, ..)| expected < *least) {
+            let standard = candidate.standard.clone();
+            let columns = subset.clone();
+            best = Some((expected, Chosen { model, columns, standard, weights, familiar, unfamiliar, seen }, candidate));
+        }
+    }
+    let Some((_, mut chosen, candidate)) = best else {
+        return Err(Error::argument("there is no subset of channels to choose from"));
+    };
+    let all = balanced(&trial.positive, |_| true);
+    chosen.weights = trial.fit(&candidate, &all, &chosen.weights, PRECISION, job.part(0.9, 1.0))?;
+    Ok(chosen)
 }
 
-fn fit(samples: &Samples, x: &[Vec<f64>], positive: &[bool], model: Model, ridge: f64, job: Job) -> Result<Fitted> {
-    let dimension = term_count(model, samples.dimension);
-    let mut rows = try_with_capacity(x.len() * dimension)?;
-    x.iter().for_each(|x| terms(model, x, &mut rows));
-    let problem = Problem { rows: &rows, dimension, positive, weights: &balanced(positive, |_| true) };
-    let weights = logistic::fit(&problem, ridge, &vec![0.0; dimension], job)?;
-    Ok(Fitted { model, rows, dimension, weights })
+impl Candidate {
+    fn new(model: Model, samples: &Samples) -> Result<Self> {
+        let standard = Standard::of(samples);
+        let dimension = term_count(model, samples.dimension);
+        let mut rows = try_with_capacity(samples.origins.len() * dimension)?;
+        let mut x = vec![0.0; samples.dimension];
+        for values in samples.values.chunks_exact(samples.dimension) {
+            standard.apply(values, &mut x);
+            terms(model, &x, &mut rows);
+        }
+        Ok(Self { model, standard, rows, dimension })
+    }
+}
+
+impl Trial<'_> {
+    fn fit(&self, of: &Candidate, weights: &[f64], start: &[f64], precision: f64, job: Job) -> Result<Vec<f64>> {
+        let problem = Problem { rows: &of.rows, dimension: of.dimension, positive: &self.positive, weights };
+        logistic::fit(&problem, self.ridge, start, precision, job)
+    }
+}
+
+/// One in so many samples of a class is used to compare models.
+fn stride(samples: &Samples, positive: bool) -> usize {
+    samples.counts[usize::from(positive)].div_ceil(CV_SAMPLES)
+}
+
+/// The mean over some pixels of how far they are from all that was painted (see `classify`).
+fn mean_unseen(probe: &[f64], dimension: usize, subset: &[usize], standard: &Standard, seen: &[Ellipsoid]) -> f64 {
+    let (mut raw, mut x) = (vec![0.0; subset.len()], vec![0.0; subset.len()]);
+    let mut sum = 0.0;
+    for pixel in probe.chunks_exact(dimension) {
+        raw.iter_mut().zip(subset).for_each(|(r, &c)| *r = pixel[c]);
+        standard.apply(&raw, &mut x);
+        let nearest = seen.iter().map(|e| e.squared_distance(&x)).fold(f64::INFINITY, f64::min);
+        sum += 1.0 - (1.0 - nearest.max(1.0).sqrt()).exp();
+    }
+    sum / (probe.len() / dimension).max(1) as f64
 }
 
 /// Weights under which the classes weigh the same, whatever the number of samples that are `used` of each.
@@ -112,18 +196,11 @@ fn folds_of_strokes(samples: &Samples) -> Vec<usize> {
     samples.origins.iter().map(|o| (o.stroke + if is_lone(o.positive) { o.part } else { 0 }) % folds).collect()
 }
 
-/// Judges a model by fits that each leave out one fold.
-fn validate(
-    samples: &Samples,
-    positive: &[bool],
-    fitted: &Fitted,
-    fold_of: &[usize],
-    ridge: f64,
-    job: Job,
-) -> Result<Trust> {
-    let Fitted { rows, dimension, .. } = fitted;
+/// Judges a model by fits that each leave out one fold, beginning with the `start` of all folds.
+fn validate(trial: &Trial, candidate: &Candidate, start: &[f64], fold_of: &[usize], job: Job) -> Result<Trust> {
+    let Trial { samples, positive, .. } = trial;
+    let Candidate { rows, dimension, .. } = candidate;
     let count = fold_of.iter().max().map_or(0, |last| last + 1);
-    let stride = |i: usize| samples.counts[usize::from(positive[i])].div_ceil(CV_SAMPLES);
     let mut size_of_stroke = vec![0usize; samples.strokes[0] + samples.strokes[1]];
     samples.origins.iter().for_each(|o| size_of_stroke[o.stroke] += 1);
 
@@ -131,10 +208,10 @@ fn validate(
         // A class that would be left without any sample keeps its own.
         let keeps = |class: bool| (0..positive.len()).all(|i| positive[i] != class || fold_of[i] == fold);
         let keeps = [keeps(false), keeps(true)];
-        let used = |i: usize| (fold_of[i] != fold || keeps[usize::from(positive[i])]) && i % stride(i) == 0;
-        let weights = balanced(positive, used);
-        let problem = Problem { rows, dimension: *dimension, positive, weights: &weights };
-        let without = logistic::fit(&problem, ridge, &fitted.weights, job)?;
+        let used = |i: usize| {
+            (fold_of[i] != fold || keeps[usize::from(positive[i])]) && i % stride(samples, positive[i]) == 0
+        };
+        let without = trial.fit(candidate, &balanced(positive, used), start, CV_PRECISION, job)?;
         // Every stroke has the same say within its class, and the classes have the same.
         let tested = samples.origins.iter().enumerate().filter(|(i, _)| fold_of[*i] == fold);
         let result = tested.map(|(i, o)| {
@@ -153,23 +230,40 @@ fn validate(
 /// The factor on logits that gives held-out samples the least log loss (temperature scaling, Guo et al. 2017), and that
 /// loss. One factor cannot move the mask, only how sure it is.
 fn calibrate(held_out: &[(f64, bool, f64)]) -> (f64, f64) {
-    let loss = |s: f64| held_out.iter().map(|&(z, p, share)| share * logistic::log_loss(s * z, p)).sum::<f64>();
-    // The loss is convex in the factor: golden section over its logarithm.
-    let golden = (5f64.sqrt() - 1.0) / 2.0;
-    let (mut low, mut high) = (CALIBRATION[0].ln(), CALIBRATION[1].ln());
-    for _ in 0..30 {
-        let (a, b) = (high - golden * (high - low), low + golden * (high - low));
-        if loss(a.exp()) <= loss(b.exp()) { high = b } else { low = a }
+    // The loss is convex in the factor: where its slope changes sign, by Newton's method inside a shrinking bracket.
+    let [mut low, mut high] = CALIBRATION;
+    let mut scale = 1.0;
+    for _ in 0..20 {
+        let (mut slope, mut curvature) = (0.0, 0.0);
+        for &(z, positive, share) in held_out {
+            let p = logistic::sigmoid(scale * z);
+            slope += share * z * (p - f64::from(positive));
+            curvature += share * z * z * p * (1.0 - p);
+        }
+        if slope > 0.0 { high = scale } else { low = scale }
+        let newton = scale - slope / curvature.max(1e-300);
+        let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
+        let is_there = (next - scale).abs() < 1e-4 * scale;
+        scale = next;
+        if is_there {
+            break;
+        }
     }
-    let scale = (0.5 * (low + high)).exp();
-    (scale, loss(scale))
+    let loss = held_out.iter().map(|&(z, p, share)| share * logistic::log_loss(scale * z, p)).sum();
+    (scale, loss)
 }
 
 /// The region of feature space that a class's samples cover.
-fn ellipsoid(samples: &Samples, x: &[Vec<f64>], class: bool) -> Ellipsoid {
+fn ellipsoid(samples: &Samples, standard: &Standard, class: bool) -> Ellipsoid {
     let d = samples.dimension;
-    let members: Vec<&Vec<f64>> =
-        x.iter().zip(&samples.origins).filter(|(_, o)| o.positive == class).map(|(x, _)| x).collect();
+    let of_class = samples.values.chunks_exact(d).zip(&samples.origins).filter(|(_, o)| o.positive == class);
+    let members: Vec<Vec<f64>> = of_class
+        .map(|(values, _)| {
+            let mut x = vec![0.0; d];
+            standard.apply(values, &mut x);
+            x
+        })
+        .collect();
     let n = members.len() as f64;
     let centre: Vec<f64> = (0..d).map(|i| members.iter().map(|x| x[i]).sum::<f64>() / n).collect();
     let mut covariance = vec![0.0; d * d];

@@ -41,8 +41,11 @@ impl Standard {
         Self { mean, scale }
     }
 
-    pub fn apply(&self, x: &[f64]) -> Vec<f64> {
-        (0..x.len()).map(|i| (x[i] - self.mean[i]) * self.scale[i]).collect()
+    /// One sample's features, made comparable.
+    pub fn apply(&self, from: &[f64], to: &mut [f64]) {
+        for ((to, from), (mean, scale)) in to.iter_mut().zip(from).zip(self.mean.iter().zip(&self.scale)) {
+            *to = (from - mean) * scale;
+        }
     }
 }
 
