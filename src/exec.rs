@@ -132,6 +132,19 @@ mod tests {
     }
 
     #[test]
+    fn rows_of_three_images_go_together() {
+        let monitor = Monitor::default();
+        let (mut a, mut b, mut c) = (vec![0; 12], vec![1; 12], vec![2; 12]);
+        for_rows_of_three([&mut a, &mut b, &mut c], 4, monitor.job(), |y, rows| {
+            rows.into_iter().for_each(|row| row.iter_mut().for_each(|v| *v += 10 * y));
+        })
+        .unwrap();
+        for (image, start) in [(a, 0), (b, 1), (c, 2)] {
+            assert!(image.iter().enumerate().all(|(i, &v)| v == start + 10 * (i / 4)));
+        }
+    }
+
+    #[test]
     fn a_cancelled_loop_stops_with_an_error() {
         let monitor = Monitor::default();
         let pool = Pool::new(2).unwrap();

@@ -222,6 +222,50 @@ fn degenerate_depth_has_a_right_answer_or_a_clear_error() {
 }
 
 #[test]
+fn planes_are_exact_beside_holes_and_on_narrow_images() {
+    // A slanted plane, a hole at random in every third pixel: the fit is still exact.
+    let (width, height) = (90, 70);
+    let camera = camera(0.0, 0.0, 0.0, width, height);
+    let slanted = Vec3::new(-0.4, 0.2, -1.0).normalize();
+    let depth = Image::from_fn(width, height, |x, y| {
+        let ray = camera.ray(DVec2::new(x as f64 + 0.5, y as f64 + 0.5)).as_vec3();
+        let hole = Rng::new(3, &[x as u64, y as u64]).below(3) == 0;
+        [if hole { 0.0 } else { -2.0 / slanted.dot(ray) }]
+    })
+    .unwrap();
+    let room = RoomView { perspective: &camera, segments: &[] };
+    let map = Some(DepthMap { image: &depth, kind: DepthKind::AlongZ });
+    let features = run_with(&photo(width, height), map, Some(room)).unwrap();
+    for p in features.image.data.chunks_exact(CHANNELS) {
+        assert!(Vec3::from_slice(&p[7..10]).angle_between(slanted) < 2e-3, "{p:?}");
+    }
+    // Pixels of one row or column span no plane: they face the camera.
+    for (w, h) in [(40, 1), (1, 40), (1, 1)] {
+        let depth = Image::from_fn(w, h, |x, y| [1.0 + (x + y) as f32]).unwrap();
+        let map = Some(DepthMap { image: &depth, kind: DepthKind::AlongZ });
+        let features = run_with(&photo(w, h), map, None).unwrap();
+        assert!(features.image.data.chunks_exact(CHANNELS).all(|p| p[7..10] == [0.0, 0.0, -1.0]));
+    }
+}
+
+#[test]
+fn saturated_and_grey_photos_have_their_lab() {
+    for (channels, value, lab) in [(3, 1.0, [100.0, 0.0, 0.0]), (1, 0.18, [49.496_108, 0.0, 0.0]), (4, 0.0, [0.0; 3])] {
+        let mut photo = Image::new(70, 3, channels).unwrap();
+        photo.data.fill(value);
+        // What is beyond colour does not count, whatever it is.
+        if channels == 4 {
+            photo.data.chunks_exact_mut(4).for_each(|p| p[3] = f32::NAN);
+        }
+        let features = run_with(&photo, None, None).unwrap();
+        assert_eq!(features.non_finite, 0);
+        for p in features.image.data.chunks_exact(CHANNELS) {
+            assert!(p.iter().zip(lab).all(|(a, b)| (a - b).abs() < 1e-4), "{p:?}");
+        }
+    }
+}
+
+#[test]
 fn any_photo_has_finite_features() {
     for (w, h) in [(1, 1), (1, 7), (7, 1), (33, 2)] {
         let mut photo = photo(w, h);

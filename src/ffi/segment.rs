@@ -48,8 +48,9 @@ pub struct luxfer_segment_params {
     pub struct_size: u32,
     /// Samples drawn from the strokes of each class, in [1, 1000000]; default 1000.
     pub samples_per_class: u32,
-    /// Which channels of the features to use, bit i for channel i; default all. For lights 7, colour only, is best: they
-    /// share the plane's geometry.
+    /// Which channels of the features to use, bit i for channel i. 0, the default: of the ten of luxfer_features colour, colour
+    /// and position, colour and normal, or all, whichever does best on strokes held out; of any other number all. For lights
+    /// 7, colour only, is best: they share the plane's geometry.
     pub channels: u32,
     /// Must be 0.
     pub reserved: u32,
@@ -86,8 +87,8 @@ impl luxfer_segment_params {
 pub struct luxfer_segment_report {
     /// sizeof(luxfer_segment_report), set by the caller.
     pub struct_size: u32,
-    /// Must be 0.
-    pub reserved: u32,
+    /// The channels of the features that were used, bit i for channel i.
+    pub channels: u32,
     /// Expected share of wrong pixels, in [0, 1], from strokes held out of the training.
     pub error: f64,
     /// Samples used of the negative class.
@@ -105,7 +106,7 @@ unsafe impl Versioned for luxfer_segment_report {
     fn defaults() -> Self {
         Self {
             struct_size: 40,
-            reserved: 0,
+            channels: 0,
             error: 0.0,
             negative_samples: 0,
             positive_samples: 0,
@@ -346,6 +347,7 @@ pub unsafe extern "C" fn luxfer_segment_get_report(
         let out = Report::new(report)?;
         let output = stage.output()?;
         out.set(luxfer_segment_report {
+            channels: output.channels,
             error: output.error,
             negative_samples: output.samples[0] as u64,
             positive_samples: output.samples[1] as u64,

@@ -30,7 +30,11 @@ struct Judge {
     mean: Vec<f32>,
     scale: Vec<f32>,
     logit: Form,
+    /// The planes that the logit is of.
+    columns: Vec<usize>,
     seen: Vec<Form>,
+    /// All planes.
+    all: Vec<usize>,
     /// Factors on logits where features are like those painted, and where not.
     calibration: [f32; 2],
 }
@@ -43,7 +47,8 @@ struct Form {
 }
 
 impl Form {
-    fn of_model(chosen: &Chosen, d: usize) -> Self {
+    fn of_model(chosen: &Chosen) -> Self {
+        let d = chosen.columns.len();
         let w: Vec<f32> = chosen.weights.iter().map(|&w| w as f32).collect();
         let a = if chosen.model == Model::Quadratic { w[d..w.len() - 1].to_vec() } else { Vec::new() };
         Self { a, b: w[..d].to_vec(), c: w[w.len() - 1] }
@@ -63,16 +68,18 @@ impl Form {
     }
 
     #[inline(always)]
-    fn evaluate(&self, planes: &[Plane]) -> Plane {
+    fn evaluate(&self, planes: &[Plane], columns: &[usize]) -> Plane {
         let mut sum = [self.c; TILE];
         let mut rest = self.a.as_slice();
-        for (i, x) in planes.iter().enumerate() {
+        for (i, &column) in columns.iter().enumerate() {
+            let x = &planes[column];
             // x_i (b_i + Σ_{j >= i} a_ij x_j)
             let mut factor = [self.b[i]; TILE];
             if !rest.is_empty() {
-                let (row, after) = rest.split_at(planes.len() - i);
+                let (row, after) = rest.split_at(columns.len() - i);
                 rest = after;
-                for (a, y) in row.iter().zip(&planes[i..]) {
+                for (a, &column) in row.iter().zip(&columns[i..]) {
+                    let y = &planes[column];
                     for k in 0..TILE {
                         factor[k] += a * y[k];
                     }
@@ -96,12 +103,16 @@ widest! {
         }
         let mut nearest = [f32::INFINITY; TILE];
         for form in &judge.seen {
-            let distance = form.evaluate(planes);
+            let distance = form.evaluate(planes, &judge.all);
             for k in 0..TILE {
                 nearest[k] = if distance[k] < nearest[k] { distance[k] } else { nearest[k] };
             }
+            // Nothing is nearer than within.
+            if nearest.iter().fold(true, |within, &v| within & (v <= 1.0)) {
+                break;
+            }
         }
-        let logit = judge.logit.evaluate(planes);
+        let logit = judge.logit.evaluate(planes, &judge.columns);
         let [familiar, unfamiliar] = judge.calibration;
         for k in 0..TILE {
             let distance = if nearest[k] > 1.0 { nearest[k].sqrt() } else { 1.0 };
@@ -112,14 +123,22 @@ widest! {
     }
 }
 
-/// Classifies every pixel by the `channels` of its features; outside `within` (above one half) all answers are 0.
-pub fn run(features: &Image, within: Option<&Image>, channels: &[usize], chosen: &Chosen, job: Job) -> Result<Classified> {
+/// Classifies every pixel by its features, of which `channels` are the samples' columns; outside `within` (above one half) all answers are 0.
+pub fn run(
+    features: &Image,
+    within: Option<&Image>,
+    channels: &[usize],
+    chosen: &Chosen,
+    job: Job,
+) -> Result<Classified> {
     let (width, height, d) = (features.width, features.height, channels.len());
     let single = |values: &[f64]| values.iter().map(|&v| v as f32).collect();
     let judges = Judge {
         mean: single(&chosen.standard.mean),
         scale: single(&chosen.standard.scale),
-        logit: Form::of_model(chosen, d),
+        logit: Form::of_model(chosen),
+        columns: chosen.columns.clone(),
+        all: (0..d).collect(),
         seen: chosen.seen.iter().map(Form::of_ellipsoid).collect(),
         calibration: [chosen.familiar.scale as f32, chosen.unfamiliar.scale as f32],
     };

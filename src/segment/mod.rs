@@ -1,22 +1,21 @@
 //! Guided segmentation: strokes on the photo to a mask with per-pixel confidence ("Lighting Style Transfer", §4.2).
 //!
 //! ```text
-//! strokes ─▶ samples ─▶ standardise ─▶ logistic models ─▶ cross-validation over strokes ─▶ the best one, calibrated 
+//! strokes ─▶ samples ─▶ standardise ─▶ logistic models ─▶ cross-validation over strokes ─▶ the best one, calibrated
 //!                                                                                            │
 //! features ─────────────────────────────────────────────────────────────────────▶ classify ◀─┘ ─▶ mask, confidence, unseen
 //! ```
 //!
 //! The paper does not name its classifier. Here it is logistic regression, with linear or with quadratic terms of the
 //! features: models without memory of single samples carry on to surfaces no stroke touched, where trees and kernels
-//! do not. Which of the two, and how far to trust its probabilities, is decided on strokes and parts of strokes held out of
-//! the training: neighbouring pixels are too alike to test each other.
+//! do not. Which of the two, on which channels, and how far to trust its probabilities, is decided on strokes and parts of
+//! strokes held out of the training: neighbouring pixels are too alike to test each other.
 //!
 //! The paper's two phases are two runs: the plane first ([`StrokeSet::plane_examples`]), then the lights `within` its
 //! mask, by colour alone ([`Params::for_lights`]), because lights lie on the plane and share its geometry.
 //!
-//! Known weaknesses, by `benches/segment.rs` on synthetic rooms. Where colours differ little, a support vector machine with
-//! an RBF kernel, and normals and colours alone, separate better than these models do with all channels; and with
-//! strokes on one wall only, probabilities between 0.6 and 0.9 are up to twice too sure.
+//! Known weakness: with strokes on few surfaces nothing held out tells channels apart, and the simplest that separate what
+//! was painted are taken; probabilities there are too sure.
 //!
 //! Not modelled: neighbourhood. Every pixel is judged alone.
 
@@ -32,7 +31,6 @@ mod tests;
 
 pub use distance::dilate;
 pub use strokes::{Stroke, StrokeSet};
-
 
 use crate::error::{Error, Result, check_range};
 use crate::exec;
@@ -178,7 +176,9 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Segmentation> {
     job.check()?;
     let probe = samples::probe(input, &channels);
     if !samples.values.iter().chain(&probe).all(|v| v.is_finite()) {
-        return Err(not_finite(exec::map(features.height, job, |y| classify::count_bad(features.row(y)))?.iter().sum()));
+        return Err(not_finite(
+            exec::map(features.height, job, |y| classify::count_bad(features.row(y)))?.iter().sum(),
+        ));
     }
 
     // The model and the channels that do best on strokes they have not seen.
@@ -190,7 +190,6 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Segmentation> {
         ridge: params.ridge,
     };
     let chosen = select::choose(&question, job.part(0.05, 0.4))?;
-    let channels: Vec<usize> = chosen.columns.iter().map(|&i| channels[i]).collect();
 
     // Every pixel.
     let classified = classify::run(features, input.within, &channels, &chosen, job.part(0.4, 1.0))?;
@@ -205,7 +204,7 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Segmentation> {
         unseen: classified.unseen,
         error,
         model: chosen.model,
-        channels: channels.iter().map(|c| 1 << c).sum(),
+        channels: chosen.columns.iter().map(|&i| 1 << channels[i]).sum(),
         samples: samples.counts,
         contradictory: samples.contradictory,
         off_image: samples.off_image,

@@ -30,20 +30,6 @@ pub struct Samples {
     pub off_image: usize,
 }
 
-impl Samples {
-    /// The same samples with some of their columns only.
-    pub fn subset(&self, columns: &[usize]) -> Self {
-        let rows = self.values.chunks_exact(self.dimension);
-        Self {
-            values: rows.flat_map(|row| columns.iter().map(|&c| row[c])).collect(),
-            dimension: columns.len(),
-            channels: columns.iter().map(|&c| self.channels[c]).collect(),
-            origins: self.origins.clone(),
-            ..*self
-        }
-    }
-}
-
 /// Parts a stroke is split into for cross-validation.
 pub const PARTS: usize = 4;
 /// Most pixels of a probe.

@@ -28,6 +28,7 @@ pub struct Chosen {
     pub model: Model,
     /// The samples' columns it looks at.
     pub columns: Vec<usize>,
+    /// Of all columns.
     pub standard: Standard,
     /// Weights of the terms (see `standardise::terms`), not calibrated.
     pub weights: Vec<f64>,
@@ -35,7 +36,7 @@ pub struct Chosen {
     pub familiar: Trust,
     /// Where they are not.
     pub unfamiliar: Trust,
-    /// For each class the mean and the inverse covariance of its samples, in standardised features, scaled so that
+    /// For each class the mean and the inverse covariance of its samples, in all standardised features, scaled so that
     /// 99 % of its samples are within distance 1.
     pub seen: Vec<Ellipsoid>,
 }
@@ -69,8 +70,6 @@ pub struct Question<'a> {
 
 /// A family of models on a subset of the features: its terms at all samples.
 struct Candidate {
-    model: Model,
-    standard: Standard,
     rows: Vec<f64>,
     dimension: usize,
 }
@@ -78,6 +77,8 @@ struct Candidate {
 /// Where classes and strokes are, and how samples are held out.
 struct Trial<'a> {
     samples: &'a Samples,
+    /// All features of all samples, standardised.
+    x: Vec<f64>,
     positive: Vec<bool>,
     by_part: Vec<usize>,
     by_stroke: Vec<usize>,
@@ -91,9 +92,11 @@ struct Trial<'a> {
 /// term, one sample's worth, which decides between equals for the simpler one.
 pub fn choose(question: &Question, job: Job) -> Result<Chosen> {
     let samples = question.samples;
+    let standard = Standard::of(samples);
     let positive: Vec<bool> = samples.origins.iter().map(|o| o.positive).collect();
     let trial = Trial {
         samples,
+        x: standard.apply(&samples.values),
         by_part: folds_of_parts(samples),
         by_stroke: folds_of_strokes(samples),
         weights: balanced(&positive, |i| i % stride(samples, positive[i]) == 0),
@@ -107,6 +110,7 @@ pub fn choose(question: &Question, job: Job) -> Result<Chosen> {
         .collect();
     order.sort_by_key(|candidate| candidate.0);
 
+    let probe = standard.apply(question.probe);
     let mut best: Option<(f64, Chosen, Candidate)> = None;
     let rounds = order.len() as f64;
     for (k, (terms, model, subset)) in order.into_iter().enumerate() {
@@ -116,18 +120,16 @@ pub fn choose(question: &Question, job: Job) -> Result<Chosen> {
             break;
         }
         let job = job.part(0.9 * k as f64 / rounds, 0.9 * (k + 1) as f64 / rounds);
-        let part = samples.subset(subset);
-        let candidate = Candidate::new(model, &part)?;
+        let candidate = Candidate::new(model, subset, &trial)?;
         let weights = trial.fit(&candidate, &trial.weights, &vec![0.0; candidate.dimension], CV_PRECISION, job)?;
         let familiar = validate(&trial, &candidate, &weights, &trial.by_part, job.part(0.1, 0.4))?;
         let unfamiliar = validate(&trial, &candidate, &weights, &trial.by_stroke, job.part(0.4, 1.0))?;
-        let seen: Vec<Ellipsoid> = [false, true].iter().map(|&c| ellipsoid(&part, &candidate.standard, c)).collect();
-        let unseen = mean_unseen(question.probe, samples.dimension, subset, &candidate.standard, &seen);
+        let unseen = mean_unseen(&probe, samples.dimension, subset, &trial.ellipsoids(subset));
         let expected = familiar.loss * (1.0 - unseen) + unfamiliar.loss * unseen + price;
         if best.as_ref().is_none_or(|(least, ..)| expected < *least) {
-            let standard = candidate.standard.clone();
-            let columns = subset.clone();
-            best = Some((expected, Chosen { model, columns, standard, weights, familiar, unfamiliar, seen }, candidate));
+            let (standard, columns) = (standard.clone(), subset.clone());
+            let chosen = Chosen { model, columns, standard, weights, familiar, unfamiliar, seen: Vec::new() };
+            best = Some((expected, chosen, candidate));
         }
     }
     let Some((_, mut chosen, candidate)) = best else {
@@ -135,20 +137,21 @@ pub fn choose(question: &Question, job: Job) -> Result<Chosen> {
     };
     let all = balanced(&trial.positive, |_| true);
     chosen.weights = trial.fit(&candidate, &all, &chosen.weights, PRECISION, job.part(0.9, 1.0))?;
+    // What is unlike all strokes is so by any feature: also by those that the strokes so far did not need.
+    chosen.seen = trial.ellipsoids(&(0..samples.dimension).collect::<Vec<_>>());
     Ok(chosen)
 }
 
 impl Candidate {
-    fn new(model: Model, samples: &Samples) -> Result<Self> {
-        let standard = Standard::of(samples);
-        let dimension = term_count(model, samples.dimension);
-        let mut rows = try_with_capacity(samples.origins.len() * dimension)?;
-        let mut x = vec![0.0; samples.dimension];
-        for values in samples.values.chunks_exact(samples.dimension) {
-            standard.apply(values, &mut x);
+    fn new(model: Model, columns: &[usize], trial: &Trial) -> Result<Self> {
+        let dimension = term_count(model, columns.len());
+        let mut rows = try_with_capacity(trial.positive.len() * dimension)?;
+        let mut x = vec![0.0; columns.len()];
+        for all in trial.x.chunks_exact(trial.samples.dimension) {
+            x.iter_mut().zip(columns).for_each(|(x, &c)| *x = all[c]);
             terms(model, &x, &mut rows);
         }
-        Ok(Self { model, standard, rows, dimension })
+        Ok(Self { rows, dimension })
     }
 }
 
@@ -156,6 +159,16 @@ impl Trial<'_> {
     fn fit(&self, of: &Candidate, weights: &[f64], start: &[f64], precision: f64, job: Job) -> Result<Vec<f64>> {
         let problem = Problem { rows: &of.rows, dimension: of.dimension, positive: &self.positive, weights };
         logistic::fit(&problem, self.ridge, start, precision, job)
+    }
+
+    /// The regions of the features in `columns` that the classes cover.
+    fn ellipsoids(&self, columns: &[usize]) -> Vec<Ellipsoid> {
+        let of_class = |class: bool| {
+            let all = self.x.chunks_exact(self.samples.dimension).zip(&self.positive);
+            let members = all.filter(|(_, positive)| **positive == class);
+            ellipsoid(members.flat_map(|(x, _)| columns.iter().map(|&c| x[c])).collect(), columns.len())
+        };
+        [false, true].map(of_class).into()
     }
 }
 
@@ -165,12 +178,11 @@ fn stride(samples: &Samples, positive: bool) -> usize {
 }
 
 /// The mean over some pixels of how far they are from all that was painted (see `classify`).
-fn mean_unseen(probe: &[f64], dimension: usize, subset: &[usize], standard: &Standard, seen: &[Ellipsoid]) -> f64 {
-    let (mut raw, mut x) = (vec![0.0; subset.len()], vec![0.0; subset.len()]);
+fn mean_unseen(probe: &[f64], dimension: usize, columns: &[usize], seen: &[Ellipsoid]) -> f64 {
+    let mut x = vec![0.0; columns.len()];
     let mut sum = 0.0;
     for pixel in probe.chunks_exact(dimension) {
-        raw.iter_mut().zip(subset).for_each(|(r, &c)| *r = pixel[c]);
-        standard.apply(&raw, &mut x);
+        x.iter_mut().zip(columns).for_each(|(x, &c)| *x = pixel[c]);
         let nearest = seen.iter().map(|e| e.squared_distance(&x)).fold(f64::INFINITY, f64::min);
         sum += 1.0 - (1.0 - nearest.max(1.0).sqrt()).exp();
     }
@@ -208,9 +220,8 @@ fn validate(trial: &Trial, candidate: &Candidate, start: &[f64], fold_of: &[usiz
         // A class that would be left without any sample keeps its own.
         let keeps = |class: bool| (0..positive.len()).all(|i| positive[i] != class || fold_of[i] == fold);
         let keeps = [keeps(false), keeps(true)];
-        let used = |i: usize| {
-            (fold_of[i] != fold || keeps[usize::from(positive[i])]) && i % stride(samples, positive[i]) == 0
-        };
+        let used =
+            |i: usize| (fold_of[i] != fold || keeps[usize::from(positive[i])]) && i % stride(samples, positive[i]) == 0;
         let without = trial.fit(candidate, &balanced(positive, used), start, CV_PRECISION, job)?;
         // Every stroke has the same say within its class, and the classes have the same.
         let tested = samples.origins.iter().enumerate().filter(|(i, _)| fold_of[*i] == fold);
@@ -240,7 +251,11 @@ fn calibrate(held_out: &[(f64, bool, f64)]) -> (f64, f64) {
             slope += share * z * (p - f64::from(positive));
             curvature += share * z * z * p * (1.0 - p);
         }
-        if slope > 0.0 { high = scale } else { low = scale }
+        if slope > 0.0 {
+            high = scale
+        } else {
+            low = scale
+        }
         let newton = scale - slope / curvature.max(1e-300);
         let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
         let is_there = (next - scale).abs() < 1e-4 * scale;
@@ -253,17 +268,9 @@ fn calibrate(held_out: &[(f64, bool, f64)]) -> (f64, f64) {
     (scale, loss)
 }
 
-/// The region of feature space that a class's samples cover.
-fn ellipsoid(samples: &Samples, standard: &Standard, class: bool) -> Ellipsoid {
-    let d = samples.dimension;
-    let of_class = samples.values.chunks_exact(d).zip(&samples.origins).filter(|(_, o)| o.positive == class);
-    let members: Vec<Vec<f64>> = of_class
-        .map(|(values, _)| {
-            let mut x = vec![0.0; d];
-            standard.apply(values, &mut x);
-            x
-        })
-        .collect();
+/// The region of feature space that samples of `d` features each cover.
+fn ellipsoid(members: Vec<f64>, d: usize) -> Ellipsoid {
+    let members: Vec<&[f64]> = members.chunks_exact(d).collect();
     let n = members.len() as f64;
     let centre: Vec<f64> = (0..d).map(|i| members.iter().map(|x| x[i]).sum::<f64>() / n).collect();
     let mut covariance = vec![0.0; d * d];
@@ -293,8 +300,8 @@ fn ellipsoid(samples: &Samples, standard: &Standard, class: bool) -> Ellipsoid {
 
 impl Ellipsoid {
     fn squared_distance(&self, x: &[f64]) -> f64 {
-        let d = x.len();
-        let off: Vec<f64> = x.iter().zip(&self.centre).map(|(x, c)| x - c).collect();
-        (0..d).map(|i| off[i] * logistic::dot(&self.inverse[i * d..(i + 1) * d], &off)).sum()
+        let off = || x.iter().zip(&self.centre).map(|(x, c)| x - c);
+        let rows = self.inverse.chunks_exact(x.len());
+        rows.zip(off()).map(|(row, o)| o * row.iter().zip(off()).map(|(a, b)| a * b).sum::<f64>()).sum()
     }
 }

@@ -41,11 +41,10 @@ impl Standard {
         Self { mean, scale }
     }
 
-    /// One sample's features, made comparable.
-    pub fn apply(&self, from: &[f64], to: &mut [f64]) {
-        for ((to, from), (mean, scale)) in to.iter_mut().zip(from).zip(self.mean.iter().zip(&self.scale)) {
-            *to = (from - mean) * scale;
-        }
+    /// Features, one sample after the other, made comparable.
+    pub fn apply(&self, values: &[f64]) -> Vec<f64> {
+        let standard = self.mean.iter().zip(&self.scale).cycle();
+        values.iter().zip(standard).map(|(v, (mean, scale))| (v - mean) * scale).collect()
     }
 }
 

@@ -182,7 +182,7 @@ fn useless_features_do_no_harm() {
         o[10..14].copy_from_slice(&f[6..10]);
         o[14] = 1e9;
     }
-    let params = Params { channels: u32::MAX, ..Params::default() };
+    let params = Params::default();
     let got = segment(&wide, &plane_strokes(), None, &params).unwrap();
     assert_eq!(got.confidence.count_non_finite(), 0);
     assert!(iou(&got.mask, |i| faces[i] == 0 || faces[i] == 5) >= 0.97);
@@ -192,6 +192,67 @@ fn useless_features_do_no_harm() {
     let got = segment(&flat, &plane_strokes(), None, &params).unwrap();
     assert!(got.confidence.data.iter().all(|c| (c - 0.5).abs() < 1e-3));
     assert!(got.error >= 0.49, "{}", got.error);
+}
+
+#[test]
+fn channels_are_chosen_unless_they_are_given() {
+    let (features, faces) = room();
+    let is_ceiling = |i: usize| faces[i] == 0 || faces[i] == 5;
+    let chosen = segment(&features, &plane_strokes(), None, &Params::default()).unwrap();
+    assert!(SUBSETS.contains(&chosen.channels), "{:#b}", chosen.channels);
+    // No subset given by hand does better by much, and what is given is taken, also beyond the channels there are.
+    for subset in SUBSETS {
+        let params = Params { channels: subset | 1 << 20, ..Params::default() };
+        let given = segment(&features, &plane_strokes(), None, &params).unwrap();
+        assert_eq!(given.channels, subset);
+        assert!(iou(&chosen.mask, is_ceiling) >= iou(&given.mask, is_ceiling) - 0.01, "{subset:#b}");
+    }
+    // Position tells nothing where every stroke's colour does, and colour alone is simplest.
+    let painted = Image::from_fn(WIDTH, HEIGHT, |x, y| {
+        let hash = Rng::new(3, &[x as u64, y as u64]).next_f32();
+        let lightness = if is_ceiling(y * WIDTH + x) { 80.0 } else { 20.0 };
+        [lightness + hash, hash, 0.0, 0.5, x as f32, y as f32, hash, 0.0, 0.0, -1.0]
+    })
+    .unwrap();
+    let got = segment(&painted, &plane_strokes(), None, &Params::default()).unwrap();
+    assert_eq!(got.channels, 0b111);
+    assert!(iou(&got.mask, is_ceiling) > 0.999);
+}
+
+#[test]
+fn the_largest_strokes_and_many_of_them_are_as_the_few() {
+    let (features, faces) = room();
+    // A million pixels of strokes: everything painted, by a stroke for every row and face.
+    let mut strokes = Vec::new();
+    for y in 0..HEIGHT {
+        for face in 0..6 {
+            let row = (0..WIDTH).map(|x| y * WIDTH + x).filter(|&i| faces[i] == face);
+            let pixels: Vec<u32> = row.map(|i| i as u32).collect();
+            strokes.push(Stroke { pixels, positive: face == 0 || face == 5 });
+        }
+    }
+    let got = segment(&features, &strokes, None, &Params::default()).unwrap();
+    assert_eq!(got.samples, [1000, 1000]);
+    assert!(iou(&got.mask, |i| faces[i] == 0 || faces[i] == 5) > 0.98);
+}
+
+#[test]
+fn infinite_and_saturated_features_are_refused_or_used() {
+    let (features, faces) = room();
+    // All pixels saturated: colour says nothing, geometry still does.
+    let mut white = features.clone();
+    white.data.chunks_exact_mut(CHANNELS).for_each(|p| p[..3].copy_from_slice(&[100.0, 0.0, 0.0]));
+    let got = segment(&white, &plane_strokes(), None, &Params::default()).unwrap();
+    assert!(iou(&got.mask, |i| faces[i] == 0 || faces[i] == 5) > 0.95);
+    // Not finite where no stroke is, and under a stroke.
+    for at in [(WIDTH * HEIGHT - 1) * CHANNELS, plane_strokes()[0].pixels[9] as usize * CHANNELS + 2] {
+        for v in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+            let mut bad = features.clone();
+            bad.data[at] = v;
+            let error = segment(&bad, &plane_strokes(), None, &Params::default()).unwrap_err();
+            assert!(error.message.contains("1 values"), "{error}");
+        }
+    }
 }
 
 #[test]
@@ -213,7 +274,7 @@ fn the_smallest_inputs_work() {
 fn wrong_arguments_are_refused() {
     let (mut features, _) = room();
     let strokes = plane_strokes();
-    let none = Params { channels: 0, ..Params::default() };
+    let none = Params { channels: 1 << 10, ..Params::default() };
     assert!(segment(&features, &strokes, None, &none).unwrap_err().message.contains("channels"));
     let zero = Params { samples_per_class: 0, ..Params::default() };
     assert!(segment(&features, &strokes, None, &zero).unwrap_err().message.contains("samples_per_class is 0"));
