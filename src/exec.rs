@@ -111,6 +111,11 @@ pub fn map<T: Send>(count: usize, job: Job, work: impl Fn(usize) -> T + Sync) ->
         .collect()
 }
 
+/// Does two things, at the same time where a thread is free.
+pub fn both<A: Send, B: Send>(a: impl FnOnce() -> A + Send, b: impl FnOnce() -> B + Send) -> (A, B) {
+    rayon::join(a, b)
+}
+
 /// Sorts in parallel. Equal elements must be the same to the bit, or their order depends on the number of threads.
 pub fn sort<T: Ord + Send>(data: &mut [T]) {
     data.par_sort_unstable();

@@ -106,7 +106,9 @@ fn points_at_the_centre_and_at_infinity_are_exact() {
 
 #[test]
 fn one_family_gives_its_point_wherever_it_is() {
-    for far in [300.0, 5e3, 1e6, 1e12, f64::INFINITY] {
+    // Inside the image, on its border, and ever farther outside.
+    let border = 400.0 / 0.4f64.cos();
+    for far in [300.0, border, 5e3, 1e6, 1e12, f64::INFINITY] {
         let along = DVec2::from_angle(0.4);
         let centre = DVec2::new(400.0, 300.0);
         let point = if far.is_finite() { (centre + along * far).extend(1.0) } else { along.extend(0.0) };
@@ -132,6 +134,22 @@ fn two_families_give_the_third() {
     assert!(angle(view.perspective.axes.y_axis, truth.axes.y_axis) < 0.01);
     assert!((view.perspective.focal / 700.0 - 1.0).abs() < 0.02);
     assert_eq!(view.perspective.focal_source, FocalSource::VanishingPoints);
+}
+
+#[test]
+fn families_that_no_camera_could_see_at_right_angles_still_give_orthogonal_axes() {
+    // Vanishing points on one side of the centre: their rays meet at less than a right angle whatever the focal length.
+    let points = [DVec2::new(1500.0, 320.0), DVec2::new(2500.0, 350.0)];
+    let segments: Vec<Segment> = (0..80)
+        .map(|i| {
+            let a = DVec2::new((i * 97 % 700) as f64, (i * i * 31 % 590) as f64);
+            Segment { a, b: a + (points[i % 2] - a).normalize() * 70.0 }
+        })
+        .collect();
+    let view = view_of(&segments, &Params::default()).unwrap();
+    let axes = view.perspective.axes;
+    assert!((axes.transpose() * axes - DMat3::IDENTITY).to_cols_array().iter().all(|v| v.abs() < 1e-9), "{axes}");
+    assert!(view.perspective.focal.is_finite() && view.perspective.focal > 0.0);
 }
 
 #[test]
@@ -297,9 +315,17 @@ fn images_without_lines_are_refused_and_never_crash() {
             let error = find_view(image, &params, Monitor::default().job()).unwrap_err();
             assert_eq!(error.kind, ErrorKind::Degenerate);
         }
-        let noisy = Image::from_fn(200, 150, |x, y| [noise(x, y); 3]).unwrap();
-        let found = find_segments(&noisy, &params, Monitor::default().job()).unwrap();
-        assert!(found.iter().all(|s| s.a.is_finite() && s.b.is_finite()));
+        // Noise; noise of one bit; all but a corner saturated; every third pixel not finite.
+        let odd = |x: usize, y: usize| if (x + y) % 3 == 0 { f32::NAN } else { noise(x, y) };
+        for image in [
+            Image::from_fn(200, 150, |x, y| [noise(x, y); 3]).unwrap(),
+            Image::from_fn(200, 150, |x, y| [noise(x, y).round(); 3]).unwrap(),
+            Image::from_fn(200, 150, |x, y| [if x + y < 20 { 0.0 } else { 1.0 }; 3]).unwrap(),
+            Image::from_fn(200, 150, |x, y| [odd(x, y); 3]).unwrap(),
+        ] {
+            let found = find_segments(&image, &params, Monitor::default().job()).unwrap();
+            assert!(found.iter().all(|s| s.a.is_finite() && s.b.is_finite()));
+        }
     }
 }
 

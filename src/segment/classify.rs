@@ -25,6 +25,20 @@ pub struct Classified {
     pub bad: usize,
 }
 
+/// The answers, still black: making room for them takes a while, which training can share.
+pub struct Blank {
+    mask: Image,
+    confidence: Image,
+    unseen: Image,
+}
+
+impl Blank {
+    pub fn new(width: usize, height: usize) -> Result<Self> {
+        let black = || Image::new(width, height, 1);
+        Ok(Self { mask: black()?, confidence: black()?, unseen: black()? })
+    }
+}
+
 /// Everything that answers for a tile.
 struct Judge {
     mean: Vec<f32>,
@@ -129,6 +143,7 @@ pub fn run(
     within: Option<&Image>,
     channels: &[usize],
     chosen: &Chosen,
+    blank: Blank,
     job: Job,
 ) -> Result<Classified> {
     let (width, height, d) = (features.width, features.height, channels.len());
@@ -142,8 +157,7 @@ pub fn run(
         seen: chosen.seen.iter().map(Form::of_ellipsoid).collect(),
         calibration: [chosen.familiar.scale as f32, chosen.unfamiliar.scale as f32],
     };
-    let black = || Image::new(width, height, 1);
-    let (mut mask, mut confidence, mut unseen) = (black()?, black()?, black()?);
+    let Blank { mut mask, mut confidence, mut unseen } = blank;
     let bad = AtomicUsize::new(0);
     let images = [&mut mask, &mut confidence, &mut unseen].map(|image| image.data.as_mut_slice());
     exec::for_rows_of_three(images, width, job.part(0.0, 0.9), |y, [mask, confidence, unseen]| {

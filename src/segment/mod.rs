@@ -172,7 +172,9 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Segmentation> {
 
     // Examples.
     let channels: Vec<usize> = (0..features.channels).filter(|c| subsets.iter().any(|s| s >> c & 1 == 1)).collect();
-    let samples = samples::draw(input, &channels, params)?;
+    let blank = || classify::Blank::new(features.width, features.height);
+    let (samples, blank) = exec::both(|| samples::draw(input, &channels, params), blank);
+    let (samples, blank) = (samples?, blank?);
     job.check()?;
     let probe = samples::probe(input, &channels);
     if !samples.values.iter().chain(&probe).all(|v| v.is_finite()) {
@@ -192,7 +194,7 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Segmentation> {
     let chosen = select::choose(&question, job.part(0.05, 0.4))?;
 
     // Every pixel.
-    let classified = classify::run(features, input.within, &channels, &chosen, job.part(0.4, 1.0))?;
+    let classified = classify::run(features, input.within, &channels, &chosen, blank, job.part(0.4, 1.0))?;
     if classified.bad > 0 {
         return Err(not_finite(classified.bad));
     }

@@ -122,8 +122,11 @@ pub fn choose(question: &Question, job: Job) -> Result<Chosen> {
         let job = job.part(0.9 * k as f64 / rounds, 0.9 * (k + 1) as f64 / rounds);
         let candidate = Candidate::new(model, subset, &trial)?;
         let weights = trial.fit(&candidate, &trial.weights, &vec![0.0; candidate.dimension], CV_PRECISION, job)?;
-        let familiar = validate(&trial, &candidate, &weights, &trial.by_part, job.part(0.1, 0.4))?;
-        let unfamiliar = validate(&trial, &candidate, &weights, &trial.by_stroke, job.part(0.4, 1.0))?;
+        let (familiar, unfamiliar) = exec::both(
+            || validate(&trial, &candidate, &weights, &trial.by_part, job.part(0.1, 0.4)),
+            || validate(&trial, &candidate, &weights, &trial.by_stroke, job.part(0.4, 1.0)),
+        );
+        let (familiar, unfamiliar) = (familiar?, unfamiliar?);
         let unseen = mean_unseen(&probe, samples.dimension, subset, &trial.ellipsoids(subset));
         let expected = familiar.loss * (1.0 - unseen) + unfamiliar.loss * unseen + price;
         if best.as_ref().is_none_or(|(least, ..)| expected < *least) {
