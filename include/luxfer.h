@@ -1398,8 +1398,9 @@ typedef struct luxfer_segment_params {
     /** Samples drawn from the strokes of each class, in [1, 1000000]; default 1000. */
     uint32_t samples_per_class;
     /**
-     * Which channels of the features to use, bit i for channel i; default all. For lights 7, colour only, is best: they
-     * share the plane's geometry.
+     * Which channels of the features to use, bit i for channel i. 0, the default: of the ten of luxfer_features colour, colour
+     * and position, colour and normal, or all, whichever does best on strokes held out; of any other number all. For lights
+     * 7, colour only, is best: they share the plane's geometry.
      */
     uint32_t channels;
     /** Must be 0. */
@@ -1420,8 +1421,8 @@ typedef int32_t luxfer_segment_image;
 typedef struct luxfer_segment_report {
     /** sizeof(luxfer_segment_report), set by the caller. */
     uint32_t struct_size;
-    /** Must be 0. */
-    uint32_t reserved;
+    /** The channels of the features that were used, bit i for channel i. */
+    uint32_t channels;
     /** Expected share of wrong pixels, in [0, 1], from strokes held out of the training. */
     double error;
     /** Samples used of the negative class. */
@@ -1583,6 +1584,13 @@ typedef struct luxfer_emission_params {
     float clip_level;
     /** With 1 every lamp shines evenly, in its mean colour; default 0: as in the photo. */
     uint32_t even_lamps;
+    /**
+     * With 1 the texture may be repeated: what leaves it on one side comes in on the other, and a lattice is stretched, by less
+     * than half a period over the whole, to fit. Needs whole_lamps. Default 0.
+     */
+    uint32_t tileable;
+    /** Must be 0. */
+    uint32_t reserved;
 } luxfer_emission_params;
 
 /** An image of the emission: a LUXFER_EMISSION_ value. */

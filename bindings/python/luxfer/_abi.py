@@ -568,7 +568,7 @@ class luxfer_segment_report(Structure):
 
     _fields_ = [
         ("struct_size", c_uint32),
-        ("reserved", c_uint32),
+        ("channels", c_uint32),
         ("error", c_double),
         ("negative_samples", c_uint64),
         ("positive_samples", c_uint64),
@@ -594,6 +594,8 @@ class luxfer_emission_params(Structure):
         ("offset", c_double * 2),
         ("clip_level", c_float),
         ("even_lamps", c_uint32),
+        ("tileable", c_uint32),
+        ("reserved", c_uint32),
     ]
 
 

@@ -992,8 +992,9 @@ class SegmentParams(TypedDict, total=False):
     samples_per_class: int
     """Samples drawn from the strokes of each class, in [1, 1000000]; default 1000."""
     channels: int
-    """Which channels of the features to use, bit i for channel i; default all. For lights 7, colour only, is
-    best: they share the plane's geometry."""
+    """Which channels of the features to use, bit i for channel i. 0, the default: of the ten of luxfer_features
+    colour, colour and position, colour and normal, or all, whichever does best on strokes held out; of any
+    other number all. For lights 7, colour only, is best: they share the plane's geometry."""
     ridge: float
     """Strength of the prior that keeps weights small, in [1e-9, 1e3]; default 1e-3."""
     seed: int
@@ -1004,6 +1005,8 @@ class SegmentParams(TypedDict, total=False):
 class SegmentReport:
     """How good a segmentation is."""
 
+    channels: int
+    """The channels of the features that were used, bit i for channel i."""
     error: float
     """Expected share of wrong pixels, in [0, 1], from strokes held out of the training."""
     negative_samples: int
@@ -1044,6 +1047,9 @@ class EmissionParams(TypedDict, total=False):
     of their rims, as dark as the clipped channels allow. With 0 nothing is taken for clipped."""
     even_lamps: int
     """With 1 every lamp shines evenly, in its mean colour; default 0: as in the photo."""
+    tileable: int
+    """With 1 the texture may be repeated: what leaves it on one side comes in on the other, and a lattice is
+    stretched, by less than half a period over the whole, to fit. Needs whole_lamps. Default 0."""
 
 
 @dataclass(frozen=True)
