@@ -69,7 +69,8 @@ const fn relative_row(row: usize) -> [f64; 3] {
 fn cube_root(t: f64) -> f64 {
     // A third of the exponent and of the mantissa as they stand is right to 4 %, Halley's step cubes that.
     let single = t as f32;
-    let guess = f32::from_bits(((single.to_bits() as i32 as f32 * (1.0 / 3.0)) as i32 as u32).wrapping_add(709_958_130));
+    let guess =
+        f32::from_bits(((single.to_bits() as i32 as f32 * (1.0 / 3.0)) as i32 as u32).wrapping_add(709_958_130));
     let cube = guess * guess * guess;
     let better = f64::from(guess * ((cube + 2.0 * single) / (2.0 * cube + single)));
     let cube = better * better * better;
