@@ -1,5 +1,5 @@
-//! The solve of the emission: error against time in the demonstration room, whether its intervals hold, and what many lamps
-//! cost. Two threads; times include the preparation of the scene.
+//! The solve of the emission: error against time in the demonstration room and in scenes of others, whether its intervals hold,
+//! and what many lamps cost. Two threads; times include the preparation of the scene, but where they are told apart.
 
 mod harness;
 
@@ -66,6 +66,7 @@ fn main() {
             }
         }
     }
+    pool.run(others);
     pool.run(lamps);
 }
 
@@ -128,6 +129,61 @@ fn curve(case: &Case, truth: DVec3) -> f64 {
         println!("# no plot: {error}");
     }
     to_one_percent
+}
+
+/// What 5 % and 1 % take in scenes that others have made: the target is what looks up of the mesh with most of that, a floor
+/// or the ground, in the light of the lamp over it.
+fn others() {
+    let heads = ["scene", "triangles", "scene ready s", "then to 5 % s", "then to 1 % s", "paths", "interval %"];
+    let mut table = Table::new(heads);
+    for load in [scenes::kitchen, scenes::apartment, scenes::sponza] {
+        let setting = match load() {
+            Ok(setting) => setting,
+            Err(reason) => {
+                println!("# a scene is absent: {reason}");
+                continue;
+            }
+        };
+        let (name, triangles) = (setting.name, setting.triangle_count());
+        let emitter = setting.scene.materials.len() - 1;
+        let target = floor(&setting.scene, emitter);
+        let case = Case { scene: Arc::new(setting.scene), emitter, target };
+        let (ready, world) = time(Clock::Wall, || case.world());
+        let mut row = vec![name.to_string(), triangles.to_string(), format!("{ready:.3}")];
+        let mut last = None;
+        for target_error in [0.05, 0.01] {
+            let solve = |seed: u64| {
+                let (quantity, paths) = (Quantity::Incident, 1 << 26);
+                time(Clock::Wall, || {
+                    case.solve(&world, &Params { quantity, target_error, paths, seed, ..Params::default() })
+                })
+            };
+            let runs: Vec<(f64, Solution)> = (0..ROUNDS as u64).map(solve).collect();
+            row.push(format!("{:.3}", median(&runs.iter().map(|r| r.0).collect::<Vec<_>>())));
+            last = runs.into_iter().next();
+        }
+        let solution = last.map(|l| l.1);
+        row.push(solution.as_ref().map_or(0, |s| s.paths).to_string());
+        row.push(format!("{:.2}", 100.0 * solution.map_or(f64::NAN, |s| s.error())));
+        table.row(row);
+    }
+    table.print("scenes of others");
+}
+
+/// What looks up of the mesh with most of that.
+fn floor(scene: &Scene, emitter: usize) -> Vec<(usize, usize)> {
+    let up = |mesh: usize| {
+        let all = 0..scene.meshes[mesh].triangles.len();
+        let areas = all.map(move |t| {
+            let [a, b, c] = scene.meshes[mesh].corners(t);
+            ((mesh, t), (b - a).cross(c - a))
+        });
+        areas.filter(|(_, area)| area.y > 0.9 * area.length())
+    };
+    let meshes = (0..scene.meshes.len()).filter(|m| scene.meshes[*m].material != emitter);
+    let size = |mesh: &usize| up(*mesh).map(|(_, area)| f64::from(area.length())).sum::<f64>();
+    let largest = meshes.max_by(|a, b| size(a).total_cmp(&size(b))).expect("a scene has meshes");
+    up(largest).map(|(triangle, _)| triangle).collect()
 }
 
 /// Gradient descent through Mitsuba's adjoint (`prb`) on the same room: the best of its settings. Ours states an interval of

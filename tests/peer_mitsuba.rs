@@ -18,6 +18,10 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::sync::Arc;
 
+#[path = "peer/statistics.rs"]
+mod statistics;
+use statistics::{Difference, statistics, welch};
+
 const SIDE: usize = 24;
 const BLOCK: usize = 4;
 const IMAGES: u32 = 16;
@@ -136,39 +140,6 @@ fn theirs(python: &Path, scene: &Scene) -> Vec<Vec<f64>> {
     images
 }
 
-/// Mean, and variance of the mean, of one number over all images.
-fn statistics(images: &[Vec<f64>], number: usize) -> (f64, f64) {
-    let n = images.len() as f64;
-    let mean = images.iter().map(|i| i[number]).sum::<f64>() / n;
-    let variance = images.iter().map(|i| (i[number] - mean).powi(2)).sum::<f64>() / (n - 1.0) / n;
-    (mean, variance)
-}
-
-/// Beyond what Student's t lies with a probability of `outside` on both sides together, by bisection of its integral.
-fn student_quantile(outside: f64, degrees: f64) -> f64 {
-    // The tail in the angle whose tangent is t / sqrt(degrees), where the density is a power of the cosine.
-    let steps = 20_000;
-    let weight = |angle: f64| angle.cos().powf(degrees - 1.0);
-    let step = std::f64::consts::FRAC_PI_2 / f64::from(steps);
-    let slices: Vec<f64> = (0..steps).map(|i| weight((f64::from(i) + 0.5) * step)).collect();
-    let total: f64 = slices.iter().sum();
-    let mut tail = 0.0;
-    for (i, slice) in slices.iter().enumerate().rev() {
-        tail += slice;
-        if tail >= outside * total {
-            return degrees.sqrt() * (i as f64 * step).tan();
-        }
-    }
-    0.0
-}
-
-#[test]
-fn quantiles_are_those_of_printed_tables() {
-    for (outside, degrees, t) in [(0.05, 23.0, 2.0687), (0.01, 10.0, 3.1693), (0.001, 30.0, 3.6460)] {
-        assert!((student_quantile(outside, degrees) / t - 1.0).abs() < 2e-3, "{outside} {degrees}");
-    }
-}
-
 #[test]
 fn a_cornell_box_is_mitsubas_within_the_joint_confidence_interval() {
     let python = Path::new(env!("CARGO_MANIFEST_DIR")).join("target/peers/mitsuba/bin/python");
@@ -180,18 +151,14 @@ fn a_cornell_box_is_mitsubas_within_the_joint_confidence_interval() {
     let scene = cornell();
     let (ours, theirs) = (ours(&scene), theirs(&python, &scene));
     let tests = ours[0].len();
-    let outside = 1.0 - (1.0 - 1e-3f64).powf(1.0 / tests as f64);
     // The corners outside the box see nothing.
     let (mut widest, mut worst, mut lit) = (0.0f64, 0.0f64, 0);
     for number in 0..tests {
-        let ((a, va), (b, vb)) = (statistics(&ours, number), statistics(&theirs, number));
-        let n = f64::from(IMAGES);
-        let degrees = (va + vb).powi(2) / ((va * va + vb * vb) / (n - 1.0)).max(f64::MIN_POSITIVE);
-        let interval = student_quantile(outside, degrees.max(1.0)) * (va + vb).sqrt();
-        assert!((a - b).abs() <= interval + 1e-5 * a, "number {number}: {a} and {b} differ by more than {interval}");
+        let Difference { first: a, second: b, off, interval } = welch(&ours, &theirs, number, tests);
+        assert!(off <= interval + 1e-5 * a, "number {number}: {a} and {b} differ by more than {interval}");
         if a > 0.0 {
             widest = widest.max(interval / a);
-            worst = worst.max((a - b).abs() / a);
+            worst = worst.max(off / a);
             lit += 1;
         }
     }

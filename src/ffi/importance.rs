@@ -17,7 +17,7 @@ use super::stage::{Stage, need};
 use super::status::luxfer_status;
 use crate::error::{Error, Result};
 use crate::job::Monitor;
-use crate::relight::{self, Goal, Importance, MapParams, Place};
+use crate::relight::{self, Goal, Importance, MapParams, Place, Placement};
 use crate::scene::Texture;
 use glam::{DMat3, Mat3, Vec3};
 use std::sync::Arc;
@@ -101,8 +101,14 @@ pub(super) struct Inputs {
     emitter: Option<Emitter>,
 }
 
+/// The map, and the best placement of a texture once one has been looked for.
+pub(super) struct Traced {
+    pub map: Arc<Importance>,
+    pub placement: Option<Placement>,
+}
+
 impl Handle for luxfer_importance {
-    type Object = Stage<Inputs, Importance>;
+    type Object = Stage<Inputs, Traced>;
     const TAG: u64 = tag(b"lux.impo");
     const NAME: &'static str = "luxfer_importance";
 }
@@ -148,7 +154,7 @@ pub unsafe extern "C" fn luxfer_importance_set_scene(
     })
 }
 
-/// Starts a job that traces the map. params may be NULL for the defaults. The caller releases *job. Any thread.
+/// Starts a job that traces the map; a placement that was found is forgotten. params may be NULL for the defaults. The caller releases *job. Any thread.
 /// LUXFER_INVALID_OPERATION if the scene is missing or a job runs already. The job may end with LUXFER_INVALID_ARGUMENT if
 /// the scene is not valid, the surfaces have no texture coordinates, or a setting is out of range.
 #[unsafe(no_mangle)]
@@ -184,7 +190,8 @@ pub unsafe extern "C" fn luxfer_importance_start(
                 sense: [relight::Sense::Exactly; 3],
                 weight: 1.0,
             };
-            Importance::trace(&scene, emitter.material as usize, &goal, &params, job)
+            let map = Importance::trace(&scene, emitter.material as usize, &goal, &params, job)?;
+            Ok(Traced { map: Arc::new(map), placement: None })
         })
     })
 }
@@ -199,7 +206,7 @@ pub unsafe extern "C" fn luxfer_importance_get_image(
 ) -> luxfer_status {
     enter(importance, |stage| {
         let out = Out::new(image, "image")?;
-        let map = stage.output()?;
+        let map = stage.output()?.map.clone();
         let (width, height) = map.size();
         out.set(handle::give(Pixels::counted(stage.context(), width, height, 3, || map.image())?));
         Ok(())
@@ -254,11 +261,11 @@ pub unsafe extern "C" fn luxfer_importance_solve(
 }
 
 fn respond(
-    stage: &Stage<Inputs, Importance>,
+    stage: &Stage<Inputs, Traced>,
     texture: *mut luxfer_image,
     placement: *const f64,
 ) -> Result<(Arc<Importance>, relight::Response)> {
-    let map = stage.output()?;
+    let map = stage.output()?.map.clone();
     let image = handle::borrow_in(stage.context(), texture, "texture")?;
     let placement = if placement.is_null() {
         Mat3::IDENTITY

@@ -6,11 +6,11 @@
 use super::guard::{enter, guard};
 use super::handle::{self, Owned};
 use super::image::luxfer_image;
-use super::importance::luxfer_importance;
+use super::importance::{Traced, luxfer_importance};
+use super::job::luxfer_job;
 use super::params::{self, Report, Versioned};
 use super::status::luxfer_status;
-use crate::error::{Error, Result};
-use crate::job::Monitor;
+use crate::error::{Error, ErrorKind, Result};
 use crate::relight::{Aim, PlaceParams, Pose};
 use glam::{DVec2, Vec3};
 
@@ -149,23 +149,45 @@ pub unsafe extern "C" fn luxfer_placement_params_init(
     guard(|| params::init(params, size))
 }
 
-/// Finds the placement of a texture (linear, in cd/m²; it repeats) that is best for the target. params may be NULL for the
-/// defaults. Takes about a second. Any thread.
-/// LUXFER_NOT_READY before a job has succeeded, LUXFER_INVALID_ARGUMENT if a setting is out of range.
+/// Starts a job that finds the placement of a texture (linear, in cd/m²; it repeats) that is best for the target. params may
+/// be NULL for the defaults. The caller releases *job. Any thread.
+/// LUXFER_NOT_READY before a map has been traced, LUXFER_INVALID_OPERATION if a job runs already. The job may end with
+/// LUXFER_INVALID_ARGUMENT if a setting is out of range.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_importance_place(
+pub unsafe extern "C" fn luxfer_importance_start_placement(
     importance: *mut luxfer_importance,
     texture: *mut luxfer_image,
     params: *const luxfer_placement_params,
+    job: *mut *mut luxfer_job,
+) -> luxfer_status {
+    enter(importance, |stage| {
+        let params = params::read(params)?.params()?;
+        let texture = handle::borrow_in(stage.context(), texture, "texture")?;
+        stage.output()?;
+        stage.start(job, move |_, stage, job| {
+            let map = stage.output()?.map.clone();
+            let placement = map.place(texture.image(), &params, job)?;
+            Ok(Traced { map, placement: Some(placement) })
+        })
+    })
+}
+
+/// Gets the placement that was found. Any thread.
+/// LUXFER_NOT_READY before a job of luxfer_importance_start_placement has succeeded, and again when another map is traced.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_importance_get_placement(
+    importance: *mut luxfer_importance,
     placement: *mut luxfer_placement,
 ) -> luxfer_status {
     enter(importance, |stage| {
         let out = Report::new(placement)?;
-        let params = params::read(params)?.params()?;
-        let map = stage.output()?;
-        let image = handle::borrow_in(stage.context(), texture, "texture")?;
-        let monitor = Monitor::default();
-        let best = stage.context().pool.run(|| map.place(image.image(), &params, monitor.job()))?;
+        let output = stage.output()?;
+        let best = output.placement.as_ref().ok_or_else(|| {
+            Error::new(
+                ErrorKind::NotReady,
+                "no placement has been looked for on this map: call luxfer_importance_start_placement first",
+            )
+        })?;
         let light = best.response.light;
         out.set(luxfer_placement {
             placement: best.pose.matrix().transpose().to_cols_array(),

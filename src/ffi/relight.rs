@@ -102,6 +102,7 @@ impl luxfer_relight_params {
             target_error: self.target_error,
             time_budget_ms: self.time_budget_ms,
             seed: self.seed,
+            ..relight::Params::default()
         })
     }
 }

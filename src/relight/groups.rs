@@ -39,7 +39,8 @@ pub struct GroupParams {
     /// Largest multiplier of each group, ≥ 0, infinite for none; empty if none has a bound.
     pub most: Vec<f64>,
     /// Multipliers that there are, each ≥ 0, at most [`MAX_LEVELS`]; empty if all are. Groups get those that together are
-    /// best for the goals ([`super::steps`]); intervals stay those of the powers without steps.
+    /// best for the goals ([`super::steps`]); their intervals are wider by the steps: they still hold what the powers would
+    /// be without any.
     pub levels: Vec<f64>,
     /// How much missing the goals weighs against lamps that differ, in `[1e-9, 1e3]`: small values meet the goals, large
     /// ones keep the lamps equal.
@@ -68,7 +69,8 @@ pub struct Outcome {
 pub struct GroupSolution {
     /// What to multiply the emission of each group with, ≥ 0.
     pub scale: Vec<DVec3>,
-    /// Half-widths of the 95 % confidence intervals of `scale`, from the paths; 0 at a bound.
+    /// Half-widths of the 95 % confidence intervals of `scale`, from the paths, and where there are levels from the steps to
+    /// them; 0 at a bound.
     pub half_width: Vec<DVec3>,
     pub outcomes: Vec<Outcome>,
     /// Why the goals are not all met, if they are not; the powers then are the nearest that the bounds allow.
@@ -95,7 +97,7 @@ pub fn solve_groups(responses: &Responses, goals: &[Goal], params: &GroupParams)
     let rest = (0..BATCHES).map(|b| system.solve(&system.means_without(&everything, b))).collect::<Result<Vec<_>>>()?;
 
     // The jackknife, for every group and channel.
-    let half_width = (0..whole.len())
+    let mut half_width: Vec<DVec3> = (0..whole.len())
         .map(|g| {
             DVec3::from(std::array::from_fn(|c| {
                 let without: [f64; BATCHES] = std::array::from_fn(|b| rest[b][g][c]);
@@ -103,10 +105,13 @@ pub fn solve_groups(responses: &Responses, goals: &[Goal], params: &GroupParams)
             }))
         })
         .collect();
-    let whole = if params.levels.is_empty() { whole } else { system.stepped(&everything, &whole) };
-    let outcomes: Vec<Outcome> = (0..goals.len()).map(|goal| system.outcome(goal, &whole)).collect();
-    let unreachable = system.explain(&outcomes, &whole);
-    Ok(GroupSolution { scale: whole, half_width, outcomes, unreachable })
+    let scale = if params.levels.is_empty() { whole.clone() } else { system.stepped(&everything, &whole) };
+    for (width, (scale, whole)) in half_width.iter_mut().zip(scale.iter().zip(&whole)) {
+        *width += (*scale - *whole).abs();
+    }
+    let outcomes: Vec<Outcome> = (0..goals.len()).map(|goal| system.outcome(goal, &scale)).collect();
+    let unreachable = system.explain(&outcomes, &scale);
+    Ok(GroupSolution { scale, half_width, outcomes, unreachable })
 }
 
 fn check(responses: &Responses, goals: &[Goal], params: &GroupParams) -> Result<()> {

@@ -11,6 +11,7 @@ use super::bins::{Bins, Division};
 use super::estimate::BATCHES;
 use super::placement::Cells;
 use super::responses::{Estimate, Goal};
+use super::sided::Sense;
 use super::solve::{self, Measured};
 use super::target::Sampler;
 use super::transport::{Batches, Stop};
@@ -177,7 +178,8 @@ impl Importance {
             check_range("target", channel, 0.0, f32::MAX)?;
         }
         let (response, background) = (response.measured.clone(), self.background.clone());
-        solve::run(&Measured { response, background, pairs: None, paths: self.paths }, target.as_dvec3())
+        let measured = Measured { response, background, pairs: None, paths: self.paths };
+        solve::run(&measured, target.as_dvec3(), [Sense::Exactly; 3])
     }
 
     /// Mean emission of each cell.

@@ -111,8 +111,11 @@ pub struct Input<'a> {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Params {
     pub quantity: Quantity,
-    /// Used by [`run`] alone.
+    /// Used by [`run`] alone, as is the next.
     pub fit: Fit,
+    /// On which side of the target each channel should be: clipped pixels of a photo say "at least". Such a channel keeps the
+    /// mean scale of those that are to be at theirs, as far as that is on its side, and goes to its limit if not.
+    pub sense: [Sense; 3],
     /// Most paths to trace, in `[1024, 1 << 30]`.
     pub paths: u32,
     /// Stop when the half-width of the widest 95 % interval is below this share of its answer, in `[0, 1]`; 0 = never.
@@ -127,6 +130,7 @@ impl Default for Params {
         Self {
             quantity: Quantity::Outgoing,
             fit: Fit::Mean,
+            sense: [Sense::Exactly; 3],
             paths: 1 << 20,
             target_error: 0.01,
             time_budget_ms: 0,
@@ -189,7 +193,7 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Solution> {
     let mut growth = f64::INFINITY;
     loop {
         batches.trace_round(growth, stop.most, job)?;
-        let solution = solve::run(&whole(&batches, params.fit), input.target.as_dvec3());
+        let solution = solve::run(&whole(&batches, params.fit), input.target.as_dvec3(), params.sense);
         let error = solution.as_ref().map_or(f64::INFINITY, Solution::error);
         match stop.growth(error, batches.paths()) {
             Some(more) => growth = more,

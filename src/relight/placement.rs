@@ -97,19 +97,32 @@ const CELLS: usize = 64;
 const FOLLOWED: usize = 8;
 
 impl Importance {
+    /// The target's light under a placed texture, band-limited as the search sees it, and how that changes with the offset
+    /// along u and v, the scale along both, and the rotation. Other light does not count.
+    ///
+    /// # Errors
+    /// Cancelled.
+    pub fn slope(&self, texture: &Image, pose: &Pose, job: Job) -> Result<(DVec3, [DVec3; 5])> {
+        Ok(self.search(texture, Aim::Most, job)?.light(pose.numbers()))
+    }
+
+    fn search(&self, texture: &Image, aim: Aim, job: Job) -> Result<Search> {
+        Ok(Search {
+            pyramid: Pyramid::new(texture, job)?,
+            cells: self.cells(CELLS),
+            texels: DVec2::new(texture.width as f64, texture.height as f64),
+            background: self.background(),
+            aim,
+        })
+    }
+
     /// Finds the placement of a texture, which repeats, in cd/m² as its values are.
     ///
     /// # Errors
     /// Parameters out of range; cancelled.
     pub fn place(&self, texture: &Image, params: &PlaceParams, job: Job) -> Result<Placement> {
         let bounds = params.bounds()?;
-        let search = Search {
-            pyramid: Pyramid::new(texture, job.part(0.0, 0.1))?,
-            cells: self.cells(CELLS),
-            texels: DVec2::new(texture.width as f64, texture.height as f64),
-            background: self.background(),
-            aim: params.aim,
-        };
+        let search = self.search(texture, params.aim, job.part(0.0, 0.1))?;
         // Where the texture lies, or as near to that as may be, and places that fill the space of what may be evenly.
         let mut rng = Rng::new(params.seed, &[]);
         let shift: [f64; 5] = std::array::from_fn(|_| rng.next_f64());

@@ -1,6 +1,7 @@
 //! The closed form and its interval, from the means of independent batches.
 
 use super::estimate::{BATCHES, STUDENT_T, mean, pseudo_values, standard_error, without};
+use super::sided::Sense;
 use super::transport::Pairs;
 use super::{Reach, Solution};
 use crate::error::{Error, ErrorKind, Result};
@@ -25,6 +26,7 @@ struct Channel {
     squares: Option<[[f64; BATCHES]; 2]>,
 }
 
+#[derive(Clone, Copy)]
 struct Answer {
     scale: f64,
     half_width: f64,
@@ -33,7 +35,7 @@ struct Answer {
     deviations: [f64; BATCHES],
 }
 
-pub(super) fn run(measured: &Measured, target: DVec3) -> Result<Solution> {
+pub(super) fn run(measured: &Measured, target: DVec3, sense: [Sense; 3]) -> Result<Solution> {
     let channels: [Channel; 3] = std::array::from_fn(|c| Channel {
         response: std::array::from_fn(|b| measured.response[b][c]),
         background: std::array::from_fn(|b| measured.background[b][c]),
@@ -42,7 +44,8 @@ pub(super) fn run(measured: &Measured, target: DVec3) -> Result<Solution> {
             .as_ref()
             .map(|pairs| [std::array::from_fn(|b| pairs[b].own[c]), std::array::from_fn(|b| pairs[b].cross[c])]),
     });
-    let answers: [Answer; 3] = std::array::from_fn(|c| channels[c].solve(target[c]));
+    let mut answers: [Answer; 3] = std::array::from_fn(|c| channels[c].solve(target[c]));
+    keep_sides(&mut answers, sense);
     let reach = answers.each_ref().map(|a| a.reach);
     if reach.iter().all(|&r| r != Reach::Met) {
         return Err(Error::new(ErrorKind::Unreachable, explain(&reach)));
@@ -52,15 +55,44 @@ pub(super) fn run(measured: &Measured, target: DVec3) -> Result<Solution> {
     let neutral = met.iter().sum::<f64>() / met.len() as f64;
     let scale = answers.each_ref().map(|a| if a.reach == Reach::Dark { neutral } else { a.scale });
     let response = DVec3::from(channels.each_ref().map(|c| mean(&c.response)));
+    let background = DVec3::from(channels.each_ref().map(|c| mean(&c.background)));
+    // What the target shows: what it should, but where it need not be at its limit.
+    let light = background + DVec3::from(scale) * response;
+    let seen = DVec3::from(std::array::from_fn(|c| if sense[c] == Sense::Exactly { target[c] } else { light[c] }));
     Ok(Solution {
         scale: DVec3::from(scale),
         half_width: DVec3::from(answers.each_ref().map(|a| a.half_width)),
         reach,
         response,
-        background: DVec3::from(channels.each_ref().map(|c| mean(&c.background))),
-        delta_e: colour_interval(&answers, response, target),
+        background,
+        delta_e: colour_interval(&answers, response, seen),
         paths: measured.paths,
     })
+}
+
+/// Of channels whose targets are limits: they keep the mean scale of those that are at theirs, which leaves the lamps their
+/// colour, unless that breaks the limit. Where no channel must be at its target, all stay at their limits.
+fn keep_sides(answers: &mut [Answer; 3], sense: [Sense; 3]) {
+    let exact = |c: &usize| sense[*c] == Sense::Exactly;
+    let met: Vec<Answer> = (0..3).filter(exact).map(|c| answers[c]).filter(|a| a.reach == Reach::Met).collect();
+    if met.is_empty() {
+        return;
+    }
+    let share = 1.0 / met.len() as f64;
+    let deviations = std::array::from_fn(|b| share * met.iter().map(|a| a.deviations[b]).sum::<f64>());
+    let half_width = STUDENT_T * standard_error(&deviations);
+    let neutral = Answer { scale: share * met.iter().map(|a| a.scale).sum::<f64>(), half_width, reach: Reach::Met, deviations };
+    for (answer, sense) in answers.iter_mut().zip(sense) {
+        // Other light that is brighter than a target that is a least leaves the channel free.
+        let free = match answer.reach {
+            Reach::Dark => false,
+            Reach::TooBright => sense == Sense::AtLeast,
+            _ => sense != Sense::Exactly && sense.miss(neutral.scale - answer.scale) == 0.0,
+        };
+        if free {
+            *answer = neutral;
+        }
+    }
 }
 
 impl Channel {
@@ -94,9 +126,9 @@ impl Channel {
     }
 }
 
-/// How far the target's colour may be off: Student's quantile of the root mean square difference that deviations as large
-/// as the standard error make, channels together as they came. That bounds 95 % of errors, whichever way they lie. Seen at the exposure that shows the
-/// target as a middle grey.
+/// How far the colour of the target may be off: Student's quantile of the root mean square difference that deviations as
+/// large as the standard error make, channels together as they came. That bounds 95 % of errors, whichever way they lie. Seen
+/// at the exposure that shows the target as a middle grey.
 fn colour_interval(answers: &[Answer; 3], response: DVec3, target: DVec3) -> f64 {
     let squares = (0..BATCHES).map(|b| {
         let deviation = DVec3::from(std::array::from_fn(|c| answers[c].deviations[b])) / (BATCHES as f64 - 1.0).sqrt();

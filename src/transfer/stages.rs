@@ -134,9 +134,10 @@ impl Transfer {
             world: &world,
             emitter: unsolved.placed.material,
             target_triangles: &triangles,
-            target: target * self.params.white_luminance,
+            target: target.colour * self.params.white_luminance,
         };
-        let solution = relight::run(&input, &self.params.relight, job.part(0.1, 1.0))?;
+        let params = relight::Params { sense: target.sense, ..self.params.relight.clone() };
+        let solution = relight::run(&input, &params, job.part(0.1, 1.0))?;
 
         let strength = Vec3::splat(self.params.white_luminance) * solution.scale.as_vec3();
         let mut lit = unsolved.with_strength(strength);
@@ -144,7 +145,7 @@ impl Transfer {
             Arc::make_mut(&mut lit.scene).cameras.push(viewpoint::choose(&world, &lit.surface));
         }
         self.results.lit = Some(Arc::new(lit));
-        self.results.target = Some(target);
+        self.results.target = Some(target.colour);
         self.results.solution = Some(solution);
         Ok(())
     }

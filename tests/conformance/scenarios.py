@@ -248,7 +248,8 @@ def lamps() -> Scenario:
     s.make("importance_get_image", importance)
     texture, placement = s.image(), array("double", 1, 0, 0, 0, 1, 0, 0, 0, 1)
     s.call("importance_respond", importance, texture, placement, struct("importance_report", "size"))
-    s.call("importance_place", importance, texture, struct("placement_params", starts=4), struct("placement", "size"))
+    s.run("importance_start_placement", importance, texture, struct("placement_params", starts=4))
+    s.call("importance_get_placement", importance, struct("placement", "size"))
     s.call("importance_solve", importance, texture, placement, 1.0, 1.0, 1.0, struct("relight_report", "size"))
     return s
 

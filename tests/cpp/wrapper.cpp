@@ -428,7 +428,8 @@ void stages_say_what_they_lack() {
     CHECK_ERROR(lamps.texture(), LUXFER_NOT_READY);
     CHECK_ERROR(lamps.reason(), LUXFER_NOT_READY);
     CHECK_ERROR(importance.respond(new_image(context)), LUXFER_NOT_READY);
-    CHECK_ERROR(importance.place(new_image(context)), LUXFER_NOT_READY);
+    CHECK_ERROR(importance.start_placement(new_image(context)), LUXFER_NOT_READY);
+    CHECK_ERROR(importance.placement(), LUXFER_NOT_READY);
     CHECK_ERROR(transfer.scene(), LUXFER_NOT_READY);
     CHECK_ERROR(transfer.use(LUXFER_PHASE_PLANE, segment), LUXFER_NOT_READY);
     CHECK_ERROR(transfer.use(features), LUXFER_NOT_READY);

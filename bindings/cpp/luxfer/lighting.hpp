@@ -107,10 +107,13 @@ public:
                                             target.green, target.blue);
     }
 
-    /// Where a texture in cd/m² should lie.
-    Result<luxfer_placement> place(const Image &texture, const luxfer_placement_params &params = PlacementParams()) const {
-        return value<luxfer_placement>(luxfer_importance_place, texture.get(), &params);
+    /// Looks for where a texture in cd/m² should lie.
+    Result<Job> start_placement(const Image &texture, const luxfer_placement_params &params = PlacementParams()) const {
+        return make<Job>(luxfer_importance_start_placement, texture.get(), &params);
     }
+
+    /// What it has found.
+    Result<luxfer_placement> placement() const { return value<luxfer_placement>(luxfer_importance_get_placement); }
 };
 
 /// A luminous intensity distribution from an IES or EULUMDAT file. See luxfer_distribution.

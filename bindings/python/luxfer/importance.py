@@ -69,11 +69,21 @@ class Importance(StageBase):
         out = self._read("solve", _abi.luxfer_relight_report, image, _nine(placement), red, green, blue)
         return cast(RelightReport, out)
 
-    def place(self, texture: ImageLike, **params: Unpack[PlacementParams]) -> Placement:
-        """Where a texture in cd/m² should lie: by default at any offset, to bring the target most light."""
+    def start_placement(self, texture: ImageLike, **params: Unpack[PlacementParams]) -> Job[Importance]:
+        """Starts to look for where a texture in cd/m² should lie; see placement."""
         settings = _params.fill(_abi.luxfer_placement_params, params, [])
-        out = self._read("place", _abi.luxfer_placement, image_of(self._context, texture), settings)
-        return cast(Placement, out)
+        return self._job("start_placement", image_of(self._context, texture), settings)
+
+    def place(
+        self, texture: ImageLike, progress: Progress | None = None, **params: Unpack[PlacementParams]
+    ) -> Placement:
+        """Where a texture in cd/m² should lie: by default at any offset, to bring the target most light."""
+        return self.start_placement(texture, **params).wait(progress).placement
+
+    @property
+    def placement(self) -> Placement:
+        """What start_placement has found."""
+        return cast(Placement, self._read("get_placement", _abi.luxfer_placement))
 
 
 def _nine(placement: Sequence[float] | None) -> Any:

@@ -106,6 +106,33 @@ fn a_white_closed_room_and_rooms_of_any_size() {
     assert!((mean / (1.0 / 0.06) - 1.0).abs() < 0.1, "{mean}");
 }
 
+/// A vault that bulges into emptiness sees nothing of itself: no light of its lamps comes back to it, and that is said.
+#[test]
+fn a_convex_ceiling_that_sees_nothing_is_dark() {
+    let (apex, ring) = (Vec3::Y, |i: u32| Vec3::new((i as f32 * 0.785).cos(), 0.0, (i as f32 * 0.785).sin()) * 2.0);
+    let cap = |from: u32, to: u32, material: usize| Mesh {
+        material,
+        positions: (from..to).flat_map(|i| [apex, ring(i + 1), ring(i)]).collect(),
+        triangles: (from..to).map(|i| i - from).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect(),
+        ..Mesh::default()
+    };
+    let scene = Scene {
+        meshes: vec![cap(0, 5, 0), cap(5, 8, 1)],
+        materials: vec![
+            Material::diffuse("vault", Vec3::splat(0.8)),
+            Material { emission: Vec3::ONE, ..Material::diffuse("lamps", Vec3::splat(0.8)) },
+        ],
+        ..Scene::default()
+    };
+    let world = World::build(Arc::new(scene), Monitor::default().job()).unwrap();
+    let triangles: Vec<(usize, usize)> = (0..5).map(|t| (0, t)).collect();
+    let input = Input { world: &world, emitter: 1, target_triangles: &triangles, target: Vec3::ONE };
+    let params = Params { paths: 1 << 14, ..Params::default() };
+    let error = Pool::new(1).unwrap().run(|| run(&input, &params, Monitor::default().job())).unwrap_err();
+    assert_eq!(error.kind, ErrorKind::Unreachable);
+    assert!(error.message.contains("no light of the emission finds its way back"), "{error}");
+}
+
 /// A lamp that the target sees from its edge alone, or not at all, has nothing to say to it.
 #[test]
 fn a_lamp_seen_edge_on_is_dark() {

@@ -94,6 +94,16 @@ fn groups_that_are_alike_unlike_or_dark() {
     // The small pull towards equal lamps decides what one goal leaves open: all are alike.
     assert!(x.iter().all(|v| (v / x[0] - 1.0).abs() < 1e-6), "{x:?}");
     assert!((solution.outcomes[0].achieved.x / 20.0 - 1.0).abs() < 1e-6);
+    // Where the faint one alone could help, it would have to be 1e12 times as strong: the answer stays finite, and says so.
+    let ask = [goal(desk(0.9, 0.9), Vec3::splat(20.0)), goal(desk(3.1, 3.1), Vec3::splat(90.0))];
+    let (faint, pair) = lamp_room(&[[3, 3], [12, 12]], &[1.0, 1e-12]);
+    let most = GroupParams { most: vec![f64::INFINITY, 2.0], ..GroupParams::default() };
+    for params in [GroupParams::default(), most] {
+        let solution = solve_groups(&respond(&faint, &pair, &ask), &ask, &params).unwrap();
+        let finite = solution.scale.iter().chain(&solution.half_width).all(|x| x.is_finite());
+        let met = solution.outcomes.iter().all(|o| o.reach == [Reach::Met; 3]);
+        assert!(finite && met == solution.unreachable.is_none(), "{solution:?}");
+    }
     // A goal of darkness turns them off.
     let dark = [goal(Place::Surface(FLOOR), Vec3::ZERO)];
     let off = solve_groups(&responses, &dark, &GroupParams::default()).unwrap();
@@ -260,7 +270,12 @@ fn powers_in_steps() {
     let levels: Vec<f64> = (0..=10).rev().map(|i| most * 0.1 * f64::from(i)).collect();
     let stepped = solve(&levels);
     assert!(stepped.scale.iter().all(|x| levels.contains(&x.x) && *x == DVec3::splat(x.x)), "{stepped:?}");
-    assert!(stepped.unreachable.is_none() && stepped.half_width == free.half_width, "{stepped:?}");
+    assert!(stepped.unreachable.is_none(), "{stepped:?}");
+    // Their intervals hold those of the powers without steps, and say how far the steps are.
+    for i in 0..16 {
+        let step = (stepped.scale[i] - free.scale[i]).abs();
+        assert_eq!(stepped.half_width[i], free.half_width[i] + step);
+    }
     let coarse = solve(&[0.0, 40.0 * most]);
     assert!(coarse.unreachable.is_some(), "{coarse:?}");
     let params = GroupParams { levels: vec![-1.0], ..GroupParams::default() };

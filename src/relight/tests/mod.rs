@@ -124,6 +124,40 @@ fn what_cannot_be_met_is_said() {
     }
 }
 
+/// A target that is a limit in a channel: the emission keeps its colour unless that breaks the limit.
+#[test]
+fn a_limit_binds_only_where_it_is_broken() {
+    let scene = room(Vec3::new(4.0, 2.5, 3.0), Vec3::new(0.7, 0.5, 0.3), Vec3::splat(0.8), Vec3::ONE);
+    let params = Params { target_error: 0.005, ..Params::default() };
+    let unit = solve(&scene, Vec3::ONE, &params).unwrap();
+    let truth = (unit.response * 100.0).as_vec3();
+    let least = |target: Vec3, sense: Sense| {
+        let sense = [sense, Sense::Exactly, Sense::Exactly];
+        solve(&scene, target, &Params { seed: 99, sense, ..params.clone() }).unwrap()
+    };
+    // Red was brighter than what is known of it.
+    let free = least(truth * Vec3::new(0.6, 1.0, 1.0), Sense::AtLeast);
+    for c in 0..3 {
+        let allowed = 2.0 * (free.half_width[c] + 0.005 * 100.0);
+        assert!((free.scale[c] - 100.0).abs() < allowed && free.reach[c] == Reach::Met, "{free:?}");
+    }
+    assert!((free.scale.x - (free.scale.y + free.scale.z) / 2.0).abs() < 1e-9);
+    assert!(free.half_width.x > 0.0 && free.error() < 0.006 && free.delta_e < 1.0, "{free:?}");
+    // It is more than the others ask for: the limit is what it gets, and the other way round.
+    for (factor, sense) in [(1.5, Sense::AtLeast), (0.5, Sense::AtMost)] {
+        let bound = least(truth * Vec3::new(factor, 1.0, 1.0), sense);
+        let exact = least(truth * Vec3::new(factor, 1.0, 1.0), Sense::Exactly);
+        assert_eq!((bound.scale, bound.half_width), (exact.scale, exact.half_width));
+    }
+    assert_eq!(least(truth * Vec3::new(1.5, 1.0, 1.0), Sense::AtMost).scale.x, {
+        let s = least(truth, Sense::AtMost).scale;
+        (s.y + s.z) / 2.0
+    });
+    // All channels are limits: the least light that keeps them.
+    let all = solve(&scene, truth, &Params { sense: [Sense::AtLeast; 3], seed: 99, ..params.clone() }).unwrap();
+    assert_eq!(all.scale, least(truth, Sense::Exactly).scale);
+}
+
 #[test]
 fn a_target_of_nothing_needs_no_light() {
     let scene = room(Vec3::ONE, Vec3::splat(0.5), Vec3::splat(0.5), Vec3::ONE);

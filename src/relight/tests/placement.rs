@@ -23,14 +23,7 @@ fn lamp(x: usize, y: usize) -> Image {
 }
 
 fn search(texture: &Image, aim: Aim) -> Search {
-    let map = map();
-    Search {
-        pyramid: Pyramid::new(texture, Monitor::default().job()).unwrap(),
-        cells: map.cells(CELLS),
-        texels: DVec2::new(texture.width as f64, texture.height as f64),
-        background: map.background(),
-        aim,
-    }
+    map().search(texture, aim, Monitor::default().job()).unwrap()
 }
 
 #[test]

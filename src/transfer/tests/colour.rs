@@ -1,0 +1,119 @@
+//! What the target is where the photo is clipped, against what it was before.
+
+use super::*;
+use crate::exec::Pool;
+use crate::job::Monitor;
+use crate::relight;
+use crate::render::{self, World};
+use crate::scene::{Camera, Material, Mesh, Scene};
+use std::sync::Arc;
+
+const EXACTLY: [Sense; 3] = [Sense::Exactly; 3];
+
+fn whole(photo: &Image) -> Target {
+    let mask = |v: f32| Image::from_fn(photo.width, photo.height, |_, _| [v]).unwrap();
+    target(TargetColour::Surface, photo, &mask(1.0), &mask(0.0), Monitor::default().job()).unwrap()
+}
+
+fn mean(photo: &Image) -> Vec3 {
+    photo.data.chunks_exact(3).map(Vec3::from_slice).sum::<Vec3>() / (photo.width * photo.height) as f32
+}
+
+fn clip(photo: &Image) -> Image {
+    let mut clipped = photo.clone();
+    clipped.data.iter_mut().for_each(|v| *v = v.min(1.0));
+    clipped
+}
+
+#[test]
+fn a_clipped_channel_follows_from_the_others() {
+    // A warm plane that gets brighter to one side, and a cool stripe that is dark.
+    let plane = Image::from_fn(100, 20, |x, y| {
+        let light = 0.2 + 0.016 * x as f32;
+        if y == 7 { [0.02, 0.02, 0.03] } else { [light, 0.7 * light, 0.4 * light] }
+    });
+    let truth = plane.unwrap();
+    let photo = clip(&truth);
+    let found = whole(&photo);
+    assert_eq!(found.sense, EXACTLY);
+    let off = |colour: Vec3| (colour / mean(&truth) - 1.0).abs();
+    assert!(off(found.colour).max_element() < 0.02, "{found:?} {}", mean(&truth));
+    assert!(off(mean(&photo)).x > 0.1);
+    // What is brighter than white somewhere is not clipped at it.
+    assert!((whole(&truth).colour - mean(&truth)).abs().max_element() < 1e-5);
+    // Red is white everywhere: no less is all that can be said.
+    let bright = Image::from_fn(8, 8, |x, _| [1.0, 0.5 + 0.01 * x as f32, 0.3]).unwrap();
+    let found = whole(&bright);
+    assert_eq!(found.sense, [Sense::AtLeast, Sense::Exactly, Sense::Exactly]);
+    assert!((found.colour - mean(&bright)).abs().max_element() < 1e-6);
+    // All of it is white, or a few pixels without a hint are.
+    let white = Image::from_fn(8, 8, |_, _| [1.0; 3]).unwrap();
+    assert_eq!(whole(&white), Target { colour: Vec3::ONE, sense: [Sense::AtLeast; 3] });
+    let spark = Image::from_fn(8, 8, |x, y| [if x + y == 0 { 1.0 } else { 0.5 }; 3]).unwrap();
+    assert_eq!(whole(&spark).sense, EXACTLY);
+}
+
+/// A room whose light is known, photographed so that half of its ceiling is clipped: the light is recovered, which it is not
+/// if clipped pixels count as they are.
+#[test]
+fn known_light_is_recovered_from_a_clipped_photo() {
+    let (size, high) = (4.0, 2.5);
+    let (x, y, z) = (Vec3::X * size, Vec3::Y * high, Vec3::Z * size);
+    // Without gloss, which the mean of a target leaves out.
+    let matt = |albedo: Vec3, emission: f32| Material {
+        ior: 1.0,
+        emission: Vec3::splat(emission),
+        double_sided: false,
+        ..Material::diffuse("matt", albedo)
+    };
+    let side = |corner, u, v, material| Mesh::parallelogram(corner, u, v, material);
+    let scene = Scene {
+        meshes: vec![
+            side(y, x, z, 1),
+            side(Vec3::ZERO, z, x, 0),
+            side(Vec3::ZERO, x, y, 0),
+            side(Vec3::ZERO, y, z, 0),
+            side(x, z, y, 0),
+            side(z, y, x, 0),
+            side(Vec3::new(0.6, 0.2, 1.0), Vec3::Z * 0.8, Vec3::X * 0.8, 2),
+        ],
+        materials: vec![
+            matt(Vec3::new(0.7, 0.5, 0.35), 0.0),
+            matt(Vec3::splat(0.8), 0.0),
+            matt(Vec3::ZERO, 1000.0),
+        ],
+        ..Scene::default()
+    };
+    let (pool, monitor) = (Pool::new(2).unwrap(), Monitor::default());
+    let world = World::build(Arc::new(scene), monitor.job()).unwrap();
+    // From below the picture is all of the ceiling and nothing else.
+    let eye = Vec3::new(size / 2.0, 0.3, size / 2.0);
+    let fov = 2.0 * (size / 2.0 / (high - eye.y)).atan();
+    let camera = Camera { up: Vec3::Z, ..Camera::look_at(eye, eye + Vec3::Y, fov) };
+    let params = render::Params { width: 40, height: 40, samples: 400, ..render::Params::default() };
+    let film = pool.run(|| render::run(&world, &camera, &params, monitor.job(), &mut |_| ()).unwrap());
+    let mut reds: Vec<f32> = film.beauty.data.iter().step_by(3).copied().collect();
+    reds.sort_by(f32::total_cmp);
+    let white = reds[reds.len() / 2];
+    let mut photo = film.beauty.clone();
+    photo.data.iter_mut().for_each(|v| *v = (*v / white).min(1.0));
+
+    let solve = |colour: Vec3, white: f32, sense: [Sense; 3]| {
+        let target_triangles = &[(0, 0), (0, 1)];
+        let input = relight::Input { world: &world, emitter: 2, target_triangles, target: colour * white };
+        let params = relight::Params { sense, target_error: 0.005, ..relight::Params::default() };
+        pool.run(|| relight::run(&input, &params, monitor.job()).unwrap())
+    };
+    let found = whole(&photo);
+    let recovered = solve(found.colour, white, found.sense);
+    let as_it_is = solve(mean(&photo), white, EXACTLY);
+    let off = |s: &relight::Solution| (s.scale - 1.0).abs().max_element();
+    assert!(off(&recovered) < 0.03 && off(&as_it_is) > 5.0 * off(&recovered), "{recovered:?} {as_it_is:?}");
+
+    // Exposed so that all of red is white and nothing else is: the lamp keeps its colour where it may.
+    let white = 0.9 * reds[0];
+    let colour = (mean(&film.beauty) / white).with_x(1.0);
+    let least = solve(colour, white, [Sense::AtLeast, Sense::Exactly, Sense::Exactly]);
+    assert!((least.scale.x - 1.0).abs() < 0.03, "{least:?}");
+    assert!(solve(colour, white, EXACTLY).scale.x < 0.8);
+}
