@@ -341,6 +341,7 @@ layouts! {
     luxfer_texture_use: struct_size texture uv_set wrap_u wrap_v transform;
     luxfer_demo_photo_params: struct_size width height samples seed;
     luxfer_light_params: struct_size kind position direction intensity inner_angle outer_angle reserved;
+    luxfer_luminaire_params: struct_size reserved flux position axis c0 colour;
     luxfer_features_params: struct_size near_plane far_plane normal_radius;
     luxfer_features_report: struct_size depth_source depth_confidence replaced_pixels;
     luxfer_segment_params: struct_size samples_per_class channels reserved ridge seed;

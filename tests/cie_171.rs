@@ -312,7 +312,8 @@ fn behind_a_mask(mask: Mesh, [distance, height]: [f64; 2], above: bool) {
     let place = grid(Vec3::new(0.5, 0.0, -1.0), Vec3::X * 3.0, Vec3::Z * 2.0, Vec3::Y);
     let expected = |p: DVec3| {
         let edge = (height * p.x / (p.x + distance)).clamp(1.0, 2.0);
-        let part = |low: f64, high: f64| if low < high { configuration(p, DVec3::Y, &window([low, high])) } else { 0.0 };
+        let part =
+            |low: f64, high: f64| if low < high { configuration(p, DVec3::Y, &window([low, high])) } else { 0.0 };
         let (lower, upper) = (part(1.0, edge), part(edge, 2.0));
         PI * if above { sky * lower + luminance * upper } else { luminance * lower + sky * upper }
     };

@@ -13,8 +13,8 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("image", &["error", "job", "exec", "simd"]),
     ("geometry", &["error", "rng"]),
     ("photometry", &["error", "image"]),
-    ("scene", &["error", "job", "exec", "rng", "image", "geometry"]),
-    ("render", &["error", "job", "exec", "rng", "image", "geometry", "scene"]),
+    ("scene", &["error", "job", "exec", "rng", "image", "geometry", "photometry"]),
+    ("render", &["error", "job", "exec", "rng", "image", "geometry", "photometry", "scene"]),
     ("patch", &["error", "job", "exec", "rng", "image"]),
     // Stages: never each other. Segmentation knows how many channels the features have.
     ("features", &["simd", "error", "job", "exec", "rng", "image", "geometry"]),

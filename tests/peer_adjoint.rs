@@ -24,8 +24,8 @@ const CELLS: usize = 64;
 /// Cells along the side of a block: what they mean together is compared.
 const BLOCK: usize = 8;
 const SEEDS: usize = 16;
-const OUR_PATHS: u32 = 1 << 17;
-const THEIR_PATHS: u32 = 1 << 17;
+const OUR_PATHS: u32 = 1 << 16;
+const THEIR_PATHS: u32 = 1 << 15;
 
 /// As in mitsuba_adjoint.py.
 const POSE: Pose = Pose { offset: DVec2::new(0.15, -0.2), scale: DVec2::ONE, rotation: 0.4 };

@@ -24,7 +24,8 @@ fn room() -> Scene {
     let (x, y, z) = (Vec3::X * WIDE, Vec3::Y * HIGH, Vec3::Z * WIDE);
     // Without gloss, which the mean of a target leaves out.
     let matt = |name: &str, albedo: Vec3| Material { ior: 1.0, double_sided: false, ..Material::diffuse(name, albedo) };
-    let side = |name: &str, corner, u, v, material| Mesh { name: name.into(), ..Mesh::parallelogram(corner, u, v, material) };
+    let side =
+        |name: &str, corner, u, v, material| Mesh { name: name.into(), ..Mesh::parallelogram(corner, u, v, material) };
     Scene {
         meshes: vec![
             side("Ceiling", y, x, z, 0),

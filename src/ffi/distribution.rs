@@ -70,7 +70,13 @@ unsafe impl Versioned for luxfer_distribution_report {
 
 pub(super) struct Distribution {
     context: Arc<Context>,
-    luminaire: Luminaire,
+    luminaire: Arc<Luminaire>,
+}
+
+impl Distribution {
+    pub(super) fn luminaire(&self) -> &Arc<Luminaire> {
+        &self.luminaire
+    }
 }
 
 impl Owned for Distribution {
@@ -117,7 +123,10 @@ pub unsafe extern "C" fn luxfer_distribution_load(
         let path = text(path, "path")?;
         let format = format_of(Path::new(path))?;
         let luminaire = read(&io::read_file(Path::new(path))?, format).map_err(|e| e.within(path))?;
-        out.set(handle::give(Arc::new(Distribution { context: object.context().clone(), luminaire })));
+        out.set(handle::give(Arc::new(Distribution {
+            context: object.context().clone(),
+            luminaire: Arc::new(luminaire),
+        })));
         Ok(())
     })
 }
@@ -135,7 +144,10 @@ pub unsafe extern "C" fn luxfer_distribution_load_memory(
     enter(context, |object| {
         let out = Out::new(distribution, "distribution")?;
         let luminaire = read(bytes(data.cast(), size, "data")?, format)?;
-        out.set(handle::give(Arc::new(Distribution { context: object.context().clone(), luminaire })));
+        out.set(handle::give(Arc::new(Distribution {
+            context: object.context().clone(),
+            luminaire: Arc::new(luminaire),
+        })));
         Ok(())
     })
 }

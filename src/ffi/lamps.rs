@@ -11,6 +11,7 @@ use super::job::luxfer_job;
 use super::lamps_goals::Aim;
 use super::params::{self, Versioned};
 use super::pointer::Out;
+use super::query::LUXFER_NONE;
 use super::scene::{SceneObject, luxfer_scene, missing};
 use super::stage::{Stage, need};
 use super::status::luxfer_status;
@@ -94,7 +95,7 @@ unsafe impl Versioned for luxfer_lamps_params {
 
 #[derive(Clone, Default)]
 pub(super) struct Inputs {
-    pub emission: Option<(Arc<SceneObject>, u32)>,
+    pub emission: Option<(Arc<SceneObject>, Option<u32>)>,
     pub goals: Vec<Aim>,
     /// Multipliers that the drivers have; empty for all.
     pub levels: Vec<f64>,
@@ -102,7 +103,8 @@ pub(super) struct Inputs {
 
 pub(super) struct Output {
     pub scene: Arc<Scene>,
-    pub material: usize,
+    /// None where lights without a surface are the lamps.
+    pub material: Option<usize>,
     pub lamps: Lamps,
     pub group_of: Vec<u32>,
     pub responses: Responses,
@@ -134,8 +136,9 @@ pub unsafe extern "C" fn luxfer_lamps_create(
     })
 }
 
-/// Sets the scene and the emitting material whose lamps are solved for, at the strength that the solution will multiply;
-/// forgets the goals. Any thread.
+/// Sets the scene and the emitting material whose lamps are solved for, at the strength that the solution will multiply, or
+/// LUXFER_NONE: then the lamps are the scene's lights without a surface, by their index, as luxfer_scene_add_luminaire hangs
+/// them. Forgets the goals. Any thread.
 /// LUXFER_NOT_FOUND if the scene has no such material.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_set_scene(
@@ -146,7 +149,8 @@ pub unsafe extern "C" fn luxfer_lamps_set_scene(
     enter(lamps, |stage| {
         let scene = handle::borrow_in(stage.context(), scene, "scene")?;
         let materials = scene.snapshot().materials.len();
-        if material as usize >= materials {
+        let material = (material != LUXFER_NONE).then_some(material);
+        if let Some(material) = material.filter(|m| *m as usize >= materials) {
             return Err(missing("material", material, materials));
         }
         stage.change(|inputs| {
@@ -182,19 +186,20 @@ pub unsafe extern "C" fn luxfer_lamps_start(
         let scene = object.snapshot();
         stage.start(job, move |inputs, _, job| {
             let world = object.world(&scene, job.part(0.0, 0.1))?;
-            let lamps = params.lamps(&scene, material as usize)?;
+            let material = material.map(|m| m as usize);
+            let lamps = params.lamps(&scene, material)?;
             let (group_of, groups) = params.groups(&lamps);
             let triangles: Vec<Vec<(usize, usize)>> = inputs.goals.iter().map(|aim| aim.triangles(&scene)).collect();
             let goals: Vec<Goal> = inputs.goals.iter().zip(&triangles).map(|(aim, t)| aim.goal(t)).collect();
             let tracing = params.tracing();
-            let responses = lamp_responses(&world, material as usize, &lamps, &goals, &tracing, job.part(0.1, 0.95))?;
+            let emitter = material.unwrap_or(usize::MAX);
+            let responses = lamp_responses(&world, emitter, &lamps, &goals, &tracing, job.part(0.1, 0.95))?;
             let solution = solve_groups(
                 &responses.grouped(&group_of, groups)?,
                 &goals,
                 &params.solving(groups, inputs.levels.clone()),
             )?;
             let targets = inputs.goals.iter().map(|aim| aim.target).collect();
-            let material = material as usize;
             Ok(Output { scene, material, lamps, group_of, responses, targets, solution })
         })
     })
@@ -214,7 +219,8 @@ impl luxfer_lamps_params {
         Ok(())
     }
 
-    fn lamps(&self, scene: &Scene, material: usize) -> Result<Lamps> {
+    fn lamps(&self, scene: &Scene, material: Option<usize>) -> Result<Lamps> {
+        let Some(material) = material else { return Lamps::of_lights(scene) };
         match scene.materials[material].emission_texture {
             Some(map) => Lamps::of_texture(&scene.textures[map.texture].image),
             None => Lamps::of_meshes(scene, material),

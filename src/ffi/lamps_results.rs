@@ -243,9 +243,10 @@ pub unsafe extern "C" fn luxfer_lamps_get_texture(
     enter(lamps, |stage| {
         let out = Out::new(texture, "texture")?;
         let o = stage.output()?;
-        let map = o.scene.materials[o.material].emission_texture;
-        let map =
-            map.ok_or_else(|| Error::new(ErrorKind::NotFound, "the emission has no texture: scale its meshes"))?;
+        let map = o.material.and_then(|m| o.scene.materials[m].emission_texture);
+        let map = map.ok_or_else(|| {
+            Error::new(ErrorKind::NotFound, "the emission has no texture: scale its meshes or lights")
+        })?;
         let image = &o.scene.textures[map.texture].image;
         let scale: Vec<DVec3> = o.group_of.iter().map(|&g| o.solution.scale[g as usize]).collect();
         let scaled = Pixels::counted(stage.context(), image.width, image.height, 3, || o.lamps.scaled(image, &scale))?;

@@ -1,17 +1,21 @@
 //! Lights of a scene
 //!
-//! Lights without a surface: points, spots, and the parallel light of something far away. Lights with a surface are
-//! materials that emit.
+//! Lights without a surface: points, spots, the parallel light of something far away, and luminaires that were measured.
+//! Lights with a surface are materials that emit.
 
+use super::distribution::luxfer_distribution;
 use super::guard::{enter, guard};
+use super::handle::{self, Owned};
 use super::params::{self, Versioned};
 use super::pointer::set_optional;
 use super::scene::{colour, luxfer_scene};
 use super::status::luxfer_status;
 use crate::error::{Error, Result, check_range};
+use crate::image::colour::luminance;
 use crate::scene::{PunctualLight, check_place};
 use glam::Vec3;
 use std::f32::consts::FRAC_PI_2;
+use std::sync::Arc;
 
 /// A kind of light: a LUXFER_LIGHT_ value.
 pub type luxfer_light_kind = i32;
@@ -103,6 +107,118 @@ pub unsafe extern "C" fn luxfer_scene_add_light(
     enter(scene, |object| {
         let light = params::read(params)?.light()?;
         let added = object.change(0, |scene| {
+            scene.lights.push(light);
+            Ok(scene.lights.len() as u32 - 1)
+        })?;
+        set_optional(index, added);
+        Ok(())
+    })
+}
+
+/// How a luminaire hangs. Fill it with luxfer_luminaire_params_init.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_luminaire_params {
+    /// sizeof(luxfer_luminaire_params), set by luxfer_luminaire_params_init.
+    pub struct_size: u32,
+    /// Must be 0.
+    pub reserved: u32,
+    /// Luminous flux in lumens, finite and >= 0; default 0: that of the distribution.
+    pub flux: f64,
+    /// Where it hangs, in metres, in [-1e15, 1e15]; default (0, 0, 0).
+    pub position: [f32; 3],
+    /// The direction of its axis, where gamma is 0; any length but 0; default (0, -1, 0): it shines down.
+    pub axis: [f32; 3],
+    /// About where C is 0: what of it is at right angles to the axis counts, which must not be 0; default (1, 0, 0). C grows
+    /// anticlockwise as seen from above a luminaire that shines down.
+    pub c0: [f32; 3],
+    /// Linear colour of its light, each >= 0 and not all 0; its brightness does not count; default (1, 1, 1).
+    pub colour: [f32; 3],
+}
+
+// SAFETY: plain numbers.
+unsafe impl Versioned for luxfer_luminaire_params {
+    const NAME: &'static str = "luxfer_luminaire_params";
+    const SIZES: &'static [usize] = &[64];
+    fn defaults() -> Self {
+        Self {
+            struct_size: 64,
+            reserved: 0,
+            flux: 0.0,
+            position: [0.0; 3],
+            axis: [0.0, -1.0, 0.0],
+            c0: [1.0, 0.0, 0.0],
+            colour: [1.0; 3],
+        }
+    }
+}
+
+impl luxfer_luminaire_params {
+    /// As light of a distribution of a flux, which gets an index.
+    fn light(&self, rated: f64, distribution: usize) -> Result<PunctualLight> {
+        if self.reserved != 0 {
+            return Err(Error::argument(format!("reserved is {}; it must be 0", self.reserved)));
+        }
+        let position = Vec3::from_array(self.position);
+        check_place(|| "luminaire.position", position)?;
+        let flux = check_range("luminaire.flux", self.flux, 0.0, f64::from(f32::MAX))?;
+        let axis = Vec3::from_array(self.axis).try_normalize().ok_or_else(|| {
+            Error::argument(format!("luminaire.axis is {:?}; it must be finite and not zero", self.axis))
+        })?;
+        let c0 = Vec3::from_array(self.c0).try_normalize().and_then(|c0| {
+            // Nearly along the axis is as good as along it.
+            let across = c0 - axis * c0.dot(axis);
+            across.try_normalize().filter(|_| across.length() > 1e-4)
+        });
+        let c0 = c0.ok_or_else(|| {
+            Error::argument(format!("luminaire.c0 is {:?}; it must be finite and not along the axis", self.c0))
+        })?;
+        let [red, green, blue] = self.colour;
+        let colour = colour("luminaire.colour", red, green, blue)?;
+        let factor = if flux > 0.0 { flux / rated } else { 1.0 };
+        let colour = colour * (factor / f64::from(luminance(colour))) as f32;
+        if colour.is_finite() {
+            return Ok(PunctualLight::Luminaire { position, axis, c0, colour, distribution });
+        }
+        Err(Error::argument(format!(
+            "luminaire.flux is {flux} and luminaire.colour {:?}; neither the colour nor the distribution, of {rated} lm, may \
+             be dark",
+            self.colour
+        )))
+    }
+}
+
+/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_luminaire_params_init(
+    params: *mut luxfer_luminaire_params,
+    size: usize,
+) -> luxfer_status {
+    guard(|| params::init(params, size))
+}
+
+/// Adds a luminaire: a light at a point, as strong in each direction as a distribution says; *index, unless NULL, becomes its
+/// index among the lights. A luminaire must be small beside how far it is from what it lights: a fifth of that at most. params
+/// may be NULL for the defaults. Any thread.
+/// LUXFER_INVALID_ARGUMENT if a value is out of range.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_scene_add_luminaire(
+    scene: *mut luxfer_scene,
+    distribution: *mut luxfer_distribution,
+    params: *const luxfer_luminaire_params,
+    index: *mut u32,
+) -> luxfer_status {
+    enter(scene, |object| {
+        let params = params::read(params)?;
+        let distribution = handle::borrow_in(object.context(), distribution, "distribution")?;
+        let luminaire = distribution.luminaire();
+        let added = object.change(0, |scene| {
+            // Luminaires of a kind share their distribution.
+            let known = scene.distributions.iter().position(|d| Arc::ptr_eq(d, luminaire));
+            let light = params.light(luminaire.flux(), known.unwrap_or(scene.distributions.len()))?;
+            if known.is_none() {
+                scene.distributions.push(luminaire.clone());
+            }
             scene.lights.push(light);
             Ok(scene.lights.len() as u32 - 1)
         })?;

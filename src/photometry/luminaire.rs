@@ -90,6 +90,14 @@ impl Luminaire {
         in_plane(before) + (in_plane(after) - in_plane(before)) * s
     }
 
+    /// The angle γ in degrees from which on there is no light any more.
+    pub fn widest(&self) -> f64 {
+        let n = self.gammas.len();
+        let dark = |i: usize| self.candela.iter().skip(i).step_by(n).all(|v| *v == 0.0);
+        let first_dark = (0..n).rev().take_while(|i| dark(*i)).last().unwrap_or(n);
+        self.gammas[first_dark.min(n - 1)]
+    }
+
     /// Luminous flux in lumens: the intensity over the sphere, linear between the angles and integrated exactly.
     pub fn flux(&self) -> f64 {
         let (n, m) = (self.gammas.len(), self.planes.len());
@@ -142,6 +150,7 @@ mod tests {
         // A Lambertian disc, sampled every 2.5 degrees.
         let disc = Luminaire::lambertian("disc", 1000.0, [0.0; 3]);
         assert!((disc.flux() / 1000.0 - 1.0).abs() < 1e-3, "{}", disc.flux());
+        assert_eq!((disc.widest(), even.widest()), (90.0, 180.0));
         assert!((disc.intensity(123.0, 60.0) - 500.0 / PI).abs() < 1e-6);
         assert_eq!(disc.intensity(0.0, 120.0), 0.0);
     }

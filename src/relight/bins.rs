@@ -35,7 +35,11 @@ impl<'a> Bins<'a> {
     /// The bin of a light, if it has one.
     #[inline]
     fn find(&self, source: LightSource) -> Option<usize> {
-        let LightSource::Surface { mesh, triangle, uv } = source else { return None };
+        let (mesh, triangle, uv) = match (source, &self.division) {
+            (LightSource::Surface { mesh, triangle, uv }, _) => (mesh, triangle, uv),
+            (LightSource::Punctual(index), Division::Lamps(lamps)) => return lamps.find_light(index),
+            _ => return None,
+        };
         if !self.of_emitter[mesh as usize] {
             return None;
         }

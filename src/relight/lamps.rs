@@ -1,9 +1,10 @@
-//! Which lamp a point of the emission belongs to: by the texels of its texture, or by the pieces of its meshes.
+//! Which lamp a point of the emission belongs to: by the texels of its texture, or by the pieces of its meshes. Lights without
+//! a surface, such as luminaires, are lamps by themselves.
 
 use crate::error::{Error, Result};
 use crate::image::patches::Patches;
 use crate::image::{Image, try_vec};
-use crate::scene::Scene;
+use crate::scene::{PunctualLight, Scene};
 use glam::{DVec3, Vec2, Vec3};
 
 /// Lamps of an emission, counted from 0.
@@ -23,6 +24,8 @@ enum Division {
     Texels { width: usize, height: usize },
     /// A label per triangle; the first of each mesh.
     Triangles { first: Vec<usize> },
+    /// No labels: the scene's lights without a surface, as they are numbered.
+    Lights,
 }
 
 impl Lamps {
@@ -94,6 +97,18 @@ impl Lamps {
         Self { count: centres.len(), labels, division: Division::Triangles { first }, centres }.checked()
     }
 
+    /// Every light without a surface is a lamp; no surface is.
+    pub fn of_lights(scene: &Scene) -> Result<Self> {
+        let place = |light: &PunctualLight| match *light {
+            PunctualLight::Point { position, .. }
+            | PunctualLight::Spot { position, .. }
+            | PunctualLight::Luminaire { position, .. } => position,
+            PunctualLight::Directional { .. } => Vec3::ZERO,
+        };
+        let centres: Vec<Vec3> = scene.lights.iter().map(place).collect();
+        Self { count: centres.len(), labels: Vec::new(), division: Division::Lights, centres }.checked()
+    }
+
     fn checked(self) -> Result<Self> {
         if self.count == 0 {
             return Err(Error::argument("the emission has no lamp: nothing of it emits, or nothing is labelled"));
@@ -105,7 +120,8 @@ impl Lamps {
         self.count
     }
 
-    /// Centre of each lamp: texture coordinates of a lamp of texels, metres of a lamp of triangles.
+    /// Centre of each lamp: texture coordinates of a lamp of texels, metres of a lamp of
+    /// triangles and of a light, 0 of one that is infinitely far away.
     pub fn centres(&self) -> &[Vec3] {
         &self.centres
     }
@@ -127,7 +143,7 @@ impl Lamps {
     pub fn scaled(&self, texture: &Image, scale: &[DVec3]) -> Result<Image> {
         let fits = match &self.division {
             Division::Texels { width, height } => (*width, *height) == (texture.width, texture.height),
-            Division::Triangles { .. } => false,
+            Division::Triangles { .. } | Division::Lights => false,
         };
         if !fits || scale.len() != self.count {
             return Err(Error::argument("the lamps are not those of this texture"));
@@ -159,6 +175,12 @@ impl Lamps {
         (groups, group as usize + 1)
     }
 
+    /// The lamp that a light without a surface is.
+    #[inline]
+    pub(super) fn find_light(&self, index: u32) -> Option<usize> {
+        (self.division == Division::Lights).then_some(index as usize)
+    }
+
     #[inline]
     pub(super) fn find(&self, mesh: u32, triangle: u32, uv: Vec2) -> Option<usize> {
         let label = match &self.division {
@@ -168,6 +190,7 @@ impl Lamps {
                 self.labels[at(uv.y, *height) * width + at(uv.x, *width)]
             }
             Division::Triangles { first } => self.labels[first[mesh as usize] + triangle as usize],
+            Division::Lights => 0,
         };
         (label as usize).checked_sub(1)
     }

@@ -86,7 +86,7 @@ struct PerGoal {
 
 /// Traces the responses of goals to the lamps of an emission at the strength it has. Stops as [`super::run`] does, by the
 /// interval of each goal's response to all lamps together; single lamps are known less well. `params.quantity` is not
-/// used.
+/// used, and neither is `emitter` where the lamps are lights without a surface.
 ///
 /// # Errors
 /// Parameters out of range, goals that are not there or have no area; cancelled.

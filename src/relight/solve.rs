@@ -81,7 +81,8 @@ fn keep_sides(answers: &mut [Answer; 3], sense: [Sense; 3]) {
     let share = 1.0 / met.len() as f64;
     let deviations = std::array::from_fn(|b| share * met.iter().map(|a| a.deviations[b]).sum::<f64>());
     let half_width = STUDENT_T * standard_error(&deviations);
-    let neutral = Answer { scale: share * met.iter().map(|a| a.scale).sum::<f64>(), half_width, reach: Reach::Met, deviations };
+    let neutral =
+        Answer { scale: share * met.iter().map(|a| a.scale).sum::<f64>(), half_width, reach: Reach::Met, deviations };
     for (answer, sense) in answers.iter_mut().zip(sense) {
         // Other light that is brighter than a target that is a least leaves the channel free.
         let free = match answer.reach {

@@ -155,6 +155,7 @@ pub fn analyse(scene: &Scene, table: Option<&AlbedoTable>) -> (Requirements, Vec
             PunctualLight::Point { intensity, .. } => (&mut needed.points, intensity),
             PunctualLight::Spot { intensity, .. } => (&mut needed.spots, intensity),
             PunctualLight::Directional { illuminance, .. } => (&mut needed.directional, illuminance),
+            PunctualLight::Luminaire { colour, .. } => (&mut needed.points, colour),
         };
         *kind |= strength.max_element() > 0.0;
     }

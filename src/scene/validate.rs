@@ -1,7 +1,7 @@
 //! Checks a scene before anything is built from it.
 
 use super::{AlphaMode, Camera, Environment, Material, Mesh, PunctualLight, Scene, Texture, TextureRef};
-use crate::error::{Error, Result, check_range};
+use crate::error::{Error, ErrorKind, Result, check_range};
 use crate::image::Image;
 use glam::{Mat3, Vec3};
 use std::f32::consts::{FRAC_PI_2, PI};
@@ -42,8 +42,14 @@ impl Scene {
         for (i, mesh) in self.meshes.iter().enumerate() {
             self.check_mesh(mesh).map_err(|e| e.within(format_args!("mesh {i} {:?}", mesh.name)))?;
         }
+        for (i, distribution) in self.distributions.iter().enumerate() {
+            distribution.check().map_err(|e| {
+                let e = e.within(format_args!("distribution {i} {:?}", distribution.name));
+                Error { kind: ErrorKind::InvalidArgument, ..e }
+            })?;
+        }
         for (i, light) in self.lights.iter().enumerate() {
-            check_light(light).map_err(|e| e.within(format_args!("light {i}")))?;
+            self.check_light(light).map_err(|e| e.within(format_args!("light {i}")))?;
         }
         for (i, camera) in self.cameras.iter().enumerate() {
             check_camera(camera).map_err(|e| e.within(format_args!("camera {i} {:?}", camera.name)))?;
@@ -90,6 +96,34 @@ impl Scene {
         Err(Error::argument(format!("{what}.transform is {transform}; it must be finite with the last row 0 0 1")))
     }
 
+    fn check_light(&self, light: &PunctualLight) -> Result<()> {
+        match *light {
+            PunctualLight::Point { position, intensity } => {
+                check_place(|| "position", position)?;
+                check_light_colour("intensity", intensity)
+            }
+            PunctualLight::Spot { position, direction, intensity, inner_angle, outer_angle } => {
+                check_place(|| "position", position)?;
+                check_unit("direction", direction)?;
+                check_light_colour("intensity", intensity)?;
+                check_range("outer_angle", outer_angle, 0.0, FRAC_PI_2)?;
+                check_range("inner_angle", inner_angle, 0.0, outer_angle).map(|_| ())
+            }
+            PunctualLight::Directional { direction, illuminance } => {
+                check_unit("direction", direction)?;
+                check_light_colour("illuminance", illuminance)
+            }
+            PunctualLight::Luminaire { position, axis, c0, colour, distribution } => {
+                check_place(|| "position", position)?;
+                check_unit("axis", axis)?;
+                check_unit("c0", c0)?;
+                check_right_angle("axis · c0", axis.dot(c0))?;
+                check_index("its distribution", distribution, self.distributions.len(), "distributions")?;
+                check_light_colour("colour", colour)
+            }
+        }
+    }
+
     fn check_mesh(&self, mesh: &Mesh) -> Result<()> {
         check_index("its material", mesh.material, self.materials.len(), "materials")?;
         let count = mesh.positions.len();
@@ -122,6 +156,13 @@ impl Scene {
             None => Ok(()),
         }
     }
+}
+
+fn check_right_angle(what: &str, cosine: f32) -> Result<()> {
+    if cosine.abs() <= DIRECTION_TOLERANCE {
+        return Ok(());
+    }
+    Err(Error::argument(format!("{what} is {cosine}; they must be at right angles")))
 }
 
 fn check_index(what: &str, index: usize, count: usize, list: &str) -> Result<()> {
@@ -176,34 +217,12 @@ fn check_unit(what: &str, direction: Vec3) -> Result<()> {
     Err(Error::argument(format!("{what} is {direction}; it must be a unit vector")))
 }
 
-fn check_light(light: &PunctualLight) -> Result<()> {
-    match *light {
-        PunctualLight::Point { position, intensity } => {
-            check_place(|| "position", position)?;
-            check_light_colour("intensity", intensity)
-        }
-        PunctualLight::Spot { position, direction, intensity, inner_angle, outer_angle } => {
-            check_place(|| "position", position)?;
-            check_unit("direction", direction)?;
-            check_light_colour("intensity", intensity)?;
-            check_range("outer_angle", outer_angle, 0.0, FRAC_PI_2)?;
-            check_range("inner_angle", inner_angle, 0.0, outer_angle).map(|_| ())
-        }
-        PunctualLight::Directional { direction, illuminance } => {
-            check_unit("direction", direction)?;
-            check_light_colour("illuminance", illuminance)
-        }
-    }
-}
-
 fn check_camera(camera: &Camera) -> Result<()> {
     check_place(|| "position", camera.position)?;
     check_unit("forward", camera.forward)?;
     check_unit("up", camera.up)?;
     let cosine = camera.forward.dot(camera.up);
-    if cosine.abs() > DIRECTION_TOLERANCE {
-        return Err(Error::argument(format!("forward · up is {cosine}; they must be at right angles")));
-    }
+    check_right_angle("forward · up", cosine)?;
     if camera.fov_y > 0.0 && camera.fov_y < PI {
         return Ok(());
     }
@@ -214,7 +233,9 @@ fn check_camera(camera: &Camera) -> Result<()> {
 mod tests {
     use super::*;
     use crate::error::ErrorKind;
+    use crate::photometry::Luminaire;
     use glam::Vec2;
+    use std::sync::Arc;
 
     fn scene() -> Scene {
         let image = Image::from_fn(2, 2, |_, _| [0.5, 0.5, 0.5]).unwrap();
@@ -230,9 +251,14 @@ mod tests {
             materials: vec![material],
             textures: vec![Texture::new("Grain", image)],
             lights: vec![PunctualLight::Directional { direction: Vec3::NEG_Y, illuminance: Vec3::ONE }],
+            distributions: vec![Arc::new(Luminaire::lambertian("Panel", 1.0, [0.0; 3]))],
             environment: Some(Environment::Constant(Vec3::ONE)),
             cameras: vec![Camera::look_at(Vec3::ONE, Vec3::ZERO, 1.0)],
         }
+    }
+
+    fn hang_in(light: PunctualLight) -> Scene {
+        Scene { lights: vec![light], ..scene() }
     }
 
     #[test]
@@ -240,7 +266,15 @@ mod tests {
         assert_eq!(scene().validate(), Ok(()));
         assert_eq!(Scene::default().validate(), Ok(()));
         type Defect = (&'static str, fn(&mut Scene));
-        let defects: [Defect; 23] = [
+        let hang = |axis, c0, distribution| {
+            let (position, colour) = (Vec3::ZERO, Vec3::ONE);
+            PunctualLight::Luminaire { position, axis, c0, colour, distribution }
+        };
+        assert_eq!(hang_in(hang(Vec3::NEG_Y, Vec3::X, 0)).validate(), Ok(()));
+        for light in [hang(Vec3::NEG_Y, Vec3::X, 1), hang(Vec3::ONE, Vec3::X, 0), hang(Vec3::X, Vec3::X, 0)] {
+            assert!(hang_in(light).validate().unwrap_err().message.contains("light 0"));
+        }
+        let defects: [Defect; 24] = [
             ("vertex 2", |s| s.meshes[0].positions[2].x = -1.1e15),
             ("Desk", |s| s.meshes[0].positions[1].y = f32::NAN),
             ("vertex 1", |s| s.meshes[0].positions[1].y = f32::INFINITY),
@@ -261,6 +295,7 @@ mod tests {
             ("Grain", |s| s.textures[0].image.width = 3),
             ("Grain", |s| s.textures[0].image = Image::new(1, 1, 2).unwrap()),
             ("light 0", |s| s.lights[0] = PunctualLight::Point { position: Vec3::NAN, intensity: Vec3::ONE }),
+            ("Panel", |s| Arc::make_mut(&mut s.distributions[0]).candela[0] = f64::NAN),
             ("environment", |s| s.environment = Some(Environment::Constant(Vec3::NEG_ONE))),
             ("camera 0", |s| s.cameras[0].fov_y = PI),
             ("camera 0", |s| s.cameras[0].up = s.cameras[0].forward),

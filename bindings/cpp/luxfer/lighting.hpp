@@ -10,6 +10,7 @@ namespace luxfer {
 using LampsParams = Params<luxfer_lamps_params, luxfer_lamps_params_init>;
 using ImportanceParams = Params<luxfer_importance_params, luxfer_importance_params_init>;
 using FalseColourParams = Params<luxfer_false_colour_params, luxfer_false_colour_params_init>;
+using LuminaireParams = Params<luxfer_luminaire_params, luxfer_luminaire_params_init>;
 using PlacementParams = Params<luxfer_placement_params, luxfer_placement_params_init>;
 
 /// Powers of the lamps of an emission that come nearest to several goals. See luxfer_lamps.
@@ -144,6 +145,14 @@ public:
         return value<double>(luxfer_distribution_get_intensity, c, gamma);
     }
 };
+
+/// Hangs a luminaire in a scene; returns its index among the lights.
+inline Result<std::uint32_t> add_luminaire(const Scene &scene, const Distribution &distribution,
+                                           const luxfer_luminaire_params &params = LuminaireParams()) {
+    std::uint32_t index = 0;
+    const luxfer_status status = luxfer_scene_add_luminaire(scene.get(), distribution.get(), &params, &index);
+    return detail::finish(scene.context().get(), status, index);
+}
 
 /// The blackbody nearest to a colour.
 struct ColourTemperature {

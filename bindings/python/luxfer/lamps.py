@@ -33,9 +33,10 @@ class Lamps(StageBase):
 
     kind = "lamps"
 
-    def set_scene(self, scene: Scene, material: int) -> None:
-        """The scene and the emitting material whose lamps are solved for; forgets the goals."""
-        self._call("set_scene", scene, material)
+    def set_scene(self, scene: Scene, material: int | None) -> None:
+        """The scene and the emitting material whose lamps are solved for, or None for its lights without a surface, such as
+        luminaires; forgets the goals."""
+        self._call("set_scene", scene, _abi.LUXFER_NONE if material is None else material)
 
     def add_mesh(
         self, mesh: int, radiance: Sequence[float], quantity: Quantity | str = Quantity.OUTGOING, weight: float = 1

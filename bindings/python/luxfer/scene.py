@@ -30,7 +30,8 @@ if TYPE_CHECKING:
 
     from .context import Context
     from .image import ImageLike
-    from .types import LightParams
+    from .photometry import Distribution
+    from .types import LightParams, LuminaireParams
 
 #: What intersect() returns of each ray; a miss has t = inf and mesh = triangle = 2**32 - 1.
 HIT = np.dtype([("t", "f4"), ("mesh", "u4"), ("triangle", "u4"), ("u", "f4"), ("v", "f4")])
@@ -139,9 +140,13 @@ class Scene(Handle):
         """Adds a light without a surface: kind "point", "spot" or "directional"; returns its index."""
         return self._add("add_light", _params.fill(_abi.luxfer_light_params, params, []))
 
-    def _add(self, verb: str, params: Any) -> int:
+    def add_luminaire(self, distribution: Distribution, **params: Unpack[LuminaireParams]) -> int:
+        """Hangs a luminaire whose intensities were measured; returns its index among the lights."""
+        return self._add("add_luminaire", distribution, _params.fill(_abi.luxfer_luminaire_params, params, []))
+
+    def _add(self, verb: str, *arguments: Any) -> int:
         index = ctypes.c_uint32()
-        self._call(verb, params, index)
+        self._call(verb, *arguments, index)
         return index.value
 
     def set_material(self, index: int, **params: Unpack[MaterialParams]) -> None:

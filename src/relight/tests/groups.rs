@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::image::Image;
+use crate::photometry::Luminaire;
 use crate::scene::{Texture, TextureRef};
 
 /// Texels of the ceiling's texture along each side.
@@ -280,6 +281,57 @@ fn powers_in_steps() {
     assert!(coarse.unreachable.is_some(), "{coarse:?}");
     let params = GroupParams { levels: vec![-1.0], ..GroupParams::default() };
     assert_eq!(solve_groups(&responses, &goals, &params).unwrap_err().kind, ErrorKind::InvalidArgument);
+}
+
+/// Luminaires as their files describe them are lamps too: each means to a desk what the law of the cosine says, and all get
+/// the powers that light the desks as they should be.
+#[test]
+fn luminaires_are_lamps() {
+    let places = [Vec3::new(0.9, 2.2, 0.9), Vec3::new(3.1, 2.2, 2.1)];
+    let hang = |position: Vec3| PunctualLight::Luminaire {
+        position,
+        axis: Vec3::NEG_Y,
+        c0: Vec3::X,
+        colour: Vec3::ONE,
+        distribution: 0,
+    };
+    let mut scene = room(Vec3::new(4.0, 2.5, 3.0), Vec3::ZERO, Vec3::ZERO, Vec3::ZERO);
+    scene.lights = places.map(hang).to_vec();
+    scene.distributions = vec![Arc::new(Luminaire::lambertian("panel", 1000.0, [0.0; 3]))];
+    // A hand's breadth each: nearly a point.
+    let desks = [Vec3::new(0.9, 0.75, 0.9), Vec3::new(2.6, 0.75, 2.1)];
+    let (across, down) = (Vec3::X * 0.01, Vec3::Z * 0.01);
+    let aims: Vec<Goal> = desks
+        .iter()
+        .zip([500.0, 300.0])
+        .map(|(desk, lux)| {
+            let place = Place::Grid { origin: *desk - (across + down) / 2.0, across, down, normal: Vec3::Y };
+            goal(place, Vec3::splat(lux / std::f32::consts::PI))
+        })
+        .collect();
+    let lamps = Lamps::of_lights(&scene).unwrap();
+    let world = World::build(Arc::new(scene), Monitor::default().job()).unwrap();
+    let responses = respond(&world, &lamps, &aims);
+    let mut truth = [[0.0; 2]; 2];
+    for (g, desk) in desks.iter().enumerate() {
+        for (l, place) in places.iter().enumerate() {
+            let from = (*place - *desk).as_dvec3();
+            let cosine = from.normalize().y;
+            let radiance = 1000.0 * std::f64::consts::FRAC_1_PI.powi(2) * cosine * cosine / from.length_squared();
+            let found = responses.lamp(g, l);
+            truth[g][l] = radiance;
+            let (off, error) = ((found.mean.x - radiance).abs(), found.standard_error.x);
+            assert!(off < 4.0 * error + 1e-3 * radiance, "{g} {l}: {found:?}, expected {radiance}");
+            assert!(error < 0.02 * radiance, "{found:?}");
+        }
+        assert_eq!(responses.background(g).mean, DVec3::ZERO);
+    }
+    let solution = solve_groups(&responses, &aims, &GroupParams::default()).unwrap();
+    for (row, lux) in truth.iter().zip([500.0, 300.0]) {
+        let light = std::f64::consts::PI * (row[0] * solution.scale[0].x + row[1] * solution.scale[1].x);
+        assert!((light / lux - 1.0).abs() < 0.03, "{light} lx of {lux}: {solution:?}");
+    }
+    assert!(solution.unreachable.is_none());
 }
 
 /// Colours that are free are solved channel by channel, as the closed form does.

@@ -66,8 +66,8 @@ impl Lights {
         let (mut near_power, mut far_powers) = (emitters.power, Vec::new());
         let lights: Vec<PunctualLight> = scene.lights.iter().map(|light| punctual::relative(light, centre)).collect();
         for (light, index) in lights.iter().zip(0..) {
-            let power = Punctual::flux(light, radius);
-            if let Some(b) = Punctual::bounds(light) {
+            let power = Punctual::flux(light, &scene.distributions, radius);
+            if let Some(b) = Punctual::bounds(light, &scene.distributions) {
                 bounds.push(b);
                 near.push(index);
                 near_power += power;
@@ -89,7 +89,7 @@ impl Lights {
         let groups = powers.map(|p| if p > 0.0 { 0.5 / present + 0.5 * p / total } else { 0.0 });
         Ok(Self {
             emitters,
-            punctual: lights.iter().map(Punctual::new).collect(),
+            punctual: lights.iter().map(|light| Punctual::new(light, &scene.distributions)).collect(),
             tree: LightTree::build(&bounds)?,
             pieces: count,
             near,
@@ -167,12 +167,12 @@ impl Lights {
 
     fn sample_punctual(&self, receiver: &Receiver, index: u32, probability: f32) -> Option<LightSample> {
         let (direction, end, emission, density) = match &self.punctual[index as usize] {
-            Punctual::Near { position, intensity, cone } => {
+            Punctual::Near { position, intensity, shape } => {
                 let offset = position - receiver.position;
                 let distance = offset.length();
                 let direction = offset / distance;
-                let share = cone.as_ref().map_or(1.0, |c| c.share(-direction));
-                (direction, Some(LightEnd::Point(*position)), intensity * share, probability * distance * distance)
+                let factor = shape.factor(-direction);
+                (direction, Some(LightEnd::Point(*position)), intensity * factor, probability * distance * distance)
             }
             Punctual::Far { towards, illuminance } => (*towards, None, *illuminance, probability),
         };

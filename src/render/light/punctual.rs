@@ -1,22 +1,40 @@
-//! Lights without a surface: points, spots and directions (`KHR_lights_punctual`).
+//! Lights without a surface: points, spots and directions (`KHR_lights_punctual`), and luminaires that were measured.
 
 use super::bounds::Bounds;
+use crate::photometry::Luminaire;
 use crate::render::emissive::mean_channel;
-use crate::scene::PunctualLight;
+use crate::scene::{PunctualLight, c90};
 use glam::{DVec3, Vec3};
+use std::f32::consts::FRAC_PI_2;
+use std::sync::Arc;
 
 /// A light as it is sampled, what does not change worked out.
 pub enum Punctual {
     Near {
         position: Vec3,
         intensity: Vec3,
-        cone: Option<Cone>,
+        shape: Shape,
     },
     /// From infinitely far away, towards the light.
     Far {
         towards: Vec3,
         illuminance: Vec3,
     },
+}
+
+/// How the intensity depends on the direction.
+pub enum Shape {
+    Even,
+    Cone(Cone),
+    Measured(Measured),
+}
+
+/// The intensity of a luminaire, about its axes.
+pub struct Measured {
+    axis: Vec3,
+    c0: Vec3,
+    c90: Vec3,
+    luminaire: Arc<Luminaire>,
 }
 
 /// glTF's cone: the square of `(cosine - outer) * scale`, clamped to 1.
@@ -27,26 +45,32 @@ pub struct Cone {
 }
 
 impl Punctual {
-    pub fn new(light: &PunctualLight) -> Self {
+    /// `distributions` are those of the scene.
+    pub fn new(light: &PunctualLight, distributions: &[Arc<Luminaire>]) -> Self {
         match *light {
-            PunctualLight::Point { position, intensity } => Self::Near { position, intensity, cone: None },
+            PunctualLight::Point { position, intensity } => Self::Near { position, intensity, shape: Shape::Even },
             PunctualLight::Spot { position, direction, intensity, inner_angle, outer_angle } => {
                 let (inner, outer) = (inner_angle.cos(), outer_angle.cos());
                 let axis = direction.normalize_or_zero();
                 Self::Near {
                     position,
                     intensity,
-                    cone: Some(Cone { axis, outer, scale: 1.0 / (inner - outer).max(1e-4) }),
+                    shape: Shape::Cone(Cone { axis, outer, scale: 1.0 / (inner - outer).max(1e-4) }),
                 }
             }
             PunctualLight::Directional { direction, illuminance } => {
                 Self::Far { towards: -direction.normalize_or_zero(), illuminance }
             }
+            PunctualLight::Luminaire { position, axis, c0, colour, distribution } => {
+                let luminaire = distributions[distribution].clone();
+                let shape = Shape::Measured(Measured { axis, c0, c90: c90(axis, c0), luminaire });
+                Self::Near { position, intensity: colour, shape }
+            }
         }
     }
 
     /// Bounds of a light at a place that emits; none for others.
-    pub fn bounds(light: &PunctualLight) -> Option<Bounds> {
+    pub fn bounds(light: &PunctualLight, distributions: &[Arc<Luminaire>]) -> Option<Bounds> {
         let bounds = match *light {
             PunctualLight::Point { position, intensity } => {
                 Bounds::of_point(position, mean_channel(intensity.max(Vec3::ZERO)))
@@ -57,12 +81,19 @@ impl Punctual {
                 Bounds::of_cone(position, axis, outer_angle + 0.01, mean_channel(intensity.max(Vec3::ZERO)))
             }
             PunctualLight::Directional { .. } => return None,
+            PunctualLight::Luminaire { position, axis, colour, distribution, .. } => {
+                let luminaire = &*distributions[distribution];
+                // In full as far as there is any, and a little farther for rounding.
+                let reach = luminaire.widest().to_radians() as f32 + FRAC_PI_2 + 0.01;
+                let peak = luminaire.candela.iter().copied().fold(0.0, f64::max) as f32;
+                Bounds::of_cone(position, axis, reach, peak * mean_channel(colour.max(Vec3::ZERO)))
+            }
         };
         (bounds.intensity > 0.0).then_some(bounds)
     }
 
     /// Luminous flux in lumens, of directional lights that which enters a sphere around the scene.
-    pub fn flux(light: &PunctualLight, radius: f32) -> f64 {
+    pub fn flux(light: &PunctualLight, distributions: &[Arc<Luminaire>], radius: f32) -> f64 {
         let (solid_angle_or_area, strength) = match *light {
             PunctualLight::Point { intensity, .. } => (4.0 * std::f64::consts::PI, intensity),
             PunctualLight::Spot { intensity, outer_angle, .. } => {
@@ -71,6 +102,7 @@ impl Punctual {
             PunctualLight::Directional { illuminance, .. } => {
                 (std::f64::consts::PI * f64::from(radius).powi(2).max(f64::MIN_POSITIVE), illuminance)
             }
+            PunctualLight::Luminaire { colour, distribution, .. } => (distributions[distribution].flux(), colour),
         };
         solid_angle_or_area * f64::from(mean_channel(strength.max(Vec3::ZERO)))
     }
@@ -80,12 +112,34 @@ impl Punctual {
 pub fn relative(light: &PunctualLight, centre: DVec3) -> PunctualLight {
     let mut light = *light;
     match &mut light {
-        PunctualLight::Point { position, .. } | PunctualLight::Spot { position, .. } => {
+        PunctualLight::Point { position, .. }
+        | PunctualLight::Spot { position, .. }
+        | PunctualLight::Luminaire { position, .. } => {
             *position = (position.as_dvec3() - centre).as_vec3();
         }
         PunctualLight::Directional { .. } => {}
     }
     light
+}
+
+impl Shape {
+    /// What the intensity is multiplied with along a unit direction: a share of it, or candelas.
+    pub fn factor(&self, direction: Vec3) -> f32 {
+        match self {
+            Self::Even => 1.0,
+            Self::Cone(cone) => cone.share(direction),
+            Self::Measured(measured) => measured.candela(direction),
+        }
+    }
+}
+
+impl Measured {
+    fn candela(&self, direction: Vec3) -> f32 {
+        let along = |axis: Vec3| f64::from(direction.dot(axis));
+        let (x, y, z) = (along(self.c0), along(self.c90), along(self.axis));
+        let gamma = x.hypot(y).atan2(z);
+        self.luminaire.intensity(y.atan2(x).to_degrees(), gamma.to_degrees()) as f32
+    }
 }
 
 impl Cone {

@@ -4,6 +4,7 @@ use super::*;
 use crate::exec::Pool;
 use crate::image::Image;
 use crate::job::Monitor;
+use crate::photometry::Luminaire;
 use crate::render::sampler::Sampler;
 use crate::render::tests::chi2::assert_follows;
 use crate::render::{PathSink, SurfacePoint, World, irradiance};
@@ -110,6 +111,13 @@ fn every_kind_of_light_is_chosen_as_often_as_its_density_says() {
     let place = |i: usize| Vec3::new(i as f32 - 2.0, 1.5, 0.3);
     scene.lights = (0..6)
         .map(|i| match i % 3 {
+            0 if i > 0 => PunctualLight::Luminaire {
+                position: place(i),
+                axis: Vec3::NEG_Y,
+                c0: Vec3::X,
+                colour: intensity(i),
+                distribution: 0,
+            },
             0 => PunctualLight::Point { position: place(i), intensity: intensity(i) },
             1 => PunctualLight::Spot {
                 position: place(i),
@@ -121,6 +129,7 @@ fn every_kind_of_light_is_chosen_as_often_as_its_density_says() {
             _ => PunctualLight::Directional { direction: -place(i).normalize(), illuminance: intensity(i) },
         })
         .collect();
+    scene.distributions = vec![Arc::new(Luminaire::lambertian("panel", 4.0, [0.0; 3]))];
     scene.environment = Some(Environment::Constant(Vec3::splat(0.5)));
     let world = world(scene);
     let receiver = Receiver { position: Vec3::new(0.1, 0.0, 0.0), normal: Vec3::Y };

@@ -8,6 +8,7 @@ mod film;
 mod illuminance;
 mod irradiance;
 mod layers;
+mod luminaires;
 mod place;
 mod refusal;
 mod requirements;

@@ -1,10 +1,12 @@
 //! Writes a scene as one GLB file.
 
+use super::import::IES;
 use super::material::transform_matrix;
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::colour::srgb_to_linear;
 use crate::image::io::{self, Encoding};
-use crate::scene::{AlphaMode, Camera, Material, Mesh, PunctualLight, Scene, TextureRef, Wrap};
+use crate::photometry::ies;
+use crate::scene::{AlphaMode, Camera, Material, Mesh, PunctualLight, Scene, TextureRef, Wrap, c90};
 use glam::{Mat3, Quat, Vec2, Vec3};
 use serde_json::{Map, Value, json};
 
@@ -20,7 +22,7 @@ const NEAR: f32 = 0.01;
 /// Encodes a scene as GLB: one node for each mesh, camera and light, textures as embedded PNG.
 ///
 /// An emission texture brighter than 1 is scaled to a peak of 1, and `KHR_materials_emissive_strength` carries the rest;
-/// PNG then has 8 bits for each channel. Meshes without triangles and the environment are left out: glTF has no place for
+/// PNG then has 8 bits for each channel. Luminaires take their distributions along as IES files (`EXT_lights_ies`). Meshes without triangles and the environment are left out: glTF has no place for
 /// them. Errors: whatever [`Scene::validate`] finds; `Unsupported` for a texture transform with shear or a file of
 /// more than 4 GiB.
 pub fn export(scene: &Scene) -> Result<Vec<u8>> {
@@ -38,7 +40,7 @@ pub fn export(scene: &Scene) -> Result<Vec<u8>> {
         writer.camera(camera);
     }
     for (i, light) in scene.lights.iter().enumerate() {
-        writer.light(i, light);
+        writer.light(scene, i, light)?;
     }
     writer.finish()
 }
@@ -58,6 +60,9 @@ struct Writer {
     meshes: Vec<Value>,
     cameras: Vec<Value>,
     lights: Vec<Value>,
+    /// IES files, of those distributions of the scene that have been written.
+    profiles: Vec<Value>,
+    profile_keys: Vec<usize>,
     nodes: Vec<Value>,
     extensions: Vec<&'static str>,
 }
@@ -144,15 +149,18 @@ impl Writer {
         }));
     }
 
-    fn light(&mut self, index: usize, light: &PunctualLight) {
-        self.uses("KHR_lights_punctual");
+    fn light(&mut self, scene: &Scene, index: usize, light: &PunctualLight) -> Result<()> {
         let (kind, strength, position, direction) = match *light {
             PunctualLight::Point { position, intensity } => ("point", intensity, position, Vec3::NEG_Z),
             PunctualLight::Spot { position, direction, intensity, .. } => ("spot", intensity, position, direction),
             PunctualLight::Directional { direction, illuminance } => {
                 ("directional", illuminance, Vec3::ZERO, direction)
             }
+            PunctualLight::Luminaire { position, axis, c0, colour, distribution } => {
+                return self.luminaire(scene, index, [position, axis, c0, colour], distribution);
+            }
         };
+        self.uses("KHR_lights_punctual");
         let (colour, intensity) = split_peak(strength);
         let mut json = json!({ "type": kind, "color": colour.to_array(), "intensity": intensity });
         if let PunctualLight::Spot { inner_angle, outer_angle, .. } = *light {
@@ -165,6 +173,40 @@ impl Writer {
             "rotation": Quat::from_rotation_arc(Vec3::NEG_Z, direction.normalize()).to_array(),
             "extensions": { "KHR_lights_punctual": { "light": self.lights.len() - 1 } },
         }));
+        Ok(())
+    }
+
+    /// A luminaire as `EXT_lights_ies` has it: its axis along -z of its node, C = 0 along x.
+    fn luminaire(
+        &mut self,
+        scene: &Scene,
+        index: usize,
+        [position, axis, c0, colour]: [Vec3; 4],
+        distribution: usize,
+    ) -> Result<()> {
+        self.uses(IES);
+        let profile = match self.profile_keys.iter().position(|k| *k == distribution) {
+            Some(known) => known,
+            None => {
+                let luminaire = &scene.distributions[distribution];
+                let view = self.view(ies::write(luminaire)?.as_bytes(), None)?;
+                let mime = "application/x-ies-lm-63";
+                self.profiles.push(json!({ "name": luminaire.name, "bufferView": view, "mimeType": mime }));
+                self.profile_keys.push(distribution);
+                self.profiles.len() - 1
+            }
+        };
+        let (colour, multiplier) = split_peak(colour);
+        let rotation = Quat::from_mat3(&Mat3::from_cols(c0, c90(axis, c0), -axis)).normalize();
+        self.nodes.push(json!({
+            "name": format!("Light {index}"),
+            "translation": position.to_array(),
+            "rotation": rotation.to_array(),
+            "extensions": { IES: {
+                "light": profile, "multiplier": multiplier, "color": colour.to_array()
+            } },
+        }));
+        Ok(())
     }
 
     fn material(&mut self, scene: &Scene, material: &Material) -> Result<Value> {
@@ -300,8 +342,11 @@ impl Writer {
                 root.insert(name.into(), list.into());
             }
         }
-        if !self.lights.is_empty() {
-            root.insert("extensions".into(), json!({ "KHR_lights_punctual": { "lights": self.lights } }));
+        let lights = [("KHR_lights_punctual", self.lights), (IES, self.profiles)];
+        let lights = lights.into_iter().filter(|(_, list)| !list.is_empty());
+        let lights: Map<String, Value> = lights.map(|(name, list)| (name.into(), json!({ "lights": list }))).collect();
+        if !lights.is_empty() {
+            root.insert("extensions".into(), lights.into());
         }
         if !self.extensions.is_empty() {
             root.insert("extensionsUsed".into(), json!(self.extensions));

@@ -5,19 +5,26 @@ use super::container::{File, missing};
 use super::material::Materials;
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::try_vec;
+use crate::photometry::{Luminaire, ies};
 use crate::scene::{Camera, Material, Mesh, PunctualLight, Scene};
 use glam::{DMat3, DMat4, DQuat, DVec3, Vec2, Vec3};
 use gltf::json::extensions::scene::khr_lights_punctual::{Light, Type};
 use gltf::json::mesh::{Mode, Primitive, Semantic};
 use gltf::json::validation::Checked;
 use gltf::json::{self, Index};
+use serde_json::Value;
 use std::f32::consts::FRAC_PI_2;
 use std::path::Path;
+use std::sync::Arc;
 
 /// Most vertices, and most triangles, of all meshes together once instances are written out.
 const MAX_ELEMENTS: u64 = 1 << 26;
 
-const EXTENSIONS: [&str; 7] = [
+/// Luminaires that were measured, as IES files.
+pub const IES: &str = "EXT_lights_ies";
+
+const EXTENSIONS: [&str; 8] = [
+    IES,
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
     "KHR_materials_ior",
@@ -43,7 +50,8 @@ pub fn import(bytes: &[u8], base: Option<&Path>) -> Result<Scene> {
         scene.materials.push(materials.read(i, json).map_err(|e| e.within(format_args!("material {i}")))?);
     }
     scene.textures = materials.textures;
-    let mut importer = Importer { file: &file, scene, default_material: None, vertices: 0, triangles: 0 };
+    let mut importer =
+        Importer { file: &file, scene, default_material: None, profiles: Vec::new(), vertices: 0, triangles: 0 };
     importer.nodes()?;
     let scene = importer.scene;
     scene.validate().map_err(|e| Error { kind: ErrorKind::Format, ..e })?;
@@ -55,6 +63,8 @@ struct Importer<'a> {
     scene: Scene,
     /// Made when the first primitive without a material is met.
     default_material: Option<usize>,
+    /// Number of each IES file that has been read; its distribution of the scene has the same index.
+    profiles: Vec<usize>,
     vertices: u64,
     triangles: u64,
 }
@@ -106,7 +116,54 @@ impl Importer<'_> {
             let light = lights.get(at).ok_or_else(|| missing("light", at, lights.len()))?;
             self.scene.lights.push(punctual(light, transform).map_err(|e| e.within(format_args!("light {at}")))?);
         }
+        if let Some(reference) = node.extensions.as_ref().and_then(|e| e.others.get(IES)) {
+            self.luminaire(reference, transform).map_err(|e| e.within(IES))?;
+        }
         Ok(())
+    }
+
+    /// A luminaire whose axis is -z of its node and whose C = 0 is x; its file is read once.
+    fn luminaire(&mut self, reference: &Value, transform: DMat4) -> Result<()> {
+        let extensions = self.file.root.extensions.as_ref();
+        let profiles =
+            extensions.and_then(|e| e.others.get(IES)?.get("lights")?.as_array()).map_or(&[][..], Vec::as_slice);
+        let number = |key: &str| reference.get(key).and_then(Value::as_u64).and_then(|n| usize::try_from(n).ok());
+        let at = number("light").ok_or_else(|| Error::format("its node names no light"))?;
+        let profile = profiles.get(at).ok_or_else(|| missing("light", at, profiles.len()))?;
+        let distribution = match self.profiles.iter().position(|p| *p == at) {
+            Some(known) => known,
+            None => {
+                let luminaire = self.profile(profile).map_err(|e| e.within(format_args!("light {at}")))?;
+                self.scene.distributions.push(Arc::new(luminaire));
+                self.profiles.push(at);
+                self.profiles.len() - 1
+            }
+        };
+        let multiplier = reference.get("multiplier").and_then(Value::as_f64).unwrap_or(1.0) as f32;
+        let channel = |c: usize| reference.get("color").and_then(|v| v.get(c)?.as_f64()).unwrap_or(1.0) as f32;
+        let axes = [DVec3::NEG_Z, DVec3::X].map(|axis| transform.transform_vector3(axis).normalize_or_zero());
+        // Nodes that shear leave no right angle.
+        let c0 = (axes[1] - axes[0] * axes[0].dot(axes[1])).normalize_or_zero();
+        if axes[0] == DVec3::ZERO || c0 == DVec3::ZERO {
+            return Err(Error::format("its node is scaled to nothing"));
+        }
+        self.scene.lights.push(PunctualLight::Luminaire {
+            position: transform.w_axis.truncate().as_vec3(),
+            axis: axes[0].as_vec3(),
+            c0: c0.as_vec3(),
+            colour: multiplier * Vec3::from_array(std::array::from_fn(channel)),
+            distribution,
+        });
+        Ok(())
+    }
+
+    fn profile(&self, profile: &Value) -> Result<Luminaire> {
+        let view = profile.get("bufferView").and_then(Value::as_u64).and_then(|n| u32::try_from(n).ok());
+        match (profile.get("uri").and_then(Value::as_str), view) {
+            (Some(uri), _) => ies::read(&self.file.resolve(uri)?),
+            (None, Some(view)) => ies::read(self.file.view(Index::new(view))?),
+            (None, None) => Err(Error::format("it names no file")),
+        }
     }
 
     fn primitive(&mut self, name: &str, primitive: &Primitive, transform: DMat4) -> Result<()> {

@@ -1,7 +1,8 @@
 //! glTF 2.0 in and out: GLB or JSON with embedded or outside buffers and images.
 //!
 //! Specification: Khronos, glTF 2.0 (ISO/IEC 12113:2022), with `KHR_lights_punctual`, `KHR_materials_emissive_strength`,
-//! `_ior`, `_transmission`, `_unlit` (read as an ordinary material), `KHR_texture_transform` and `KHR_mesh_quantization`.
+//! `_ior`, `_transmission`, `_unlit` (read as an ordinary material), `KHR_texture_transform`, `KHR_mesh_quantization` and
+//! `EXT_lights_ies` (type C).
 //!
 //! Read: every node × primitive becomes one mesh in world space, named after its node. Not read: animation, skins and
 //! morph targets (the rest pose is taken), vertex colours, tangents (the renderer derives them), occlusion textures,

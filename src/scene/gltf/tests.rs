@@ -1,9 +1,11 @@
 use super::*;
 use crate::image::Image;
+use crate::photometry::Luminaire;
 use crate::rng::Rng;
 use crate::scene::{AlphaMode, Camera, Material, Mesh, PunctualLight, Texture, TextureRef, Wrap};
 use glam::{Mat3, Vec2, Vec3};
 use serde_json::{Value, json};
+use std::sync::Arc;
 
 /// One of everything the format can hold.
 fn scene() -> Scene {
@@ -71,6 +73,7 @@ fn scene() -> Scene {
             },
             PunctualLight::Directional { direction: -direction, illuminance: Vec3::splat(1000.0) },
         ],
+        distributions: Vec::new(),
         environment: None,
         cameras: vec![Camera { name: "View".into(), ..camera }],
     }
@@ -126,6 +129,54 @@ fn a_scene_survives_the_way_out_and_in() {
     sorted.iter_mut().for_each(|w| w.sort_by(|a, b| a.0.cmp(&b.0)));
     assert_eq!(sorted[0], sorted[1]);
     assert!(import(&export(&Scene::default()).unwrap(), None).unwrap().meshes.is_empty());
+}
+
+/// Luminaires take their distributions along, once, and hang as they did.
+#[test]
+fn luminaires_survive_the_way_out_and_in() {
+    let measured = |planes: usize| Luminaire {
+        planes: (0..planes).map(|i| i as f64 * 90.0).collect(),
+        gammas: vec![0.0, 30.0, 90.0],
+        candela: (0..3 * planes).map(|i| 10.5 + i as f64).collect(),
+        ..Luminaire::lambertian("Spot 7", 800.0, [0.1, -0.1, 0.0])
+    };
+    let hang = |axis: Vec3, distribution: usize| PunctualLight::Luminaire {
+        position: Vec3::new(1.0, 2.5, -3.0),
+        axis,
+        c0: axis.any_orthonormal_vector(),
+        colour: Vec3::new(2.0, 1.5, 1.0),
+        distribution,
+    };
+    let before = Scene {
+        lights: vec![hang(Vec3::NEG_Y, 1), hang(Vec3::new(0.6, -0.8, 0.0), 0), hang(Vec3::Z, 1)],
+        distributions: vec![Arc::new(measured(4)), Arc::new(measured(1))],
+        ..Scene::default()
+    };
+    let glb = export(&before).unwrap();
+    assert_eq!(glb.windows(9).filter(|w| w == b"TILT=NONE").count(), 2);
+    let after = import(&glb, None).unwrap();
+    assert_eq!(after.lights.len(), 3);
+    for (a, b) in after.lights.iter().zip(&before.lights) {
+        let parts = |light: &PunctualLight, scene: &Scene| match *light {
+            PunctualLight::Luminaire { position, axis, c0, colour, distribution } => {
+                ([position, axis, c0, colour], scene.distributions[distribution].clone())
+            }
+            _ => unreachable!(),
+        };
+        let ((a, measured_a), (b, measured_b)) = (parts(a, &after), parts(b, &before));
+        assert!(a.iter().zip(b).all(|(a, b)| near(*a, b)), "{a:?} {b:?}");
+        assert_eq!(measured_a, measured_b);
+    }
+    // Files that lie are refused, whatever they lie about.
+    let broken = |from: &str, to: &str| {
+        let at = glb.windows(from.len()).position(|w| w == from.as_bytes()).unwrap();
+        let mut bytes = glb.clone();
+        bytes[at..at + to.len()].copy_from_slice(to.as_bytes());
+        import(&bytes, None).unwrap_err()
+    };
+    assert!(broken("\"light\":0", "\"light\":9").message.contains("EXT_lights_ies"));
+    assert!(broken("TILT=NONE", "TINT=NONE").message.contains("TILT"));
+    assert!(broken("\"bufferView\"", "\"bufferWiew\"").message.contains("no file"));
 }
 
 /// A glTF file of one triangle under a node, changed by the test.

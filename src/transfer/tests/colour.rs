@@ -77,11 +77,7 @@ fn known_light_is_recovered_from_a_clipped_photo() {
             side(z, y, x, 0),
             side(Vec3::new(0.6, 0.2, 1.0), Vec3::Z * 0.8, Vec3::X * 0.8, 2),
         ],
-        materials: vec![
-            matt(Vec3::new(0.7, 0.5, 0.35), 0.0),
-            matt(Vec3::splat(0.8), 0.0),
-            matt(Vec3::ZERO, 1000.0),
-        ],
+        materials: vec![matt(Vec3::new(0.7, 0.5, 0.35), 0.0), matt(Vec3::splat(0.8), 0.0), matt(Vec3::ZERO, 1000.0)],
         ..Scene::default()
     };
     let (pool, monitor) = (Pool::new(2).unwrap(), Monitor::default());
