@@ -39,6 +39,8 @@ pub const LUXFER_GROUP_FIRST: luxfer_group = 2;
 pub const LUXFER_GROUP_SECOND: luxfer_group = 3;
 /// Those whose centres agree in their third coordinate: z of meshes.
 pub const LUXFER_GROUP_THIRD: luxfer_group = 4;
+/// Those of a type: of about the same area; of lights without a surface points, spots, and luminaires by their distribution.
+pub const LUXFER_GROUP_TYPE: luxfer_group = 5;
 
 /// Settings of the calculation. Fill them with luxfer_lamps_params_init.
 #[repr(C)]
@@ -210,7 +212,7 @@ impl luxfer_lamps_params {
         if self.free_colour > 1 || self.reserved != 0 {
             return Err(Error::argument("free_colour must be 0 or 1, and reserved 0"));
         }
-        if !(LUXFER_GROUP_ALL..=LUXFER_GROUP_THIRD).contains(&self.group) {
+        if !(LUXFER_GROUP_ALL..=LUXFER_GROUP_TYPE).contains(&self.group) {
             return Err(Error::argument(format!("group is {}; it must be a LUXFER_GROUP_ value", self.group)));
         }
         if !(self.row_tolerance >= 0.0) {
@@ -231,6 +233,7 @@ impl luxfer_lamps_params {
         match self.group {
             LUXFER_GROUP_ALL => lamps.together(),
             LUXFER_GROUP_EACH => lamps.each(),
+            LUXFER_GROUP_TYPE => lamps.types(),
             other => lamps.rows((other - LUXFER_GROUP_FIRST) as usize, self.row_tolerance),
         }
     }

@@ -16,7 +16,12 @@ pub struct Lamps {
     division: Division,
     /// Centre of each lamp: in texture coordinates, z being 0, or in metres.
     centres: Vec<Vec3>,
+    /// Area of each lamp in texels or m²; of a light a number of its kind.
+    sizes: Vec<f32>,
 }
+
+/// Lamps of a type differ in area by less than this share from one to the next larger one.
+const TYPE_GAP: f32 = 0.25;
 
 #[derive(Clone, Debug, PartialEq)]
 enum Division {
@@ -54,7 +59,8 @@ impl Lamps {
         }
         let size = Vec2::new(width as f32, height as f32);
         let centres = sums.iter().map(|(sum, n)| (*sum / n.max(1.0) / size).extend(0.0)).collect();
-        Self { count, labels, division: Division::Texels { width, height }, centres }.checked()
+        let sizes = sums.iter().map(|(_, n)| *n).collect();
+        Self { count, labels, division: Division::Texels { width, height }, centres, sizes }.checked()
     }
 
     /// Every 8-connected patch of texels that emit is a lamp.
@@ -66,7 +72,8 @@ impl Lamps {
     pub fn of_meshes(scene: &Scene, emitter: usize) -> Result<Self> {
         let triangles = scene.meshes.iter().map(|m| m.triangles.len()).sum();
         let mut labels = try_vec(triangles, 0u32)?;
-        let (mut first, mut next, mut centres) = (Vec::with_capacity(scene.meshes.len()), 0, Vec::new());
+        let (mut first, mut next) = (Vec::with_capacity(scene.meshes.len()), 0);
+        let (mut centres, mut sizes) = (Vec::new(), Vec::new());
         for mesh in &scene.meshes {
             first.push(next);
             if mesh.material == emitter {
@@ -90,11 +97,12 @@ impl Lamps {
                     centres[lamp] += (a + b + c) / 3.0 * area;
                     weights[lamp - from] += area;
                 }
+                sizes.extend(weights.iter().map(|w| w / 2.0));
                 centres[from..].iter_mut().zip(&weights).for_each(|(c, w)| *c /= f32::max(*w, f32::MIN_POSITIVE));
             }
             next += mesh.triangles.len();
         }
-        Self { count: centres.len(), labels, division: Division::Triangles { first }, centres }.checked()
+        Self { count: centres.len(), labels, division: Division::Triangles { first }, centres, sizes }.checked()
     }
 
     /// Every light without a surface is a lamp; no surface is.
@@ -106,7 +114,14 @@ impl Lamps {
             PunctualLight::Directional { .. } => Vec3::ZERO,
         };
         let centres: Vec<Vec3> = scene.lights.iter().map(place).collect();
-        Self { count: centres.len(), labels: Vec::new(), division: Division::Lights, centres }.checked()
+        let kind = |light: &PunctualLight| match *light {
+            PunctualLight::Point { .. } => 0.0,
+            PunctualLight::Spot { .. } => 1.0,
+            PunctualLight::Directional { .. } => 2.0,
+            PunctualLight::Luminaire { distribution, .. } => 3.0 + distribution as f32,
+        };
+        let sizes = scene.lights.iter().map(kind).collect();
+        Self { count: centres.len(), labels: Vec::new(), division: Division::Lights, centres, sizes }.checked()
     }
 
     fn checked(self) -> Result<Self> {
@@ -164,15 +179,26 @@ impl Lamps {
     /// Groups the lamps that lie in a row: whose centres differ by less than `tolerance` along an axis. Returns the group
     /// of each lamp and the number of groups; groups are numbered along the axis.
     pub fn rows(&self, axis: usize, tolerance: f32) -> (Vec<u32>, usize) {
+        self.chained(|i| self.centres[i][axis.min(2)], |a, b| b - a > tolerance)
+    }
+
+    /// Groups the lamps in the order of a number: a new group begins where it `leaps` from one to the next.
+    fn chained(&self, number: impl Fn(usize) -> f32, leaps: impl Fn(f32, f32) -> bool) -> (Vec<u32>, usize) {
         let mut order: Vec<usize> = (0..self.count).collect();
-        let along = |i: usize| self.centres[i][axis.min(2)];
-        order.sort_by(|&a, &b| along(a).total_cmp(&along(b)).then(a.cmp(&b)));
+        order.sort_by(|&a, &b| number(a).total_cmp(&number(b)).then(a.cmp(&b)));
         let (mut groups, mut group) = (vec![0; self.count], 0);
         for pair in order.windows(2) {
-            group += u32::from(along(pair[1]) - along(pair[0]) > tolerance);
+            group += u32::from(leaps(number(pair[0]), number(pair[1])));
             groups[pair[1]] = group;
         }
         (groups, group as usize + 1)
+    }
+
+    /// Groups the lamps by type: those of about the same area; points, spots, and luminaires by their distribution. Groups
+    /// are numbered from the smallest lamps on.
+    pub fn types(&self) -> (Vec<u32>, usize) {
+        let gap = if self.division == Division::Lights { 0.0 } else { TYPE_GAP };
+        self.chained(|i| self.sizes[i], |a, b| b > a * (1.0 + gap))
     }
 
     /// The lamp that a light without a surface is.
@@ -240,6 +266,12 @@ mod tests {
         assert_eq!([at(-0.5, 1.5), at(5.5, 0.5)], [Some(1), Some(0)]);
         assert!((lamps.centres()[1] - Vec3::new(0.9, 2.0 / 3.0, 0.0)).length() < 1e-6);
         assert!(Lamps::of_texture(&Image::new(3, 3, 3).unwrap()).is_err());
+        // Two texels each are one type; so are four and five, but not two and three.
+        assert_eq!(lamps.types(), (vec![0, 0], 1));
+        let labels = vec![1, 1, 0, 2, 2, 2, 0, 3, 3];
+        assert_eq!(Lamps::of_labels(9, 1, labels).unwrap().types(), (vec![0, 1, 0], 2));
+        let labels = vec![1, 1, 1, 1, 0, 2, 2, 2, 2, 2, 0, 3, 3, 3, 3];
+        assert_eq!(Lamps::of_labels(15, 1, labels).unwrap().types(), (vec![0; 3], 1));
         // Each is multiplied for itself.
         let scaled = lamps.scaled(&image, &[DVec3::splat(2.0), DVec3::new(1.0, 0.0, 3.0)]).unwrap();
         assert_eq!(
@@ -256,6 +288,12 @@ mod tests {
         let lamps = Lamps::of_meshes(&scene, 0).unwrap();
         assert_eq!([0, 1, 2].map(|t| lamps.find(0, t, Vec2::ZERO)), [Some(0), Some(1), Some(0)]);
         assert_eq!(lamps.rows(0, 1.0).1, 2);
+        // Of lights the kind is what counts.
+        let point = |intensity: f32| PunctualLight::Point { position: Vec3::X, intensity: Vec3::splat(intensity) };
+        let sun = PunctualLight::Directional { direction: Vec3::X, illuminance: Vec3::ONE };
+        let lights = Scene { lights: vec![sun, point(1.0), point(9.0)], ..Scene::default() };
+        assert_eq!(Lamps::of_lights(&lights).unwrap().types(), (vec![1, 0, 0], 2));
+        assert!(Lamps::of_lights(&scene).is_err());
         assert!(Lamps::of_meshes(&scene, 1).is_err());
     }
 }
