@@ -16,6 +16,8 @@ use std::sync::Arc;
 
 const WIDE: f32 = 4.0;
 const HIGH: f32 = 2.6;
+/// Pixels along each side of the picture.
+const SIDE: usize = 240;
 /// Of the lamps, in cd/m²: warm.
 const EMISSION: Vec3 = vec3(3000.0, 2300.0, 1500.0);
 
@@ -61,7 +63,7 @@ fn a_room_gets_its_own_light_back() {
     let eye = vec3(WIDE / 2.0, 0.2, WIDE / 2.0);
     let fov = 2.0 * (WIDE / 2.0 / (HIGH - eye.y)).atan();
     let camera = Camera { up: Vec3::Z, ..Camera::look_at(eye, eye + Vec3::Y, fov) };
-    let params = render::Params { width: 120, height: 120, samples: 256, seed: 5, ..render::Params::default() };
+    let params = render::Params { width: SIDE, height: SIDE, samples: 64, seed: 5, ..render::Params::default() };
     let world = World::build(Arc::new(truth), monitor.job()).unwrap();
     let film = pool.run(|| render::run(&world, &camera, &params, monitor.job(), &mut |_| ()).unwrap());
 
@@ -73,7 +75,7 @@ fn a_room_gets_its_own_light_back() {
     photo.data.iter_mut().for_each(|v| *v = (*v / white).min(1.0));
     let mask = |of: &dyn Fn(&[f32]) -> bool| {
         let value = |x: usize, y: usize| [f32::from(u8::from(of(film.beauty.pixel(x, y))))];
-        let image = Image::from_fn(120, 120, value).unwrap();
+        let image = Image::from_fn(SIDE, SIDE, value).unwrap();
         Some(Arc::new(Segmentation::from_confidence(&image).unwrap()))
     };
     let mut transfer = Transfer::default();

@@ -73,24 +73,24 @@ pub(super) fn run(measured: &Measured, target: DVec3, sense: [Sense; 3]) -> Resu
 /// Of channels whose targets are limits: they keep the mean scale of those that are at theirs, which leaves the lamps their
 /// colour, unless that breaks the limit. Where no channel must be at its target, all stay at their limits.
 fn keep_sides(answers: &mut [Answer; 3], sense: [Sense; 3]) {
+    // Where other light alone is brighter than a least, none is needed.
+    for (answer, _) in answers.iter_mut().zip(sense).filter(|(_, sense)| *sense == Sense::AtLeast) {
+        if answer.reach == Reach::TooBright {
+            answer.reach = Reach::Met;
+        }
+    }
     let exact = |c: &usize| sense[*c] == Sense::Exactly;
     let met: Vec<Answer> = (0..3).filter(exact).map(|c| answers[c]).filter(|a| a.reach == Reach::Met).collect();
     if met.is_empty() {
         return;
     }
     let share = 1.0 / met.len() as f64;
+    let scale = share * met.iter().map(|a| a.scale).sum::<f64>();
     let deviations = std::array::from_fn(|b| share * met.iter().map(|a| a.deviations[b]).sum::<f64>());
     let half_width = STUDENT_T * standard_error(&deviations);
-    let neutral =
-        Answer { scale: share * met.iter().map(|a| a.scale).sum::<f64>(), half_width, reach: Reach::Met, deviations };
-    for (answer, sense) in answers.iter_mut().zip(sense) {
-        // Other light that is brighter than a target that is a least leaves the channel free.
-        let free = match answer.reach {
-            Reach::Dark => false,
-            Reach::TooBright => sense == Sense::AtLeast,
-            _ => sense != Sense::Exactly && sense.miss(neutral.scale - answer.scale) == 0.0,
-        };
-        if free {
+    let neutral = Answer { scale, half_width, reach: Reach::Met, deviations };
+    for (answer, sense) in answers.iter_mut().zip(sense).filter(|(_, sense)| *sense != Sense::Exactly) {
+        if answer.reach == Reach::Met && sense.miss(scale - answer.scale) == 0.0 {
             *answer = neutral;
         }
     }

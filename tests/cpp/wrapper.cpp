@@ -392,6 +392,12 @@ void lights_have_names() {
     const auto file = ok(luxfer::Distribution::load(context, panel, LUXFER_DISTRIBUTION_IES));
     CHECK(ok(file.name()) == "Panel" && ok(file.report()).watts == 30 && ok(file.intensity(90, 0)) == 1000);
     CHECK_ERROR(luxfer::Distribution::load(context, "no such.ies"), LUXFER_IO);
+    const Scene hall = ok(Scene::create(context));
+    CHECK(ok(luxfer::add_luminaire(hall, file)) == 0);
+    luxfer::LuminaireParams along;
+    along.axis[0] = along.c0[0];
+    along.axis[1] = 0;
+    CHECK_ERROR(luxfer::add_luminaire(hall, file, along), LUXFER_INVALID_ARGUMENT);
 }
 
 // Each stage is asked for results before it has any, so that each method is seen to reach the function of its own.

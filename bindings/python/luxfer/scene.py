@@ -141,7 +141,13 @@ class Scene(Handle):
         return self._add("add_light", _params.fill(_abi.luxfer_light_params, params, []))
 
     def add_luminaire(self, distribution: Distribution, **params: Unpack[LuminaireParams]) -> int:
-        """Hangs a luminaire whose intensities were measured; returns its index among the lights."""
+        """Hangs a luminaire whose intensities were measured; returns its index among the lights.
+
+        >>> panel = "IESNA:LM-63-2002\\nTILT=NONE\\n1 -1 1 2 1 1 2 0 0 0\\n1 1 30\\n0 180\\n0\\n100 100\\n"
+        >>> hall = Scene(context)
+        >>> hall.add_luminaire(Distribution.load_memory(context, panel.encode(), "ies"), position=(0, 3, 0), flux=2000)
+        0
+        """
         return self._add("add_luminaire", distribution, _params.fill(_abi.luxfer_luminaire_params, params, []))
 
     def _add(self, verb: str, *arguments: Any) -> int:

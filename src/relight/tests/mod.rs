@@ -156,6 +156,11 @@ fn a_limit_binds_only_where_it_is_broken() {
     // All channels are limits: the least light that keeps them.
     let all = solve(&scene, truth, &Params { sense: [Sense::AtLeast; 3], seed: 99, ..params.clone() }).unwrap();
     assert_eq!(all.scale, least(truth, Sense::Exactly).scale);
+    // Which is none where other light is enough.
+    let mut bright = scene.clone();
+    bright.lights.push(PunctualLight::Point { position: Vec3::ONE, intensity: Vec3::splat(1e3) });
+    let none = solve(&bright, Vec3::splat(1e-3), &Params { sense: [Sense::AtLeast; 3], ..params }).unwrap();
+    assert_eq!((none.scale, none.reach), (DVec3::ZERO, [Reach::Met; 3]));
 }
 
 #[test]

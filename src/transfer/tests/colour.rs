@@ -53,7 +53,7 @@ fn a_clipped_channel_follows_from_the_others() {
     assert_eq!(whole(&spark).sense, EXACTLY);
 }
 
-/// A room whose light is known, photographed so that half of its ceiling is clipped: the light is recovered, which it is not
+/// A room whose light is known, photographed so that red and green are clipped on parts of its ceiling: the light is recovered, which it is not
 /// if clipped pixels count as they are.
 #[test]
 fn known_light_is_recovered_from_a_clipped_photo() {
@@ -83,14 +83,17 @@ fn known_light_is_recovered_from_a_clipped_photo() {
     let (pool, monitor) = (Pool::new(2).unwrap(), Monitor::default());
     let world = World::build(Arc::new(scene), monitor.job()).unwrap();
     // From below the picture is all of the ceiling and nothing else.
+    const SIDE: usize = 80;
     let eye = Vec3::new(size / 2.0, 0.3, size / 2.0);
     let fov = 2.0 * (size / 2.0 / (high - eye.y)).atan();
     let camera = Camera { up: Vec3::Z, ..Camera::look_at(eye, eye + Vec3::Y, fov) };
-    let params = render::Params { width: 40, height: 40, samples: 400, ..render::Params::default() };
+    let params = render::Params { width: SIDE, height: SIDE, samples: 100, ..render::Params::default() };
     let film = pool.run(|| render::run(&world, &camera, &params, monitor.job(), &mut |_| ()).unwrap());
-    let mut reds: Vec<f32> = film.beauty.data.iter().step_by(3).copied().collect();
-    reds.sort_by(f32::total_cmp);
-    let white = reds[reds.len() / 2];
+    // So bright that the least of its channels just is not clipped: where all are, nothing can be known.
+    let of_channel = |c: usize| film.beauty.data.iter().skip(c).step_by(3).copied();
+    let white = 1.01 * of_channel(2).fold(0.0, f32::max);
+    let clipped = of_channel(0).filter(|v| *v > white).count();
+    assert!(clipped * 10 > SIDE * SIDE, "{clipped} pixels are clipped");
     let mut photo = film.beauty.clone();
     photo.data.iter_mut().for_each(|v| *v = (*v / white).min(1.0));
 
@@ -104,10 +107,10 @@ fn known_light_is_recovered_from_a_clipped_photo() {
     let recovered = solve(found.colour, white, found.sense);
     let as_it_is = solve(mean(&photo), white, EXACTLY);
     let off = |s: &relight::Solution| (s.scale - 1.0).abs().max_element();
-    assert!(off(&recovered) < 0.03 && off(&as_it_is) > 5.0 * off(&recovered), "{recovered:?} {as_it_is:?}");
+    assert!(off(&recovered) < 0.02 && off(&as_it_is) > 3.0 * off(&recovered), "{recovered:?} {as_it_is:?}");
 
     // Exposed so that all of red is white and nothing else is: the lamp keeps its colour where it may.
-    let white = 0.9 * reds[0];
+    let white = 0.9 * of_channel(0).fold(f32::INFINITY, f32::min);
     let colour = (mean(&film.beauty) / white).with_x(1.0);
     let least = solve(colour, white, [Sense::AtLeast, Sense::Exactly, Sense::Exactly]);
     assert!((least.scale.x - 1.0).abs() < 0.03, "{least:?}");
