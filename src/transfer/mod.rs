@@ -6,6 +6,7 @@
 //! known vanishing points stand in for a stage's result.
 
 mod check;
+mod clipping;
 mod colour;
 mod ground;
 mod pattern;

@@ -53,19 +53,14 @@ fn a_clipped_channel_follows_from_the_others() {
     assert_eq!(whole(&spark).sense, EXACTLY);
 }
 
-/// A room whose light is known, photographed so that red and green are clipped on parts of its ceiling: the light is recovered, which it is not
+/// A room whose warm light is known, photographed so that red and green are clipped on parts of its ceiling: the light is recovered, which it is not
 /// if clipped pixels count as they are.
 #[test]
 fn known_light_is_recovered_from_a_clipped_photo() {
     let (size, high) = (4.0, 2.5);
     let (x, y, z) = (Vec3::X * size, Vec3::Y * high, Vec3::Z * size);
     // Without gloss, which the mean of a target leaves out.
-    let matt = |albedo: Vec3, emission: f32| Material {
-        ior: 1.0,
-        emission: Vec3::splat(emission),
-        double_sided: false,
-        ..Material::diffuse("matt", albedo)
-    };
+    let matt = |albedo: Vec3| Material { ior: 1.0, double_sided: false, ..Material::diffuse("matt", albedo) };
     let side = |corner, u, v, material| Mesh::parallelogram(corner, u, v, material);
     let scene = Scene {
         meshes: vec![
@@ -77,7 +72,7 @@ fn known_light_is_recovered_from_a_clipped_photo() {
             side(z, y, x, 0),
             side(Vec3::new(0.6, 0.2, 1.0), Vec3::Z * 0.8, Vec3::X * 0.8, 2),
         ],
-        materials: vec![matt(Vec3::new(0.7, 0.5, 0.35), 0.0), matt(Vec3::splat(0.8), 0.0), matt(Vec3::ZERO, 1000.0)],
+        materials: vec![matt(Vec3::new(0.6, 0.5, 0.4)), matt(Vec3::splat(0.8)), matt(Vec3::ZERO, 1000.0)],
         ..Scene::default()
     };
     let (pool, monitor) = (Pool::new(2).unwrap(), Monitor::default());
@@ -91,7 +86,7 @@ fn known_light_is_recovered_from_a_clipped_photo() {
     let film = pool.run(|| render::run(&world, &camera, &params, monitor.job(), &mut |_| ()).unwrap());
     // So bright that the least of its channels just is not clipped: where all are, nothing can be known.
     let of_channel = |c: usize| film.beauty.data.iter().skip(c).step_by(3).copied();
-    let white = 1.01 * of_channel(2).fold(0.0, f32::max);
+    let white = 1.02 * of_channel(2).fold(0.0, f32::max);
     let clipped = of_channel(0).filter(|v| *v > white).count();
     assert!(clipped * 10 > SIDE * SIDE, "{clipped} pixels are clipped");
     let mut photo = film.beauty.clone();
@@ -114,5 +109,5 @@ fn known_light_is_recovered_from_a_clipped_photo() {
     let colour = (mean(&film.beauty) / white).with_x(1.0);
     let least = solve(colour, white, [Sense::AtLeast, Sense::Exactly, Sense::Exactly]);
     assert!((least.scale.x - 1.0).abs() < 0.03, "{least:?}");
-    assert!(solve(colour, white, EXACTLY).scale.x < 0.8);
+    assert!(solve(colour, white, EXACTLY).scale.x < 0.9);
 }

@@ -1,0 +1,96 @@
+//! What a photo's clipped pixels were before they were clipped.
+//!
+//! A plane is lit by a mixture of two lights, more or less: that of its lamps and that which the room sends back. Its colours
+//! then lie on a line, which the pixels that are whole tell, and a channel that is clipped follows from one that is not. It
+//! was white at least. Where all channels are clipped nothing more is known.
+
+use glam::{BVec3, DVec3, Vec3};
+
+/// From where on a channel counts as clipped: the two largest values of eight bits, decoded, are.
+const CLIPPED: f32 = 0.987;
+/// Share of the pixels that must be whole in two channels for their line to be known.
+const LEAST_WHOLE: f64 = 0.02;
+/// Where a plane's brightness varies by no more than this share of itself, the line goes through black.
+const EVEN: f64 = 0.05;
+
+/// Mean colour of pixels, what was clipped made up for if they are of one plane; and the share of pixels, per channel, of
+/// which no more is known than that they are white at least. `None` without pixels.
+pub(super) fn mean(pixels: impl Iterator<Item = Vec3> + Clone, one_plane: bool) -> Option<(DVec3, DVec3)> {
+    let mut moments = [[Moments::default(); 3]; 3];
+    let mut count = 0.0;
+    for rgb in pixels.clone() {
+        count += 1.0;
+        let whole = !clipped(rgb);
+        for (x, y) in pairs().filter(|(x, y)| whole.test(*x) && whole.test(*y)) {
+            moments[y][x].add(f64::from(rgb[x]), f64::from(rgb[y]));
+        }
+    }
+    if count == 0.0 {
+        return None;
+    }
+    let least = if one_plane { LEAST_WHOLE * count } else { f64::INFINITY };
+    let lines = moments.map(|row| row.map(|m| m.line(least)));
+    let (mut sum, mut unknown) = (DVec3::ZERO, DVec3::ZERO);
+    for rgb in pixels {
+        let mask = clipped(rgb);
+        let mut colour = rgb.as_dvec3();
+        for y in (0..3).filter(|c| mask.test(*c)) {
+            // The brightest channel that is whole knows best.
+            let known = (0..3).filter(|&x| !mask.test(x)).filter_map(|x| Some((rgb[x], lines[y][x]?)));
+            match known.max_by(|a, b| a.0.total_cmp(&b.0)) {
+                Some((value, line)) => colour[y] = colour[y].max(line.start + line.slope * f64::from(value)),
+                None => unknown[y] += 1.0,
+            }
+        }
+        sum += colour;
+    }
+    Some((sum / count, unknown / count))
+}
+
+fn clipped(rgb: Vec3) -> BVec3 {
+    rgb.cmpge(Vec3::splat(CLIPPED))
+}
+
+/// Two channels that differ.
+fn pairs() -> impl Iterator<Item = (usize, usize)> {
+    (0..9).map(|i| (i % 3, i / 3)).filter(|(x, y)| x != y)
+}
+
+/// Sums over the pixels that are whole in two channels.
+#[derive(Clone, Copy, Default)]
+struct Moments {
+    n: f64,
+    x: f64,
+    y: f64,
+    xx: f64,
+    xy: f64,
+}
+
+/// How one channel follows from another.
+#[derive(Clone, Copy)]
+struct Line {
+    start: f64,
+    slope: f64,
+}
+
+impl Moments {
+    fn add(&mut self, x: f64, y: f64) {
+        self.n += 1.0;
+        self.x += x;
+        self.y += y;
+        self.xx += x * x;
+        self.xy += x * y;
+    }
+
+    /// The line of least squares, drawn towards the one through black; of no fewer than `least` pixels.
+    fn line(&self, least: f64) -> Option<Line> {
+        let (x, y) = (self.x / self.n, self.y / self.n);
+        if self.n < least || !(x > 0.0) {
+            return None;
+        }
+        let (variance, covariance) = ((self.xx / self.n - x * x).max(0.0), self.xy / self.n - x * y);
+        let pull = (EVEN * x).powi(2);
+        let slope = ((covariance + pull * y / x) / (variance + pull)).max(0.0);
+        Some(Line { start: y - slope * x, slope })
+    }
+}
