@@ -796,8 +796,8 @@ luxfer_status luxfer_scene_get_camera(luxfer_scene *scene,
 /* ====================================================================================================================
  * Lights of a scene
  *
- * Lights without a surface: points, spots, and the parallel light of something far away. Lights with a surface are
- * materials that emit.
+ * Lights without a surface: points, spots, the parallel light of something far away, and luminaires that were measured.
+ * Lights with a surface are materials that emit.
  * ==================================================================================================================== */
 
 /** A kind of light: a LUXFER_LIGHT_ value. */
@@ -826,6 +826,27 @@ typedef struct luxfer_light_params {
     uint32_t reserved;
 } luxfer_light_params;
 
+/** How a luminaire hangs. Fill it with luxfer_luminaire_params_init. */
+typedef struct luxfer_luminaire_params {
+    /** sizeof(luxfer_luminaire_params), set by luxfer_luminaire_params_init. */
+    uint32_t struct_size;
+    /** Must be 0. */
+    uint32_t reserved;
+    /** Luminous flux in lumens, finite and >= 0; default 0: that of the distribution. */
+    double flux;
+    /** Where it hangs, in metres, in [-1e15, 1e15]; default (0, 0, 0). */
+    float position[3];
+    /** The direction of its axis, where gamma is 0; any length but 0; default (0, -1, 0): it shines down. */
+    float axis[3];
+    /**
+     * About where C is 0: what of it is at right angles to the axis counts, which must not be 0; default (1, 0, 0). C grows
+     * anticlockwise as seen from above a luminaire that shines down.
+     */
+    float c0[3];
+    /** Linear colour of its light, each >= 0 and not all 0; its brightness does not count; default (1, 1, 1). */
+    float colour[3];
+} luxfer_luminaire_params;
+
 /** Shines the same in every direction. */
 #define LUXFER_LIGHT_POINT 0
 
@@ -848,6 +869,23 @@ luxfer_status luxfer_light_params_init(luxfer_light_params *params,
 luxfer_status luxfer_scene_add_light(luxfer_scene *scene,
                                      const luxfer_light_params *params,
                                      uint32_t *index);
+
+/**
+ * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+ */
+luxfer_status luxfer_luminaire_params_init(luxfer_luminaire_params *params,
+                                           size_t size);
+
+/**
+ * Adds a luminaire: a light at a point, as strong in each direction as a distribution says; *index, unless NULL, becomes its
+ * index among the lights. A luminaire must be small beside how far it is from what it lights: a fifth of that at most. params
+ * may be NULL for the defaults. Any thread.
+ * LUXFER_INVALID_ARGUMENT if a value is out of range.
+ */
+luxfer_status luxfer_scene_add_luminaire(luxfer_scene *scene,
+                                         luxfer_distribution *distribution,
+                                         const luxfer_luminaire_params *params,
+                                         uint32_t *index);
 
 /* ====================================================================================================================
  * Scene queries
@@ -2335,6 +2373,11 @@ typedef struct luxfer_lamps_params {
 #define LUXFER_GROUP_THIRD 4
 
 /**
+ * Those of a type: of about the same area; of lights without a surface points, spots, and luminaires by their distribution.
+ */
+#define LUXFER_GROUP_TYPE 5
+
+/**
  * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
  */
 luxfer_status luxfer_lamps_params_init(luxfer_lamps_params *params,
@@ -2344,8 +2387,9 @@ luxfer_status luxfer_lamps_params_init(luxfer_lamps_params *params,
 luxfer_status luxfer_lamps_create(luxfer_context *context, luxfer_lamps **lamps);
 
 /**
- * Sets the scene and the emitting material whose lamps are solved for, at the strength that the solution will multiply;
- * forgets the goals. Any thread.
+ * Sets the scene and the emitting material whose lamps are solved for, at the strength that the solution will multiply, or
+ * LUXFER_NONE: then the lamps are the scene's lights without a surface, by their index, as luxfer_scene_add_luminaire hangs
+ * them. Forgets the goals. Any thread.
  * LUXFER_NOT_FOUND if the scene has no such material.
  */
 luxfer_status luxfer_lamps_set_scene(luxfer_lamps *lamps,
@@ -2610,7 +2654,7 @@ luxfer_status luxfer_importance_set_scene(luxfer_importance *importance,
                                           uint32_t mesh);
 
 /**
- * Starts a job that traces the map. params may be NULL for the defaults. The caller releases *job. Any thread.
+ * Starts a job that traces the map; a placement that was found is forgotten. params may be NULL for the defaults. The caller releases *job. Any thread.
  * LUXFER_INVALID_OPERATION if the scene is missing or a job runs already. The job may end with LUXFER_INVALID_ARGUMENT if
  * the scene is not valid, the surfaces have no texture coordinates, or a setting is out of range.
  */
@@ -2733,14 +2777,22 @@ typedef struct luxfer_placement {
 luxfer_status luxfer_placement_params_init(luxfer_placement_params *params, size_t size);
 
 /**
- * Finds the placement of a texture (linear, in cd/m²; it repeats) that is best for the target. params may be NULL for the
- * defaults. Takes about a second. Any thread.
- * LUXFER_NOT_READY before a job has succeeded, LUXFER_INVALID_ARGUMENT if a setting is out of range.
+ * Starts a job that finds the placement of a texture (linear, in cd/m²; it repeats) that is best for the target. params may
+ * be NULL for the defaults. The caller releases *job. Any thread.
+ * LUXFER_NOT_READY before a map has been traced, LUXFER_INVALID_OPERATION if a job runs already. The job may end with
+ * LUXFER_INVALID_ARGUMENT if a setting is out of range.
  */
-luxfer_status luxfer_importance_place(luxfer_importance *importance,
-                                      luxfer_image *texture,
-                                      const luxfer_placement_params *params,
-                                      luxfer_placement *placement);
+luxfer_status luxfer_importance_start_placement(luxfer_importance *importance,
+                                                luxfer_image *texture,
+                                                const luxfer_placement_params *params,
+                                                luxfer_job **job);
+
+/**
+ * Gets the placement that was found. Any thread.
+ * LUXFER_NOT_READY before a job of luxfer_importance_start_placement has succeeded, and again when another map is traced.
+ */
+luxfer_status luxfer_importance_get_placement(luxfer_importance *importance,
+                                              luxfer_placement *placement);
 
 /* ====================================================================================================================
  * Photometry

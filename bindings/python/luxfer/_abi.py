@@ -117,6 +117,7 @@ LUXFER_GROUP_EACH = 1
 LUXFER_GROUP_FIRST = 2
 LUXFER_GROUP_SECOND = 3
 LUXFER_GROUP_THIRD = 4
+LUXFER_GROUP_TYPE = 5
 LUXFER_SENSE_EXACTLY = 0
 LUXFER_SENSE_AT_LEAST = 1
 LUXFER_SENSE_AT_MOST = 2
@@ -424,6 +425,20 @@ class luxfer_light_params(Structure):
         ("reserved", c_uint32),
     ]
     enumerations: dict[str, type] = {"kind": types.LightKind}
+
+
+class luxfer_luminaire_params(Structure):
+    """How a luminaire hangs."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("reserved", c_uint32),
+        ("flux", c_double),
+        ("position", c_float * 3),
+        ("axis", c_float * 3),
+        ("c0", c_float * 3),
+        ("colour", c_float * 3),
+    ]
 
 
 class luxfer_ray(Structure):
@@ -1217,6 +1232,8 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_scene_get_camera": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("params", POINTER(luxfer_camera_params))]),
     "luxfer_light_params_init": (c_int32, [("params", POINTER(luxfer_light_params)), ("size", c_size_t)]),
     "luxfer_scene_add_light": (c_int32, [("scene", POINTER(luxfer_scene)), ("params", POINTER(luxfer_light_params)), ("index", POINTER(c_uint32))]),
+    "luxfer_luminaire_params_init": (c_int32, [("params", POINTER(luxfer_luminaire_params)), ("size", c_size_t)]),
+    "luxfer_scene_add_luminaire": (c_int32, [("scene", POINTER(luxfer_scene)), ("distribution", POINTER(luxfer_distribution)), ("params", POINTER(luxfer_luminaire_params)), ("index", POINTER(c_uint32))]),
     "luxfer_scene_intersect": (c_int32, [("scene", POINTER(luxfer_scene)), ("rays", POINTER(luxfer_ray)), ("count", c_size_t), ("hits", POINTER(luxfer_hit))]),
     "luxfer_scene_requirements": (c_int32, [("scene", POINTER(luxfer_scene)), ("error", c_float), ("requirements", POINTER(luxfer_requirements))]),
     "luxfer_scene_requirements_text": (c_int32, [("scene", POINTER(luxfer_scene)), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
@@ -1334,7 +1351,8 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_importance_retain": (c_int32, [("importance", POINTER(luxfer_importance))]),
     "luxfer_importance_release": (c_int32, [("importance", POINTER(luxfer_importance))]),
     "luxfer_placement_params_init": (c_int32, [("params", POINTER(luxfer_placement_params)), ("size", c_size_t)]),
-    "luxfer_importance_place": (c_int32, [("importance", POINTER(luxfer_importance)), ("texture", POINTER(luxfer_image)), ("params", POINTER(luxfer_placement_params)), ("placement", POINTER(luxfer_placement))]),
+    "luxfer_importance_start_placement": (c_int32, [("importance", POINTER(luxfer_importance)), ("texture", POINTER(luxfer_image)), ("params", POINTER(luxfer_placement_params)), ("job", POINTER(POINTER(luxfer_job)))]),
+    "luxfer_importance_get_placement": (c_int32, [("importance", POINTER(luxfer_importance)), ("placement", POINTER(luxfer_placement))]),
     "luxfer_colour_temperature": (c_int32, [("context", POINTER(luxfer_context)), ("red", c_double), ("green", c_double), ("blue", c_double), ("kelvin", POINTER(c_double)), ("duv", POINTER(c_double))]),
     "luxfer_colour_of_temperature": (c_int32, [("context", POINTER(luxfer_context)), ("kelvin", c_double), ("duv", c_double), ("rgb", POINTER(c_double))]),
     "luxfer_image_glare": (c_int32, [("image", POINTER(luxfer_image)), ("fov_y", c_double), ("threshold", c_double), ("report", POINTER(luxfer_glare_report))]),

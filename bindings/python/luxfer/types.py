@@ -307,6 +307,9 @@ class Group(IntEnum):
     """Those whose centres agree in their second coordinate: v of a texture, y of meshes."""
     THIRD = 4
     """Those whose centres agree in their third coordinate: z of meshes."""
+    TYPE = 5
+    """Those of a type: of about the same area; of lights without a surface points, spots, and luminaires by
+    their distribution."""
 
 
 class Sense(IntEnum):
@@ -831,6 +834,22 @@ class LightParams(TypedDict, total=False):
     """Half the angle of a spot's cone of full intensity, in radians, in [0, outer_angle]; default 0."""
     outer_angle: float
     """Half the angle of a spot's whole cone, in radians, in (0, pi / 2]; default pi / 4."""
+
+
+class LuminaireParams(TypedDict, total=False):
+    """How a luminaire hangs."""
+
+    flux: float
+    """Luminous flux in lumens, finite and >= 0; default 0: that of the distribution."""
+    position: Sequence[float]
+    """Where it hangs, in metres, in [-1e15, 1e15]; default (0, 0, 0)."""
+    axis: Sequence[float]
+    """The direction of its axis, where gamma is 0; any length but 0; default (0, -1, 0): it shines down."""
+    c0: Sequence[float]
+    """About where C is 0: what of it is at right angles to the axis counts, which must not be 0; default (1, 0,
+    0). C grows anticlockwise as seen from above a luminaire that shines down."""
+    colour: Sequence[float]
+    """Linear colour of its light, each >= 0 and not all 0; its brightness does not count; default (1, 1, 1)."""
 
 
 @dataclass(frozen=True)
