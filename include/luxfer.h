@@ -794,6 +794,99 @@ luxfer_status luxfer_scene_get_camera(luxfer_scene *scene,
                                       luxfer_camera_params *params);
 
 /* ====================================================================================================================
+ * Luminous intensity distributions
+ *
+ * What a luminaire sends out in which direction, from and to IES (LM-63) and EULUMDAT files. These calls return when they
+ * are done.
+ * ==================================================================================================================== */
+
+/** A luminous intensity distribution. See luxfer_distribution_load. */
+typedef struct luxfer_distribution luxfer_distribution;
+
+/** A file format of distributions: a LUXFER_DISTRIBUTION_ value. */
+typedef int32_t luxfer_distribution_format;
+
+/** A distribution on the whole. Set struct_size before the call. */
+typedef struct luxfer_distribution_report {
+    /** sizeof(luxfer_distribution_report), set by the caller. */
+    uint32_t struct_size;
+    /** C planes. */
+    uint32_t planes;
+    /** Vertical angles of each plane. */
+    uint32_t angles;
+    /** 0. */
+    uint32_t reserved;
+    /** Luminous flux in lumens: the intensity over all directions. */
+    double flux;
+    /** Rated flux of its lamps in lumens; 0 if the file states none (absolute photometry). */
+    double lamp_flux;
+    /** Electric power in watts; 0 if not known. */
+    double watts;
+    /** Length, width and height of the luminous opening in metres; negative for round ones. */
+    double size[3];
+} luxfer_distribution_report;
+
+/** IES LM-63, type C. */
+#define LUXFER_DISTRIBUTION_IES 0
+
+/** EULUMDAT. */
+#define LUXFER_DISTRIBUTION_LDT 1
+
+/**
+ * Loads an .ies or .ldt file; path is UTF-8. The caller releases *distribution. Any thread.
+ * LUXFER_IO if the file cannot be read, LUXFER_FORMAT, with the line, if it is malformed, LUXFER_UNSUPPORTED for types A and
+ * B of IES, LUXFER_INVALID_ARGUMENT for another extension.
+ */
+luxfer_status luxfer_distribution_load(luxfer_context *context,
+                                       const char *path,
+                                       luxfer_distribution **distribution);
+
+/**
+ * Loads from the size bytes of a file held in memory; format is a LUXFER_DISTRIBUTION_ value. Otherwise as
+ * luxfer_distribution_load.
+ */
+luxfer_status luxfer_distribution_load_memory(luxfer_context *context,
+                                              const void *data,
+                                              size_t size,
+                                              luxfer_distribution_format format,
+                                              luxfer_distribution **distribution);
+
+/**
+ * Saves to an .ies or .ldt file; path is UTF-8. An existing file is replaced only by a complete one. Any thread.
+ * LUXFER_INVALID_ARGUMENT for another extension, LUXFER_IO if the file cannot be written.
+ */
+luxfer_status luxfer_distribution_save(luxfer_distribution *distribution,
+                                       const char *path);
+
+/** Tells the distribution on the whole. Any thread. */
+luxfer_status luxfer_distribution_get_report(luxfer_distribution *distribution,
+                                             luxfer_distribution_report *report);
+
+/**
+ * Copies the luminaire's name, zero-terminated, into buffer of capacity bytes, cut if it is longer. *needed, unless NULL,
+ * receives the capacity for all of it. Any thread.
+ */
+luxfer_status luxfer_distribution_get_name(luxfer_distribution *distribution,
+                                           char *buffer,
+                                           size_t capacity,
+                                           size_t *needed);
+
+/**
+ * Tells the luminous intensity in candela in a direction, in degrees: c around the axis, gamma from straight down at 0 to
+ * straight up at 180. Any thread.
+ */
+luxfer_status luxfer_distribution_get_intensity(luxfer_distribution *distribution,
+                                                double c,
+                                                double gamma,
+                                                double *candela);
+
+/** Adds a reference. Any thread. */
+luxfer_status luxfer_distribution_retain(luxfer_distribution *distribution);
+
+/** Gives a reference back. Any thread. */
+luxfer_status luxfer_distribution_release(luxfer_distribution *distribution);
+
+/* ====================================================================================================================
  * Lights of a scene
  *
  * Lights without a surface: points, spots, the parallel light of something far away, and luminaires that were measured.
@@ -3025,99 +3118,6 @@ luxfer_status luxfer_preset_name(luxfer_context *context,
                                  size_t *needed);
 
 /* ====================================================================================================================
- * Luminous intensity distributions
- *
- * What a luminaire sends out in which direction, from and to IES (LM-63) and EULUMDAT files. These calls return when they
- * are done.
- * ==================================================================================================================== */
-
-/** A luminous intensity distribution. See luxfer_distribution_load. */
-typedef struct luxfer_distribution luxfer_distribution;
-
-/** A file format of distributions: a LUXFER_DISTRIBUTION_ value. */
-typedef int32_t luxfer_distribution_format;
-
-/** A distribution on the whole. Set struct_size before the call. */
-typedef struct luxfer_distribution_report {
-    /** sizeof(luxfer_distribution_report), set by the caller. */
-    uint32_t struct_size;
-    /** C planes. */
-    uint32_t planes;
-    /** Vertical angles of each plane. */
-    uint32_t angles;
-    /** 0. */
-    uint32_t reserved;
-    /** Luminous flux in lumens: the intensity over all directions. */
-    double flux;
-    /** Rated flux of its lamps in lumens; 0 if the file states none (absolute photometry). */
-    double lamp_flux;
-    /** Electric power in watts; 0 if not known. */
-    double watts;
-    /** Length, width and height of the luminous opening in metres; negative for round ones. */
-    double size[3];
-} luxfer_distribution_report;
-
-/** IES LM-63, type C. */
-#define LUXFER_DISTRIBUTION_IES 0
-
-/** EULUMDAT. */
-#define LUXFER_DISTRIBUTION_LDT 1
-
-/**
- * Loads an .ies or .ldt file; path is UTF-8. The caller releases *distribution. Any thread.
- * LUXFER_IO if the file cannot be read, LUXFER_FORMAT, with the line, if it is malformed, LUXFER_UNSUPPORTED for types A and
- * B of IES, LUXFER_INVALID_ARGUMENT for another extension.
- */
-luxfer_status luxfer_distribution_load(luxfer_context *context,
-                                       const char *path,
-                                       luxfer_distribution **distribution);
-
-/**
- * Loads from the size bytes of a file held in memory; format is a LUXFER_DISTRIBUTION_ value. Otherwise as
- * luxfer_distribution_load.
- */
-luxfer_status luxfer_distribution_load_memory(luxfer_context *context,
-                                              const void *data,
-                                              size_t size,
-                                              luxfer_distribution_format format,
-                                              luxfer_distribution **distribution);
-
-/**
- * Saves to an .ies or .ldt file; path is UTF-8. An existing file is replaced only by a complete one. Any thread.
- * LUXFER_INVALID_ARGUMENT for another extension, LUXFER_IO if the file cannot be written.
- */
-luxfer_status luxfer_distribution_save(luxfer_distribution *distribution,
-                                       const char *path);
-
-/** Tells the distribution on the whole. Any thread. */
-luxfer_status luxfer_distribution_get_report(luxfer_distribution *distribution,
-                                             luxfer_distribution_report *report);
-
-/**
- * Copies the luminaire's name, zero-terminated, into buffer of capacity bytes, cut if it is longer. *needed, unless NULL,
- * receives the capacity for all of it. Any thread.
- */
-luxfer_status luxfer_distribution_get_name(luxfer_distribution *distribution,
-                                           char *buffer,
-                                           size_t capacity,
-                                           size_t *needed);
-
-/**
- * Tells the luminous intensity in candela in a direction, in degrees: c around the axis, gamma from straight down at 0 to
- * straight up at 180. Any thread.
- */
-luxfer_status luxfer_distribution_get_intensity(luxfer_distribution *distribution,
-                                                double c,
-                                                double gamma,
-                                                double *candela);
-
-/** Adds a reference. Any thread. */
-luxfer_status luxfer_distribution_retain(luxfer_distribution *distribution);
-
-/** Gives a reference back. Any thread. */
-luxfer_status luxfer_distribution_release(luxfer_distribution *distribution);
-
-/* ====================================================================================================================
  * Pattern
  *
  * How the lights of a transfer lie on the surface: how large, how turned, from where on, and where not.
@@ -3163,7 +3163,9 @@ typedef struct luxfer_pattern_params {
 /** The length of a lamp: the longer side of the photo's, of which the median counts. */
 #define LUXFER_PATTERN_LAMP 1
 
-/** The mean distance from a lamp to the nearest other. */
+/**
+ * The shorter period of the lattice of lamps; without a lattice, the median distance from a lamp to the nearest other.
+ */
 #define LUXFER_PATTERN_SPACING 2
 
 /** The width of the surface: it becomes as many lamps wide as the photo's plane. */

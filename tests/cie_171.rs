@@ -317,7 +317,7 @@ fn behind_a_mask(mask: Mesh, [distance, height]: [f64; 2], above: bool) {
         let (lower, upper) = (part(1.0, edge), part(edge, 2.0));
         PI * if above { sky * lower + luminance * upper } else { luminance * lower + sky * upper }
     };
-    compare(&measure(scene, &place, 4, 3, 1 << 14), &place, expected, 0.04);
+    compare(&measure(scene, &place, 4, 3, 1 << 16), &place, expected, 0.04);
 }
 
 /// 5.13, sky and external reflected component behind a façade opening with a continuous horizontal mask: an overhang at the

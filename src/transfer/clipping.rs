@@ -1,8 +1,9 @@
 //! What a photo's clipped pixels were before they were clipped.
 //!
 //! A plane is lit by a mixture of two lights, more or less: that of its lamps and that which the room sends back. Its colours
-//! then lie on a line, which the pixels that are whole tell, and a channel that is clipped follows from one that is not. It
-//! was white at least. Where all channels are clipped nothing more is known.
+//! then lie on a line, which the pixels that are whole tell, and a channel that is clipped follows from one that is not. As
+//! it is a guess beyond what was seen, it is taken no further than the mean ratio of the channels goes; it was white at least.
+//! Where all channels are clipped nothing more is known.
 
 use glam::{BVec3, DVec3, Vec3};
 
@@ -38,7 +39,7 @@ pub(super) fn mean(pixels: impl Iterator<Item = Vec3> + Clone, one_plane: bool) 
             // The brightest channel that is whole knows best.
             let known = (0..3).filter(|&x| !mask.test(x)).filter_map(|x| Some((rgb[x], lines[y][x]?)));
             match known.max_by(|a, b| a.0.total_cmp(&b.0)) {
-                Some((value, line)) => colour[y] = colour[y].max(line.start + line.slope * f64::from(value)),
+                Some((value, line)) => colour[y] = colour[y].max(line.at(value.into())),
                 None => unknown[y] += 1.0,
             }
         }
@@ -71,6 +72,14 @@ struct Moments {
 struct Line {
     start: f64,
     slope: f64,
+    /// Of the means.
+    ratio: f64,
+}
+
+impl Line {
+    fn at(self, x: f64) -> f64 {
+        (self.start + self.slope * x).min(self.ratio * x)
+    }
 }
 
 impl Moments {
@@ -91,6 +100,6 @@ impl Moments {
         let (variance, covariance) = ((self.xx / self.n - x * x).max(0.0), self.xy / self.n - x * y);
         let pull = (EVEN * x).powi(2);
         let slope = ((covariance + pull * y / x) / (variance + pull)).max(0.0);
-        Some(Line { start: y - slope * x, slope })
+        Some(Line { start: y - slope * x, slope, ratio: y / x })
     }
 }

@@ -42,6 +42,8 @@ LUXFER_TEXTURE_EMISSION = 3
 LUXFER_WRAP_REPEAT = 0
 LUXFER_WRAP_CLAMP = 1
 LUXFER_WRAP_MIRROR = 2
+LUXFER_DISTRIBUTION_IES = 0
+LUXFER_DISTRIBUTION_LDT = 1
 LUXFER_LIGHT_POINT = 0
 LUXFER_LIGHT_SPOT = 1
 LUXFER_LIGHT_DIRECTIONAL = 2
@@ -128,8 +130,6 @@ LUXFER_SCALE_LINEAR = 0
 LUXFER_SCALE_LOGARITHMIC = 1
 LUXFER_UNIT_LUMINANCE = 0
 LUXFER_UNIT_ILLUMINANCE = 1
-LUXFER_DISTRIBUTION_IES = 0
-LUXFER_DISTRIBUTION_LDT = 1
 LUXFER_PATTERN_DISTANCE = 0
 LUXFER_PATTERN_LAMP = 1
 LUXFER_PATTERN_SPACING = 2
@@ -219,6 +219,10 @@ class luxfer_scene(Structure):
     """A scene. See luxfer_scene_load and luxfer_scene_create."""
 
 
+class luxfer_distribution(Structure):
+    """A luminous intensity distribution. See luxfer_distribution_load."""
+
+
 class luxfer_rectify(Structure):
     """Lines, vanishing points and the unwarped plane of a photo. See luxfer_rectify_create."""
 
@@ -253,10 +257,6 @@ class luxfer_lamps(Structure):
 
 class luxfer_importance(Structure):
     """A map of importance. See luxfer_importance_create."""
-
-
-class luxfer_distribution(Structure):
-    """A luminous intensity distribution. See luxfer_distribution_load."""
 
 
 class luxfer_transfer(Structure):
@@ -409,6 +409,22 @@ class luxfer_camera_params(Structure):
         ("up", c_float * 3),
         ("reserved", c_uint32),
     ]
+
+
+class luxfer_distribution_report(Structure):
+    """A distribution on the whole."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("planes", c_uint32),
+        ("angles", c_uint32),
+        ("reserved", c_uint32),
+        ("flux", c_double),
+        ("lamp_flux", c_double),
+        ("watts", c_double),
+        ("size", c_double * 3),
+    ]
+    result = types.DistributionReport
 
 
 class luxfer_light_params(Structure):
@@ -958,22 +974,6 @@ class luxfer_preset(Structure):
     result = types.Preset
 
 
-class luxfer_distribution_report(Structure):
-    """A distribution on the whole."""
-
-    _fields_ = [
-        ("struct_size", c_uint32),
-        ("planes", c_uint32),
-        ("angles", c_uint32),
-        ("reserved", c_uint32),
-        ("flux", c_double),
-        ("lamp_flux", c_double),
-        ("watts", c_double),
-        ("size", c_double * 3),
-    ]
-    result = types.DistributionReport
-
-
 class luxfer_pattern_params(Structure):
     """How the pattern lies on the surface, whose axes u and v and corner are those of Surface."""
 
@@ -1230,6 +1230,14 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_scene_add_camera": (c_int32, [("scene", POINTER(luxfer_scene)), ("params", POINTER(luxfer_camera_params)), ("index", POINTER(c_uint32))]),
     "luxfer_scene_set_camera": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("params", POINTER(luxfer_camera_params))]),
     "luxfer_scene_get_camera": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("params", POINTER(luxfer_camera_params))]),
+    "luxfer_distribution_load": (c_int32, [("context", POINTER(luxfer_context)), ("path", c_char_p), ("distribution", POINTER(POINTER(luxfer_distribution)))]),
+    "luxfer_distribution_load_memory": (c_int32, [("context", POINTER(luxfer_context)), ("data", c_void_p), ("size", c_size_t), ("format", c_int32), ("distribution", POINTER(POINTER(luxfer_distribution)))]),
+    "luxfer_distribution_save": (c_int32, [("distribution", POINTER(luxfer_distribution)), ("path", c_char_p)]),
+    "luxfer_distribution_get_report": (c_int32, [("distribution", POINTER(luxfer_distribution)), ("report", POINTER(luxfer_distribution_report))]),
+    "luxfer_distribution_get_name": (c_int32, [("distribution", POINTER(luxfer_distribution)), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
+    "luxfer_distribution_get_intensity": (c_int32, [("distribution", POINTER(luxfer_distribution)), ("c", c_double), ("gamma", c_double), ("candela", POINTER(c_double))]),
+    "luxfer_distribution_retain": (c_int32, [("distribution", POINTER(luxfer_distribution))]),
+    "luxfer_distribution_release": (c_int32, [("distribution", POINTER(luxfer_distribution))]),
     "luxfer_light_params_init": (c_int32, [("params", POINTER(luxfer_light_params)), ("size", c_size_t)]),
     "luxfer_scene_add_light": (c_int32, [("scene", POINTER(luxfer_scene)), ("params", POINTER(luxfer_light_params)), ("index", POINTER(c_uint32))]),
     "luxfer_luminaire_params_init": (c_int32, [("params", POINTER(luxfer_luminaire_params)), ("size", c_size_t)]),
@@ -1364,14 +1372,6 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_preset_count": (c_int32, [("context", POINTER(luxfer_context)), ("count", POINTER(c_uint32))]),
     "luxfer_preset_get": (c_int32, [("context", POINTER(luxfer_context)), ("index", c_uint32), ("preset", POINTER(luxfer_preset))]),
     "luxfer_preset_name": (c_int32, [("context", POINTER(luxfer_context)), ("index", c_uint32), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
-    "luxfer_distribution_load": (c_int32, [("context", POINTER(luxfer_context)), ("path", c_char_p), ("distribution", POINTER(POINTER(luxfer_distribution)))]),
-    "luxfer_distribution_load_memory": (c_int32, [("context", POINTER(luxfer_context)), ("data", c_void_p), ("size", c_size_t), ("format", c_int32), ("distribution", POINTER(POINTER(luxfer_distribution)))]),
-    "luxfer_distribution_save": (c_int32, [("distribution", POINTER(luxfer_distribution)), ("path", c_char_p)]),
-    "luxfer_distribution_get_report": (c_int32, [("distribution", POINTER(luxfer_distribution)), ("report", POINTER(luxfer_distribution_report))]),
-    "luxfer_distribution_get_name": (c_int32, [("distribution", POINTER(luxfer_distribution)), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
-    "luxfer_distribution_get_intensity": (c_int32, [("distribution", POINTER(luxfer_distribution)), ("c", c_double), ("gamma", c_double), ("candela", POINTER(c_double))]),
-    "luxfer_distribution_retain": (c_int32, [("distribution", POINTER(luxfer_distribution))]),
-    "luxfer_distribution_release": (c_int32, [("distribution", POINTER(luxfer_distribution))]),
     "luxfer_pattern_params_init": (c_int32, [("params", POINTER(luxfer_pattern_params)), ("size", c_size_t)]),
     "luxfer_transfer_params_init": (c_int32, [("params", POINTER(luxfer_transfer_params)), ("size", c_size_t)]),
     "luxfer_transfer_create": (c_int32, [("context", POINTER(luxfer_context)), ("transfer", POINTER(POINTER(luxfer_transfer)))]),

@@ -101,6 +101,15 @@ class TextureRole(IntEnum):
     """Multiplies the emission; looked up without interpolation."""
 
 
+class DistributionFormat(IntEnum):
+    """A file format of distributions."""
+
+    IES = 0
+    """IES LM-63, type C."""
+    LDT = 1
+    """EULUMDAT."""
+
+
 class LightKind(IntEnum):
     """A kind of light."""
 
@@ -352,15 +361,6 @@ class Unit(IntEnum):
     """Illuminance in lux."""
 
 
-class DistributionFormat(IntEnum):
-    """A file format of distributions."""
-
-    IES = 0
-    """IES LM-63, type C."""
-    LDT = 1
-    """EULUMDAT."""
-
-
 class PatternScale(IntEnum):
     """What sets the size of the pattern on the surface."""
 
@@ -369,7 +369,8 @@ class PatternScale(IntEnum):
     LAMP = 1
     """The length of a lamp: the longer side of the photo's, of which the median counts."""
     SPACING = 2
-    """The mean distance from a lamp to the nearest other."""
+    """The shorter period of the lattice of lamps; without a lattice, the median distance from a lamp to the
+    nearest other."""
     ACROSS = 3
     """The width of the surface: it becomes as many lamps wide as the photo's plane."""
 
@@ -816,6 +817,24 @@ class CameraParams(TypedDict, total=False):
     """What it looks at, another point, in [-1e15, 1e15]; default (0, 0, -1)."""
     up: Sequence[float]
     """Direction that is up in the image, not along the view; default (0, 1, 0)."""
+
+
+@dataclass(frozen=True)
+class DistributionReport:
+    """A distribution on the whole."""
+
+    planes: int
+    """C planes."""
+    angles: int
+    """Vertical angles of each plane."""
+    flux: float
+    """Luminous flux in lumens: the intensity over all directions."""
+    lamp_flux: float
+    """Rated flux of its lamps in lumens; 0 if the file states none (absolute photometry)."""
+    watts: float
+    """Electric power in watts; 0 if not known."""
+    size: tuple[float, float, float]
+    """Length, width and height of the luminous opening in metres; negative for round ones."""
 
 
 class LightParams(TypedDict, total=False):
@@ -1478,24 +1497,6 @@ class Preset:
     """Least mean illuminance of the walls, in lux; 0 where none is asked for."""
     ceiling: float
     """Least mean illuminance of the ceiling, in lux; 0 where none is asked for."""
-
-
-@dataclass(frozen=True)
-class DistributionReport:
-    """A distribution on the whole."""
-
-    planes: int
-    """C planes."""
-    angles: int
-    """Vertical angles of each plane."""
-    flux: float
-    """Luminous flux in lumens: the intensity over all directions."""
-    lamp_flux: float
-    """Rated flux of its lamps in lumens; 0 if the file states none (absolute photometry)."""
-    watts: float
-    """Electric power in watts; 0 if not known."""
-    size: tuple[float, float, float]
-    """Length, width and height of the luminous opening in metres; negative for round ones."""
 
 
 class PatternParams(TypedDict, total=False):

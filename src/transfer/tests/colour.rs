@@ -61,6 +61,7 @@ fn known_light_is_recovered_from_a_clipped_photo() {
     let (x, y, z) = (Vec3::X * size, Vec3::Y * high, Vec3::Z * size);
     // Without gloss, which the mean of a target leaves out.
     let matt = |albedo: Vec3| Material { ior: 1.0, double_sided: false, ..Material::diffuse("matt", albedo) };
+    let lamp = Material { emission: Vec3::new(1000.0, 900.0, 700.0), ..matt(Vec3::ZERO) };
     let side = |corner, u, v, material| Mesh::parallelogram(corner, u, v, material);
     let scene = Scene {
         meshes: vec![
@@ -72,7 +73,7 @@ fn known_light_is_recovered_from_a_clipped_photo() {
             side(z, y, x, 0),
             side(Vec3::new(0.6, 0.2, 1.0), Vec3::Z * 0.8, Vec3::X * 0.8, 2),
         ],
-        materials: vec![matt(Vec3::new(0.6, 0.5, 0.4)), matt(Vec3::splat(0.8)), matt(Vec3::ZERO, 1000.0)],
+        materials: vec![matt(Vec3::new(0.6, 0.5, 0.4)), matt(Vec3::splat(0.8)), lamp],
         ..Scene::default()
     };
     let (pool, monitor) = (Pool::new(2).unwrap(), Monitor::default());
