@@ -4,6 +4,9 @@
 //!
 //! `LUXFER_BLESS=1 cargo test --test abi_header` rewrites `include/luxfer.h`.
 
+// The header is that of the whole library.
+#![cfg(feature = "stylize")]
+
 use luxfer::ffi::*;
 use std::collections::BTreeMap;
 use std::fmt::Write;
