@@ -92,7 +92,8 @@ int main(int argc, char **argv) {
     }
     source = render(LUXFER_DEMO_SPHERE_ON_TABLE, &params, "exemplar");
     target = render(LUXFER_DEMO_STILL_LIFE, &params, "target");
-    check(luxfer_stylize_add_guides(stylize, source, target, LUXFER_GUIDES_WITH_MATERIALS | LUXFER_GUIDES_WITH_EDGES, 0.5f), "guides");
+    /* All things are of one red: edges tell a ball from the ring behind it, so they weigh more than any kind of light. */
+    check(luxfer_stylize_add_guides(stylize, source, target, LUXFER_GUIDES_WITH_EDGES, 2.5f), "guides");
     s = panels_begin(1 + STYLES, 2, 480, 360);
     image = full(source);
     panels_add(&s, 0, 0, image, 1 / EXPOSURE);
