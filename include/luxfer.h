@@ -3700,7 +3700,7 @@ typedef struct luxfer_stylize_params {
     float guide_weight;
     /** Most resolution levels, each half of the next, in [1, 16]; default 6. */
     uint32_t levels;
-    /** Rounds of matching and painting on each level but the finest, in [1, 100]; default 6. */
+    /** Rounds of matching and painting on the level before the finest, in [1, 100]; default 6. */
     uint32_t iterations;
     /** Rounds on the finest level, in [1, 100]; default 1. */
     uint32_t finest_iterations;
@@ -3741,6 +3741,13 @@ typedef struct luxfer_stylize_params {
     float match_appearance;
     /** Seed of the search; default 1. */
     uint64_t seed;
+    /**
+     * How many times as much the guides weigh on all levels but the finest, in [0, 1000]; default 4; 1 is the paper's. More
+     * follows the guides more closely, in smaller pieces.
+     */
+    float coarse_guides;
+    /** Rounds on each level coarser than the one before the finest, in [1, 100]; default 12; 6 is the paper's. */
+    uint32_t coarse_iterations;
 } luxfer_stylize_params;
 
 /** How good and how fast: a LUXFER_STYLIZE_ preset. */

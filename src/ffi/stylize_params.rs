@@ -68,7 +68,7 @@ pub struct luxfer_stylize_params {
     pub guide_weight: f32,
     /// Most resolution levels, each half of the next, in [1, 16]; default 6.
     pub levels: u32,
-    /// Rounds of matching and painting on each level but the finest, in [1, 100]; default 6.
+    /// Rounds of matching and painting on the level before the finest, in [1, 100]; default 6.
     pub iterations: u32,
     /// Rounds on the finest level, in [1, 100]; default 1.
     pub finest_iterations: u32,
@@ -101,12 +101,17 @@ pub struct luxfer_stylize_params {
     pub match_appearance: f32,
     /// Seed of the search; default 1.
     pub seed: u64,
+    /// How many times as much the guides weigh on all levels but the finest, in [0, 1000]; default 4; 1 is the paper's. More
+    /// follows the guides more closely, in smaller pieces.
+    pub coarse_guides: f32,
+    /// Rounds on each level coarser than the one before the finest, in [1, 100]; default 12; 6 is the paper's.
+    pub coarse_iterations: u32,
 }
 
 // SAFETY: plain numbers.
 unsafe impl Versioned for luxfer_stylize_params {
     const NAME: &'static str = "luxfer_stylize_params";
-    const SIZES: &'static [usize] = &[88];
+    const SIZES: &'static [usize] = &[96];
     fn defaults() -> Self {
         Self::of(&stylize::Params::default())
     }
@@ -125,7 +130,7 @@ pub(super) fn choice<T: Copy>(values: &[T], index: i32, name: &str, prefix: &str
 impl luxfer_stylize_params {
     fn of(p: &stylize::Params) -> Self {
         Self {
-            struct_size: 88,
+            struct_size: 96,
             mode: p.mode as i32,
             search: p.finder as i32,
             patch: p.patch as u32,
@@ -146,6 +151,8 @@ impl luxfer_stylize_params {
             coherence: p.coherence,
             match_appearance: p.match_appearance,
             seed: p.seed,
+            coarse_guides: p.coarse_guides,
+            coarse_iterations: p.coarse_iterations as u32,
         }
     }
 
@@ -170,6 +177,8 @@ impl luxfer_stylize_params {
             coherence: self.coherence,
             match_appearance: self.match_appearance,
             seed: self.seed,
+            coarse_guides: self.coarse_guides,
+            coarse_iterations: self.coarse_iterations as usize,
         };
         params.check()?;
         Ok(params)

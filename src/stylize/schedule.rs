@@ -52,7 +52,9 @@ pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Pu
         done += cost(l);
         let problem = if l == 0 { problem } else { &coarser[l - 1] };
         let seed = hash(params.seed, &[l as u64]);
-        let mut level = Level::new(problem, params, 1.0, seed, job.part(0.0, 0.01))?;
+        let guides = if l > 0 { params.coarse_guides } else { 1.0 };
+        let weights = Params { guide_weight: params.guide_weight * guides, ..params.clone() };
+        let mut level = Level::new(problem, &weights, 1.0, seed, job.part(0.0, 0.01))?;
         if level.allowed.is_empty() {
             return Err(Error::degenerate(
                 "no exemplar patch can be used: source_mask and pixels that are no numbers leave none".to_string(),
@@ -87,7 +89,8 @@ pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Pu
             (Mode::LitSphere, _) => 0,
             (Mode::Greedy, _) => 1,
             (_, 0) => params.finest_iterations + params.polish,
-            _ => params.iterations,
+            (_, 1) => params.iterations,
+            _ => params.coarse_iterations,
         };
         let mut report = LevelReport {
             width: problem.guides.target.width,

@@ -205,8 +205,9 @@ fn extremes_have_an_answer() {
         // No weight, and nothing but weight.
         let guides = [Guide { weight: 0.0, ..guide(&a, &a) }];
         finite(stylise(&input(&art, &guides), &params).unwrap());
-        for guide_weight in [0.0, 1e6] {
-            finite(stylise(&input(&art, &[guide(&a, &a)]), &Params { guide_weight, ..params.clone() }).unwrap());
+        for (guide_weight, coarse_guides) in [(0.0, 4.0), (1e6, 1000.0), (2.0, 0.0)] {
+            let params = Params { guide_weight, coarse_guides, ..params.clone() };
+            finite(stylise(&input(&art, &[guide(&a, &a)]), &params).unwrap());
         }
     }
     // Exemplar and target of very different sizes, and guides that say nothing.
@@ -283,6 +284,9 @@ fn contradictions_are_named() {
         Params { patch: 35, ..default.clone() },
         Params { levels: 0, ..default.clone() },
         Params { iterations: 0, ..default.clone() },
+        Params { coarse_iterations: 0, ..default.clone() },
+        Params { coarse_guides: f32::NAN, ..default.clone() },
+        Params { coarse_guides: 1e4, ..default.clone() },
         Params { guide_weight: f32::INFINITY, ..default.clone() },
         Params { coverage: -0.1, ..default.clone() },
     ] {

@@ -1091,6 +1091,8 @@ class luxfer_stylize_params(Structure):
         ("coherence", c_float),
         ("match_appearance", c_float),
         ("seed", c_uint64),
+        ("coarse_guides", c_float),
+        ("coarse_iterations", c_uint32),
     ]
     enumerations: dict[str, type] = {"mode": types.StylizeMode, "search": types.StylizeSearch, "vote": types.StylizeVote, "final_vote": types.StylizeVote}
 

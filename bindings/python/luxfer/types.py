@@ -1639,7 +1639,7 @@ class StylizeParams(TypedDict, total=False):
     levels: int
     """Most resolution levels, each half of the next, in [1, 16]; default 6."""
     iterations: int
-    """Rounds of matching and painting on each level but the finest, in [1, 100]; default 6."""
+    """Rounds of matching and painting on the level before the finest, in [1, 100]; default 6."""
     finest_iterations: int
     """Rounds on the finest level, in [1, 100]; default 1."""
     polish: int
@@ -1675,6 +1675,12 @@ class StylizeParams(TypedDict, total=False):
     default 0."""
     seed: int
     """Seed of the search; default 1."""
+    coarse_guides: float
+    """How many times as much the guides weigh on all levels but the finest, in [0, 1000]; default 4; 1 is the
+    paper's. More follows the guides more closely, in smaller pieces."""
+    coarse_iterations: int
+    """Rounds on each level coarser than the one before the finest, in [1, 100]; default 12; 6 is the
+    paper's."""
 
 
 @dataclass(frozen=True)
