@@ -442,9 +442,11 @@ fn knobs(pair: &Pair, pool: &Pool) {
     };
     knob("levels", &[2, 4, 6], |p, v| p.levels = v);
     knob("iterations", &[1, 3, 6, 9], |p, v| p.iterations = v);
+    knob("coarse iterations", &[1, 6, 12, 24], |p, v| p.coarse_iterations = v);
     knob("finest iterations", &[1, 2, 4], |p, v| p.finest_iterations = v);
     knob("sweeps", &[1, 2, 4], |p, v| p.sweeps = v);
     knob("guide weight", &[1, 2, 4, 8], |p, v| p.guide_weight = v as f32);
+    knob("coarse guides", &[1, 2, 4, 8], |p, v| p.coarse_guides = v as f32);
     knob("passes", &[2, 3, 6, 12], |p, v| p.passes = v);
     knob("settle", &[0, 1, 2, 4], |p, v| p.settle = v);
     knob("coverage %", &[50, 70, 90, 95, 99], |p, v| p.coverage = v as f32 / 100.0);
