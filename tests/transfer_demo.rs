@@ -160,7 +160,9 @@ fn the_pattern_lies_on_the_surface_as_it_is_told_to() {
     let (_, _, turned) = lay(Pattern { rotation: 0.4, ..Pattern::default() }, &[]);
     assert!((turned.u_axis.dot(surface.u_axis) - 0.4f32.cos()).abs() < 1e-5);
     let (sin, cos) = 0.4f64.sin_cos();
-    assert!((turned.size.as_dvec2() - DVec2::new(size.x * cos + size.y * sin, size.x * sin + size.y * cos)).length() < 1e-3);
+    assert!(
+        (turned.size.as_dvec2() - DVec2::new(size.x * cos + size.y * sin, size.x * sin + size.y * cos)).length() < 1e-3
+    );
 }
 
 #[test]
