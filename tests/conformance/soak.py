@@ -57,6 +57,8 @@ class Soak:
         photo = luxfer.DemoPhoto(self.context).run(width=150, height=100, samples=2)
         self.photo, self.strokes = photo.image("picture"), photo.image("strokes")
         self.target = luxfer.Scene.demo(self.context, "target-room")
+        # A scene keeps what it is traced with from the first render that gets so far.
+        luxfer.Render(self.context, self.scene).run(width=8, height=8, samples=1)
 
     def cancel(self, cycle: int) -> None:
         """A job that is let go of, asked to end, or left to end, at another moment each time."""
