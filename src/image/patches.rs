@@ -11,15 +11,21 @@ pub struct Patches {
     pub count: usize,
 }
 
+/// Pixels looked at together.
+const BLOCK: usize = 64;
+
 impl Patches {
     pub fn of(image: &Image) -> Result<Self> {
         let (width, height) = (image.width, image.height);
         let colours = image.channels.min(3);
         let lit = |i: usize| image.data[i * image.channels..][..colours].iter().any(|&v| v > 0.0);
+        // Lamps are few: what is dark is passed over many pixels at a time.
+        let blocks = image.data.chunks(BLOCK * image.channels.max(1)).enumerate();
+        let lit_blocks = blocks.filter(|(_, pixels)| any_light(pixels, image.channels)).map(|(block, _)| block * BLOCK);
         let mut labels = try_vec(width * height, 0u32)?;
         let mut open = Vec::new();
         let mut count = 0;
-        for start in 0..width * height {
+        for start in lit_blocks.flat_map(|first| first..(first + BLOCK).min(width * height)) {
             if labels[start] != 0 || !lit(start) {
                 continue;
             }
@@ -44,6 +50,14 @@ impl Patches {
     }
 }
 
+/// Whether a colour of any of these pixels is above 0; of four or more channels the first three are colours.
+pub fn any_light(pixels: &[f32], channels: usize) -> bool {
+    match channels {
+        0..=3 => pixels.iter().fold(0.0, |high, v| f32::max(high, *v)) > 0.0,
+        _ => pixels.chunks_exact(channels).any(|pixel| pixel[..3].iter().any(|v| *v > 0.0)),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -57,5 +71,22 @@ mod tests {
         let found: Vec<String> = patches.labels.chunks(5).map(|r| r.iter().map(u32::to_string).collect()).collect();
         assert_eq!(found, ["10002", "01002", "00000", "30400"]);
         assert_eq!(Patches::of(&Image::new(3, 2, 3).unwrap()).unwrap().count, 0);
+    }
+
+    #[test]
+    fn light_is_found_wherever_it_is_and_alpha_is_none() {
+        for (channels, colours) in [(1, 1), (2, 2), (3, 3), (4, 3), (6, 3)] {
+            let mut image = Image::new(29, 11, channels).unwrap();
+            for at in (0..29 * 11).step_by(7) {
+                for channel in 0..channels {
+                    image.data[at * channels + channel] = 1e-30;
+                    let patches = Patches::of(&image).unwrap();
+                    let found = usize::from(channel < colours);
+                    assert_eq!(patches.count, found, "channel {channel} of {channels}");
+                    assert_eq!(patches.labels.iter().position(|l| *l == 1), (found == 1).then_some(at));
+                    image.data[at * channels + channel] = -1.0;
+                }
+            }
+        }
     }
 }

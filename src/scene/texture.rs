@@ -1,6 +1,7 @@
 //! Textures: images with wrapping, sampled bilinearly.
 
 use crate::image::Image;
+use crate::image::patches::any_light;
 use glam::{Vec2, Vec4};
 
 /// How a texture continues outside `[0, 1]`.
@@ -46,7 +47,16 @@ impl Texture {
         self.texel(x, y)
     }
 
-    fn texel(&self, x: usize, y: usize) -> Vec4 {
+    /// Whether no texel of a square within the image has a colour above 0.
+    pub fn is_black(&self, [x, y]: [usize; 2], side: usize) -> bool {
+        let channels = self.image.channels;
+        let row = |y: usize| &self.image.data[(y * self.image.width + x) * channels..][..side * channels];
+        // Two channels are no colour, and count as white.
+        channels != 2 && (y..y + side).all(|y| !any_light(row(y), channels))
+    }
+
+    /// A texel of the image.
+    pub fn texel(&self, x: usize, y: usize) -> Vec4 {
         match *self.image.pixel(x, y) {
             [v] => Vec4::new(v, v, v, 1.0),
             [r, g, b] => Vec4::new(r, g, b, 1.0),

@@ -2,7 +2,7 @@
 
 use crate::render::facet::Facet;
 use crate::scene::{Scene, Texture};
-use glam::{DVec2, Vec2, Vec3};
+use glam::{DVec2, Vec2, Vec3, Vec4};
 
 pub struct Emitter {
     pub mesh: u32,
@@ -66,9 +66,9 @@ impl Emitter {
         }
     }
 
-    /// What a texel of the emitter's texture, continued as it wraps, emits.
-    pub(super) fn emission_of_texel(&self, texture: &Texture, texel: Vec2) -> f32 {
-        mean_channel(self.factor * texture.continued(texel).truncate().max(Vec3::ZERO))
+    /// What a texel of the emitter's texture emits.
+    pub(super) fn emission_of_texel(&self, colour: Vec4) -> f32 {
+        mean_channel(self.factor * colour.truncate().max(Vec3::ZERO))
     }
 
     pub fn point(&self, b: Vec2) -> Vec3 {

@@ -103,12 +103,23 @@ impl Tiling {
         if overlap == Overlap::None {
             return None;
         }
+        // Most tiles lie between the lamps: they are seen to be dark at a glance.
+        let last = first + (SIDE - 1) as f64;
+        let within = first.min_element() >= 0.0 && last.x < f64::from(self.size.x) && last.y < f64::from(self.size.y);
+        let [x, y] = [first.x as usize, first.y as usize];
+        if within && texture.is_black([x, y], SIDE) {
+            return None;
+        }
         let mut sums = [0.0f64; SIDE * SIDE];
         let mut sum = 0.0;
         let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
         for (i, running) in sums.iter_mut().enumerate() {
             let texel = first + DVec2::new((i % SIDE) as f64, (i / SIDE) as f64);
-            let emission = emitter.emission_of_texel(texture, texel.as_vec2());
+            let colour = match within {
+                true => texture.texel(x + i % SIDE, y + i / SIDE),
+                false => texture.continued(texel.as_vec2()),
+            };
+            let emission = emitter.emission_of_texel(colour);
             if emission > 0.0 {
                 let area = if overlap == Overlap::Whole { 1.0 } else { self.covered(&rectangle(texel, 1.0)) };
                 if area > 0.0 {
@@ -187,7 +198,7 @@ impl Tiling {
         for y in 0..rows {
             for x in 0..columns {
                 let texel = low + DVec2::new(x as f64, y as f64);
-                sum += f64::from(emitter.emission_of_texel(texture, texel.as_vec2()));
+                sum += f64::from(emitter.emission_of_texel(texture.continued(texel.as_vec2())));
             }
         }
         sum / (columns * rows) as f64

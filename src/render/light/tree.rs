@@ -7,8 +7,8 @@
 
 use super::bounds::{Bounds, BoundsLanes, LANES, Receiver};
 use crate::error::Result;
-use crate::image::try_vec;
-use glam::Vec3;
+use crate::image::{try_collect, try_vec};
+use glam::{Vec3, Vec3A};
 use rayon::prelude::*;
 
 /// Bins in which a split is looked for along each axis.
@@ -45,7 +45,8 @@ struct Node {
 /// A light to be put into the tree.
 struct Item {
     bounds: Bounds,
-    centre: Vec3,
+    extent: Extent,
+    centre: Vec3A,
     light: u32,
 }
 
@@ -64,8 +65,13 @@ impl LightTree {
             tree.fixed = lights.iter().map(|b| f64::from(b.intensity) / sum).collect();
             return Ok(tree);
         }
-        let mut items = Vec::new();
-        items.extend(lights.iter().zip(0..).map(|(&bounds, light)| Item { bounds, centre: bounds.centre(), light }));
+        let item = |(bounds, light): (&Bounds, u32)| Item {
+            bounds: *bounds,
+            extent: Extent::of(bounds),
+            centre: bounds.centre().into(),
+            light,
+        };
+        let mut items = try_collect(lights.iter().zip(0..).map(item))?;
         tree.places = try_vec(lights.len(), NONE)?;
         let whole = Bounds::union(lights);
         let root = Branch::Cluster(grow(&mut items, 0), whole);
@@ -157,7 +163,7 @@ impl LightTree {
 /// The parts of a cluster, split until there are eight or each is a light.
 fn grow(items: &mut [Item], depth: u32) -> Vec<Branch> {
     fn with_cost(part: &mut [Item]) -> (f32, &mut [Item]) {
-        (Extent::of(part).cost(), part)
+        (Extent::of_all(part).cost(), part)
     }
     let mut parts: Vec<(f32, &mut [Item])> = vec![with_cost(items)];
     while parts.len() < LANES {
@@ -189,34 +195,33 @@ fn grow(items: &mut [Item], depth: u32) -> Vec<Branch> {
 /// What the heuristic knows of a cluster.
 #[derive(Clone, Copy)]
 struct Extent {
-    low: Vec3,
-    high: Vec3,
+    low: Vec3A,
+    high: Vec3A,
     /// Sum of the main directions, by intensity; those of two-sided lights turned to one half-space.
-    direction: Vec3,
+    direction: Vec3A,
     intensity: f32,
-    count: usize,
+    count: u32,
 }
 
 impl Extent {
     const NOTHING: Self =
-        Self { low: Vec3::INFINITY, high: Vec3::NEG_INFINITY, direction: Vec3::ZERO, intensity: 0.0, count: 0 };
+        Self { low: Vec3A::INFINITY, high: Vec3A::NEG_INFINITY, direction: Vec3A::ZERO, intensity: 0.0, count: 0 };
 
-    fn of(items: &[Item]) -> Self {
-        let mut extent = Self::NOTHING;
-        items.iter().for_each(|item| extent.add(item));
-        extent
-    }
-
-    fn add(&mut self, item: &Item) {
-        let b = &item.bounds;
+    fn of(b: &Bounds) -> Self {
         let turned = b.two_sided && b.axis.dot(Vec3::new(1.0, 0.7, 0.4)) < 0.0;
-        self.merge(&Self {
-            low: b.low,
-            high: b.high,
-            direction: if turned { -b.axis } else { b.axis } * b.intensity,
+        Self {
+            low: b.low.into(),
+            high: b.high.into(),
+            direction: (if turned { -b.axis } else { b.axis } * b.intensity).into(),
             intensity: b.intensity,
             count: 1,
-        });
+        }
+    }
+
+    fn of_all(items: &[Item]) -> Self {
+        let mut extent = Self::NOTHING;
+        items.iter().for_each(|item| extent.merge(&item.extent));
+        extent
     }
 
     fn merge(&mut self, other: &Self) {
@@ -239,13 +244,13 @@ impl Extent {
 
 /// Divides a cluster of at least two in place and returns the size of the first part, neither of them empty.
 fn split(items: &mut [Item]) -> usize {
-    let low = items.iter().fold(Vec3::INFINITY, |a, i| a.min(i.centre));
-    let high = items.iter().fold(Vec3::NEG_INFINITY, |a, i| a.max(i.centre));
+    let low = items.iter().fold(Vec3A::INFINITY, |a, i| a.min(i.centre));
+    let high = items.iter().fold(Vec3A::NEG_INFINITY, |a, i| a.max(i.centre));
     let mut best = (f32::INFINITY, 0, 0);
     for axis in 0..3 {
         let Some(bin_of) = binning(low[axis], high[axis]) else { continue };
         let mut bins = [Extent::NOTHING; BINS];
-        items.iter().for_each(|item| bins[bin_of(item.centre[axis])].add(item));
+        items.iter().for_each(|item| bins[bin_of(item.centre[axis])].merge(&item.extent));
         // Costs of what lies above each bin, then of both sides.
         let mut above = [0.0; BINS];
         let mut extent = Extent::NOTHING;
@@ -257,7 +262,7 @@ fn split(items: &mut [Item]) -> usize {
         for i in 1..BINS {
             extent.merge(&bins[i - 1]);
             let cost = extent.cost() + above[i];
-            if extent.count > 0 && extent.count < items.len() && cost < best.0 {
+            if extent.count > 0 && (extent.count as usize) < items.len() && cost < best.0 {
                 best = (cost, axis, i);
             }
         }
