@@ -328,7 +328,7 @@ fn lamps() {
         let lamps = Lamps::of_texture(&scene.textures[0].image).expect("lamps");
         let responses =
             lamp_responses(&world, 1, &lamps, &goals, &Params::default(), monitor.job()).expect("responses");
-        let solution = solve_groups(&responses, &goals, &GroupParams::default()).expect("powers");
+        let solution = solve_groups(&responses, &goals, &GroupParams::default(), monitor.job()).expect("powers");
         (lamps.count(), responses.paths, solution)
     };
     for (count, scene) in &halls {

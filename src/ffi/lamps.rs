@@ -200,6 +200,7 @@ pub unsafe extern "C" fn luxfer_lamps_start(
                 &responses.grouped(&group_of, groups)?,
                 &goals,
                 &params.solving(groups, inputs.levels.clone()),
+                job.part(0.95, 1.0),
             )?;
             let targets = inputs.goals.iter().map(|aim| aim.target).collect();
             Ok(Output { scene, material, lamps, group_of, responses, targets, solution })

@@ -11,11 +11,14 @@
 //! never compared one by one.
 
 use super::Reach;
-use super::estimate::{BATCHES, STUDENT_T, mean, pseudo_values, standard_error};
+use super::estimate::{BATCHES, STUDENT_T, mean, standard_error};
 use super::responses::{Aspect, Estimate, Goal, Responses};
 use super::sided::{self, Problem, Sense};
 use super::steps::Terms;
 use crate::error::{Error, ErrorKind, Result, check_range};
+use crate::exec;
+use crate::image::try_vec;
+use crate::job::Job;
 use glam::DVec3;
 
 /// Luminance of linear RGB ([`crate::image::colour::luminance`]).
@@ -81,8 +84,8 @@ pub struct GroupSolution {
 /// same goals; their targets and weights may differ.
 ///
 /// # Errors
-/// `Unreachable` if no goal gets light from any group; parameters out of range.
-pub fn solve_groups(responses: &Responses, goals: &[Goal], params: &GroupParams) -> Result<GroupSolution> {
+/// `Unreachable` if no goal gets light from any group; parameters out of range; cancelled.
+pub fn solve_groups(responses: &Responses, goals: &[Goal], params: &GroupParams, job: Job) -> Result<GroupSolution> {
     check(responses, goals, params)?;
     let system = System { responses, goals, params };
     let everything = system.means();
@@ -94,17 +97,10 @@ pub fn solve_groups(responses: &Responses, goals: &[Goal], params: &GroupParams)
         ));
     }
     let whole = system.solve(&everything)?;
-    let rest = (0..BATCHES).map(|b| system.solve(&system.means_without(&everything, b))).collect::<Result<Vec<_>>>()?;
+    let without = |b| system.solve(&system.means_without(&everything, b));
+    let rest = exec::map(BATCHES, job, without)?.into_iter().collect::<Result<Vec<_>>>()?;
 
-    // The jackknife, for every group and channel.
-    let mut half_width: Vec<DVec3> = (0..whole.len())
-        .map(|g| {
-            DVec3::from(std::array::from_fn(|c| {
-                let without: [f64; BATCHES] = std::array::from_fn(|b| rest[b][g][c]);
-                STUDENT_T * standard_error(&pseudo_values(whole[g][c], &without))
-            }))
-        })
-        .collect();
+    let mut half_width = jackknife(&rest)?;
     let scale = if params.levels.is_empty() { whole.clone() } else { system.stepped(&everything, &whole) };
     for (width, (scale, whole)) in half_width.iter_mut().zip(scale.iter().zip(&whole)) {
         *width += (*scale - *whole).abs();
@@ -112,6 +108,24 @@ pub fn solve_groups(responses: &Responses, goals: &[Goal], params: &GroupParams)
     let outcomes: Vec<Outcome> = (0..goals.len()).map(|goal| system.outcome(goal, &scale)).collect();
     let unreachable = system.explain(&outcomes, &scale);
     Ok(GroupSolution { scale, half_width, outcomes, unreachable })
+}
+
+/// Half-widths of 95 % intervals of the powers, from those without each batch: [`super::estimate::pseudo_values`] of all
+/// groups at once, which spread `n - 1` times as far as the answers that they come from.
+fn jackknife(without: &[Vec<DVec3>]) -> Result<Vec<DVec3>> {
+    let n = BATCHES as f64;
+    let groups = without.first().map_or(0, Vec::len);
+    let mut means = try_vec(groups, DVec3::ZERO)?;
+    for powers in without {
+        means.iter_mut().zip(powers).for_each(|(mean, power)| *mean += power / n);
+    }
+    let mut squares = try_vec(groups, DVec3::ZERO)?;
+    for powers in without {
+        let deviations = powers.iter().zip(&means).map(|(power, mean)| power - mean);
+        squares.iter_mut().zip(deviations).for_each(|(square, off)| *square += off * off);
+    }
+    let width = |square: DVec3| square.map(|s| STUDENT_T * (s * (n - 1.0) / n).sqrt());
+    Ok(squares.into_iter().map(width).collect())
 }
 
 fn check(responses: &Responses, goals: &[Goal], params: &GroupParams) -> Result<()> {

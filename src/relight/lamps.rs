@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 use crate::image::patches::Patches;
 use crate::image::{Image, try_vec};
 use crate::scene::{PunctualLight, Scene};
-use glam::{DVec3, Vec2, Vec3};
+use glam::{DVec2, DVec3, Vec2, Vec3};
 
 /// Lamps of an emission, counted from 0.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,21 +51,29 @@ impl Lamps {
                 "the labels go up to {count}, more than there are texels; number the lamps from 1 without gaps"
             )));
         }
-        let mut sums = try_vec(count, (Vec2::ZERO, 0.0f32))?;
-        for (i, &label) in labels.iter().enumerate().filter(|(_, l)| **l > 0) {
-            let sum = &mut sums[label as usize - 1];
-            sum.0 += Vec2::new((i % width) as f32 + 0.5, (i / width) as f32 + 0.5);
-            sum.1 += 1.0;
-        }
-        let size = Vec2::new(width as f32, height as f32);
-        let centres = sums.iter().map(|(sum, n)| (*sum / n.max(1.0) / size).extend(0.0)).collect();
-        let sizes = sums.iter().map(|(_, n)| *n).collect();
-        Self { count, labels, division: Division::Texels { width, height }, centres, sizes }.checked()
+        Self::numbered(width, height, labels, count)
     }
 
     /// Every 8-connected patch of texels that emit is a lamp.
     pub fn of_texture(texture: &Image) -> Result<Self> {
-        Self::of_labels(texture.width, texture.height, Patches::of(texture)?.labels)
+        let Patches { labels, count } = Patches::of(texture)?;
+        Self::numbered(texture.width, texture.height, labels, count)
+    }
+
+    /// The lamps of labels from 0 to `count`.
+    fn numbered(width: usize, height: usize, labels: Vec<u32>, count: usize) -> Result<Self> {
+        let mut sums = try_vec(count, (DVec2::ZERO, 0.0f64))?;
+        for (y, row) in labels.chunks_exact(width).enumerate() {
+            for (x, &label) in row.iter().enumerate().filter(|(_, label)| **label > 0) {
+                let (sum, texels) = &mut sums[label as usize - 1];
+                *sum += DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
+                *texels += 1.0;
+            }
+        }
+        let size = DVec2::new(width as f64, height as f64);
+        let centres = sums.iter().map(|(sum, n)| (*sum / n.max(1.0) / size).as_vec2().extend(0.0)).collect();
+        let sizes = sums.iter().map(|(_, n)| *n as f32).collect();
+        Self { count, labels, division: Division::Texels { width, height }, centres, sizes }.checked()
     }
 
     /// Every connected piece of the meshes that have the emitting material is a lamp: triangles that share a vertex.

@@ -8,6 +8,7 @@ use super::target::Sampler;
 use super::transport::{Batches, Stop};
 use super::{Params, Place, Quantity};
 use crate::error::{Error, Result};
+use crate::image::try_with_capacity;
 use crate::job::Job;
 use crate::render::World;
 use glam::{DVec3, Vec3};
@@ -131,7 +132,7 @@ pub fn lamp_responses(
             Some(more) => growth = more,
             None => {
                 job.report(1.0);
-                let goals = batches.iter().map(|b| PerGoal::new(b, lamps.count())).collect();
+                let goals = batches.iter().map(|b| PerGoal::new(b, lamps.count())).collect::<Result<_>>()?;
                 return Ok(Responses { lamps: lamps.count(), goals, paths });
             }
         }
@@ -140,16 +141,15 @@ pub fn lamp_responses(
 
 /// Of the response to all lamps.
 fn error_of_all(batches: &Batches) -> f64 {
-    let sums: Vec<DVec3> = batches.means().iter().map(|m| m.bins.iter().sum()).collect();
-    Estimate::of(|b| sums[b]).error()
+    let sums: Vec<DVec3> = (0..BATCHES).map(|batch| batches.mean_of_bins(batch).sum()).collect();
+    Estimate::of(|batch| sums[batch]).error()
 }
 
 impl PerGoal {
-    fn new(batches: &Batches, lamps: usize) -> Self {
-        let means = batches.means();
-        let mut all = Vec::with_capacity(lamps * BATCHES);
-        means.iter().for_each(|m| all.extend_from_slice(&m.bins));
-        Self { lamps: all, background: means.iter().map(|m| m.others).collect() }
+    fn new(batches: &Batches, lamps: usize) -> Result<Self> {
+        let mut all = try_with_capacity(lamps * BATCHES)?;
+        (0..BATCHES).for_each(|batch| all.extend(batches.mean_of_bins(batch)));
+        Ok(Self { lamps: all, background: (0..BATCHES).map(|batch| batches.mean_of_others(batch)).collect() })
     }
 }
 

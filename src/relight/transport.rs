@@ -139,6 +139,17 @@ impl<'a> Batches<'a> {
         Ok(())
     }
 
+    /// Mean per path of a batch of what each bin brings.
+    pub fn mean_of_bins(&self, batch: usize) -> impl Iterator<Item = DVec3> {
+        let batch = &self.batches[batch];
+        batch.bins.iter().map(|sum| sum / f64::from(batch.count.max(1)))
+    }
+
+    /// Mean per path of a batch of what all other lights bring.
+    pub fn mean_of_others(&self, batch: usize) -> DVec3 {
+        self.batches[batch].others / f64::from(self.batches[batch].count.max(1))
+    }
+
     /// Mean per path of what each bin and all other lights bring, of each batch.
     pub fn means(&self) -> Vec<Means> {
         let mean = |batch: &Batch| {

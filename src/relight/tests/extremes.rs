@@ -160,6 +160,6 @@ fn a_lamp_seen_edge_on_is_dark() {
     let responses = Pool::new(1)
         .unwrap()
         .run(|| lamp_responses(&world, 1, &lamps, &[goal], &params, Monitor::default().job()).unwrap());
-    let error = solve_groups(&responses, &[goal], &GroupParams::default()).unwrap_err();
+    let error = powers(&responses, &[goal], &GroupParams::default()).unwrap_err();
     assert_eq!(error.kind, ErrorKind::Unreachable);
 }

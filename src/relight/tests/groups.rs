@@ -70,14 +70,14 @@ fn one_group_is_the_closed_form_and_bounds_hold() {
     let target = Vec3::splat(20.0);
     let goals = [goal(Place::Surface(FLOOR), target)];
     let responses = respond(&world, &lamps, &goals).grouped(&[0, 0], 1).unwrap();
-    let free = solve_groups(&responses, &goals, &GroupParams::default()).unwrap();
+    let free = powers(&responses, &goals, &GroupParams::default()).unwrap();
     let expected = 20.0 / responses.all(0).mean.x;
     assert!((free.scale[0].x / expected - 1.0).abs() < 1e-9, "{free:?}, expected {expected}");
     assert!(free.half_width[0].x > 0.0 && free.half_width[0].x < 0.05 * expected);
     assert_eq!((free.outcomes[0].reach, &free.unreachable), ([Reach::Met; 3], &None));
     // Half of what it takes is allowed: the bound is the nearest answer, and the reason says so.
     let bounded = GroupParams { most: vec![expected / 2.0], ..GroupParams::default() };
-    let bounded = solve_groups(&responses, &goals, &bounded).unwrap();
+    let bounded = powers(&responses, &goals, &bounded).unwrap();
     assert_eq!(bounded.scale[0].x, expected / 2.0);
     assert_eq!(bounded.outcomes[0].reach, [Reach::TooDim; 3]);
     assert!((bounded.outcomes[0].achieved.x - 10.0).abs() < 1e-6);
@@ -90,7 +90,7 @@ fn groups_that_are_alike_unlike_or_dark() {
     let (world, lamps) = lamp_room(&[[3, 3], [12, 3], [3, 12], [12, 12]], &[1.0, 1.0, 1.0, 1e-12]);
     let goals = [goal(Place::Surface(FLOOR), Vec3::splat(20.0))];
     let responses = respond(&world, &lamps, &goals);
-    let solution = solve_groups(&responses, &goals, &GroupParams::default()).unwrap();
+    let solution = powers(&responses, &goals, &GroupParams::default()).unwrap();
     let x: Vec<f64> = solution.scale.iter().map(|x| x.x).collect();
     // The small pull towards equal lamps decides what one goal leaves open: all are alike.
     assert!(x.iter().all(|v| (v / x[0] - 1.0).abs() < 1e-6), "{x:?}");
@@ -100,32 +100,32 @@ fn groups_that_are_alike_unlike_or_dark() {
     let (faint, pair) = lamp_room(&[[3, 3], [12, 12]], &[1.0, 1e-12]);
     let most = GroupParams { most: vec![f64::INFINITY, 2.0], ..GroupParams::default() };
     for params in [GroupParams::default(), most] {
-        let solution = solve_groups(&respond(&faint, &pair, &ask), &ask, &params).unwrap();
+        let solution = powers(&respond(&faint, &pair, &ask), &ask, &params).unwrap();
         let finite = solution.scale.iter().chain(&solution.half_width).all(|x| x.is_finite());
         let met = solution.outcomes.iter().all(|o| o.reach == [Reach::Met; 3]);
         assert!(finite && met == solution.unreachable.is_none(), "{solution:?}");
     }
     // A goal of darkness turns them off.
     let dark = [goal(Place::Surface(FLOOR), Vec3::ZERO)];
-    let off = solve_groups(&responses, &dark, &GroupParams::default()).unwrap();
+    let off = powers(&responses, &dark, &GroupParams::default()).unwrap();
     assert!(off.scale.iter().all(|x| *x == DVec3::ZERO) && off.unreachable.is_none(), "{off:?}");
     // Two desks, each under a lamp; one is to be brighter than the other.
     let goals = [goal(desk(0.9, 0.9), Vec3::splat(40.0)), goal(desk(3.1, 3.1), Vec3::splat(25.0))];
     let (world, lamps) = lamp_room(&[[3, 3], [12, 12]], &[1.0; 2]);
     let responses = respond(&world, &lamps, &goals);
-    let solution = solve_groups(&responses, &goals, &GroupParams::default()).unwrap();
+    let solution = powers(&responses, &goals, &GroupParams::default()).unwrap();
     assert!(solution.scale[0].x > 1.3 * solution.scale[1].x, "{solution:?}");
     for (outcome, want) in solution.outcomes.iter().zip([40.0, 25.0]) {
         assert!((outcome.achieved.x / want - 1.0).abs() < 1e-3 && outcome.reach == [Reach::Met; 3], "{outcome:?}");
     }
     // One lamp for both cannot: the answer lies between, and the reason names a goal.
     let one = responses.grouped(&[0, 0], 1).unwrap();
-    let torn = solve_groups(&one, &goals, &GroupParams::default()).unwrap();
+    let torn = powers(&one, &goals, &GroupParams::default()).unwrap();
     assert!(torn.outcomes[0].achieved.x < 40.0 && torn.outcomes[1].achieved.x > 25.0);
     assert!(torn.unreachable.unwrap().contains("goal 0"));
     // A heavier goal comes nearer.
     let heavy = [Goal { weight: 100.0, ..goals[0] }, goals[1]];
-    let heavy = solve_groups(&one, &heavy, &GroupParams::default()).unwrap();
+    let heavy = powers(&one, &heavy, &GroupParams::default()).unwrap();
     assert!((heavy.outcomes[0].achieved.x / 40.0 - 1.0).abs() < 1e-3);
 }
 
@@ -138,7 +138,7 @@ fn other_light_that_is_too_bright_is_named() {
     let goals = [goal(Place::Surface(FLOOR), Vec3::ONE)];
     let responses = respond(&world, &lamps, &goals);
     let params = GroupParams { colour: Colour::Free, ..GroupParams::default() };
-    let solution = solve_groups(&responses, &goals, &params).unwrap();
+    let solution = powers(&responses, &goals, &params).unwrap();
     assert!(solution.scale.iter().all(|x| *x == DVec3::ZERO));
     assert_eq!(solution.outcomes[0].reach, [Reach::TooBright; 3]);
     assert!(solution.unreachable.unwrap().contains("other lights alone"));
@@ -148,7 +148,7 @@ fn other_light_that_is_too_bright_is_named() {
         GroupParams { most: vec![1.0], ..GroupParams::default() },
         GroupParams { most: vec![1.0, f64::NAN], ..GroupParams::default() },
     ] {
-        assert_eq!(solve_groups(&responses, &goals, &bad).unwrap_err().kind, ErrorKind::InvalidArgument);
+        assert_eq!(powers(&responses, &goals, &bad).unwrap_err().kind, ErrorKind::InvalidArgument);
     }
 }
 
@@ -158,7 +158,7 @@ fn every_reason_is_told() {
     let (world, lamps) = lamp_room(&[[3, 3], [12, 12]], &[1.0; 2]);
     let told = |world: &World, goals: &[Goal], params: &GroupParams| {
         let responses = respond(world, &lamps, goals);
-        solve_groups(&responses, goals, params).unwrap().unreachable.unwrap_or_default()
+        powers(&responses, goals, params).unwrap().unreachable.unwrap_or_default()
     };
     let (kept, free) = (GroupParams::default(), GroupParams { colour: Colour::Free, ..GroupParams::default() });
     let floor = |target| Goal { quantity: Quantity::Outgoing, ..goal(Place::Surface(FLOOR), target) };
@@ -193,7 +193,7 @@ fn every_reason_is_told() {
     black.materials[0].base_color = Vec3::ZERO;
     let black = World::build(Arc::new(black), Monitor::default().job()).unwrap();
     let responses = respond(&black, &lamps, &[floor(Vec3::ONE)]);
-    let error = solve_groups(&responses, &[floor(Vec3::ONE)], &kept).unwrap_err();
+    let error = powers(&responses, &[floor(Vec3::ONE)], &kept).unwrap_err();
     assert_eq!(error.kind, ErrorKind::Unreachable);
     assert!(error.message.contains("no light of any group finds its way to a goal"), "{error}");
 }
@@ -207,13 +207,13 @@ fn lux_are_luminance() {
     let world = World::build(Arc::new(scene), Monitor::default().job()).unwrap();
     let lux = Goal { aspect: Aspect::Luminance, ..goal(desk(2.0, 2.0), Vec3::splat(500.0 / std::f32::consts::PI)) };
     let responses = respond(&world, &lamps, &[lux]);
-    let solution = solve_groups(&responses, &[lux], &GroupParams::default()).unwrap();
+    let solution = powers(&responses, &[lux], &GroupParams::default()).unwrap();
     let outcome = &solution.outcomes[0];
     assert_eq!((outcome.reach, &solution.unreachable), ([Reach::Met; 3], &None));
     let illuminance = std::f32::consts::PI * crate::image::colour::luminance(outcome.achieved.as_vec3());
     assert!((illuminance - 500.0).abs() < 0.1 && outcome.achieved.x > 1.05 * outcome.achieved.z, "{outcome:?}");
     let free = GroupParams { colour: Colour::Free, ..GroupParams::default() };
-    assert_eq!(solve_groups(&responses, &[lux], &free).unwrap_err().kind, ErrorKind::InvalidArgument);
+    assert_eq!(powers(&responses, &[lux], &free).unwrap_err().kind, ErrorKind::InvalidArgument);
 }
 
 /// Two lamps over two desks: limits are kept where they can be, by as little light as it takes.
@@ -225,7 +225,7 @@ fn limits_count_on_one_side() {
     let responses = respond(&world, &lamps, &traced);
     let solve = |first, second| {
         let goals = [Goal { place: traced[0].place, ..first }, Goal { place: traced[1].place, ..second }];
-        solve_groups(&responses, &goals, &GroupParams { tolerance: 1e-4, ..GroupParams::default() }).unwrap()
+        powers(&responses, &goals, &GroupParams { tolerance: 1e-4, ..GroupParams::default() }).unwrap()
     };
     let one = |least, sense| at(0.0, 0.0, least, sense);
     // Lamps that are alike give both desks at least what the darker of them needs, and the brighter one more.
@@ -245,13 +245,13 @@ fn limits_count_on_one_side() {
     assert!((solution.outcomes[0].achieved.x / f64::from(caps[1]) - 1.0).abs() < 1e-3, "{solution:?}");
     // What cannot be is told with its side.
     let goals = [at(0.9, 0.9, 40.0, Sense::AtLeast), at(3.1, 3.1, 1.0, Sense::AtMost)];
-    let torn = solve_groups(&responses, &goals, &GroupParams::default()).unwrap();
+    let torn = powers(&responses, &goals, &GroupParams::default()).unwrap();
     assert_eq!([0, 1].map(|goal| torn.outcomes[goal].reach[0]), [Reach::TooDim, Reach::TooBright]);
     assert!(torn.unreachable.unwrap().contains("at least 40.0000 cd/m²"));
     // Luminance has one side only.
     let mixed = [Sense::AtLeast, Sense::AtMost, Sense::Exactly];
     let goals = [Goal { aspect: Aspect::Luminance, sense: mixed, ..traced[0] }, traced[1]];
-    assert_eq!(solve_groups(&responses, &goals, &GroupParams::default()).unwrap_err().kind, ErrorKind::InvalidArgument);
+    assert_eq!(powers(&responses, &goals, &GroupParams::default()).unwrap_err().kind, ErrorKind::InvalidArgument);
 }
 
 /// With steps the powers are levels, and the goal is missed by no more than the steps are wide; without enough of them the
@@ -264,7 +264,7 @@ fn powers_in_steps() {
     let responses = respond(&world, &lamps, &goals);
     let solve = |levels: &[f64]| {
         let params = GroupParams { levels: levels.to_vec(), tolerance: 0.02, ..GroupParams::default() };
-        solve_groups(&responses, &goals, &params).unwrap()
+        powers(&responses, &goals, &params).unwrap()
     };
     let free = solve(&[]);
     let most = free.scale.iter().map(|x| x.x).fold(0.0, f64::max);
@@ -280,7 +280,7 @@ fn powers_in_steps() {
     let coarse = solve(&[0.0, 40.0 * most]);
     assert!(coarse.unreachable.is_some(), "{coarse:?}");
     let params = GroupParams { levels: vec![-1.0], ..GroupParams::default() };
-    assert_eq!(solve_groups(&responses, &goals, &params).unwrap_err().kind, ErrorKind::InvalidArgument);
+    assert_eq!(powers(&responses, &goals, &params).unwrap_err().kind, ErrorKind::InvalidArgument);
 }
 
 /// Luminaires as their files describe them are lamps too: each means to a desk what the law of the cosine says, and all get
@@ -326,7 +326,7 @@ fn luminaires_are_lamps() {
         }
         assert_eq!(responses.background(g).mean, DVec3::ZERO);
     }
-    let solution = solve_groups(&responses, &aims, &GroupParams::default()).unwrap();
+    let solution = powers(&responses, &aims, &GroupParams::default()).unwrap();
     for (row, lux) in truth.iter().zip([500.0, 300.0]) {
         let light = std::f64::consts::PI * (row[0] * solution.scale[0].x + row[1] * solution.scale[1].x);
         assert!((light / lux - 1.0).abs() < 0.03, "{light} lx of {lux}: {solution:?}");
@@ -342,11 +342,11 @@ fn free_colours_meet_a_coloured_goal() {
     let goals = [goal(Place::Surface(FLOOR), target)];
     let responses = respond(&world, &lamps, &goals);
     let params = GroupParams { colour: Colour::Free, ..GroupParams::default() };
-    let solution = solve_groups(&responses, &goals, &params).unwrap();
+    let solution = powers(&responses, &goals, &params).unwrap();
     let achieved = solution.outcomes[0].achieved;
     assert!(((achieved / target.as_dvec3()) - 1.0).abs().max_element() < 1e-6, "{achieved}");
     // White lamps of one power cannot be coloured.
-    let kept = solve_groups(&responses, &goals, &GroupParams::default()).unwrap();
+    let kept = powers(&responses, &goals, &GroupParams::default()).unwrap();
     assert!(kept.unreachable.unwrap().contains("colour"));
 }
 

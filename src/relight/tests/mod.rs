@@ -51,6 +51,10 @@ fn solve(scene: &Scene, target: Vec3, params: &Params) -> Result<Solution> {
     pool.run(|| run(&input, params, monitor.job()))
 }
 
+fn powers(responses: &Responses, goals: &[Goal], params: &GroupParams) -> Result<GroupSolution> {
+    Pool::new(2).unwrap().run(|| solve_groups(responses, goals, params, Monitor::default().job()))
+}
+
 /// Between two wide parallel plates of albedo 0 and the walls black, a floor under a small ceiling: with black
 /// surroundings the floor gathers `E = π F e`, F the form factor of parallel rectangles.
 #[test]
