@@ -2295,6 +2295,9 @@ typedef struct luxfer_relight_params {
     uint64_t seed;
 } luxfer_relight_params;
 
+/** On which side of its value light should be: a LUXFER_SENSE_ value. */
+typedef int32_t luxfer_sense;
+
 /** How far the answer goes to meet the target in one colour channel: a LUXFER_REACH_ value. */
 typedef int32_t luxfer_reach;
 
@@ -2341,6 +2344,15 @@ typedef struct luxfer_relight_report {
  */
 #define LUXFER_FIT_LEAST_SQUARES 1
 
+/** At it. */
+#define LUXFER_SENSE_EXACTLY 0
+
+/** At it or above: what a standard asks of a desk, or what a clipped channel of a photo says. */
+#define LUXFER_SENSE_AT_LEAST 1
+
+/** At it or below: a limit against glare. */
+#define LUXFER_SENSE_AT_MOST 2
+
 /** The target is met. */
 #define LUXFER_REACH_MET 0
 
@@ -2380,6 +2392,16 @@ luxfer_status luxfer_relight_set_target(luxfer_relight *relight,
                                         float red,
                                         float green,
                                         float blue);
+
+/**
+ * Makes the target a limit, in each channel for itself: LUXFER_SENSE_ values. What a photo clips is "at least". A limited
+ * channel keeps the mean scale of those that are to be at their target, as far as that is on its side, and goes to its
+ * limit if not. Any thread. LUXFER_INVALID_ARGUMENT if a value is none of them.
+ */
+luxfer_status luxfer_relight_set_sense(luxfer_relight *relight,
+                                       luxfer_sense red,
+                                       luxfer_sense green,
+                                       luxfer_sense blue);
 
 /**
  * Starts a job that solves. params may be NULL for the defaults. The caller releases *job. Any thread.
@@ -2512,18 +2534,6 @@ luxfer_status luxfer_lamps_release(luxfer_lamps *lamps);
  * What lamps are for: surfaces and calculation grids that should have a given light, just that or as a limit, and the steps that
  * their drivers have.
  * ==================================================================================================================== */
-
-/** On which side of its value a goal's light should be: a LUXFER_SENSE_ value. */
-typedef int32_t luxfer_sense;
-
-/** At it. */
-#define LUXFER_SENSE_EXACTLY 0
-
-/** At it or above: what a standard asks of a desk, or what a clipped channel of a photo says. */
-#define LUXFER_SENSE_AT_LEAST 1
-
-/** At it or below: a limit against glare. */
-#define LUXFER_SENSE_AT_MOST 2
 
 /**
  * Adds a goal: the mean radiance a mesh should have, in cd/m² per channel, each finite and >= 0; quantity is a

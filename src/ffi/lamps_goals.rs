@@ -8,7 +8,7 @@ use super::guard::enter;
 use super::illuminance::luxfer_illuminance_grid;
 use super::lamps::{Inputs, Output, luxfer_lamps};
 use super::params;
-use super::relight::{luxfer_quantity, quantity};
+use super::relight::{luxfer_quantity, luxfer_sense, quantity, sense};
 use super::scene::{colour, missing};
 use super::stage::{Stage, need};
 use super::status::luxfer_status;
@@ -16,15 +16,6 @@ use crate::error::{Error, Result};
 use crate::relight::{Aspect, Goal, MAX_LEVELS, Place, Quantity, Sense};
 use crate::scene::Scene;
 use glam::Vec3;
-
-/// On which side of its value a goal's light should be: a LUXFER_SENSE_ value.
-pub type luxfer_sense = i32;
-/// At it.
-pub const LUXFER_SENSE_EXACTLY: luxfer_sense = 0;
-/// At it or above: what a standard asks of a desk, or what a clipped channel of a photo says.
-pub const LUXFER_SENSE_AT_LEAST: luxfer_sense = 1;
-/// At it or below: a limit against glare.
-pub const LUXFER_SENSE_AT_MOST: luxfer_sense = 2;
 
 /// A goal as the host has set it.
 #[derive(Clone)]
@@ -122,15 +113,6 @@ pub unsafe extern "C" fn luxfer_lamps_set_sense(
             Ok(())
         })
     })
-}
-
-fn sense(value: luxfer_sense) -> Result<Sense> {
-    match value {
-        LUXFER_SENSE_EXACTLY => Ok(Sense::Exactly),
-        LUXFER_SENSE_AT_LEAST => Ok(Sense::AtLeast),
-        LUXFER_SENSE_AT_MOST => Ok(Sense::AtMost),
-        other => Err(Error::argument(format!("sense is {other}; it must be a LUXFER_SENSE_ value"))),
-    }
 }
 
 /// Sets the multipliers that the lamps' drivers can be dimmed to, each finite and >= 0, in any order; count is at most 4096, 0

@@ -13,7 +13,7 @@ use super::scene::{SceneObject, colour, luxfer_scene, missing};
 use super::stage::{Stage, need};
 use super::status::luxfer_status;
 use crate::error::{Error, Result};
-use crate::relight::{self, Fit, Quantity, Reach, Solution};
+use crate::relight::{self, Fit, Quantity, Reach, Sense, Solution};
 use crate::scene::Scene;
 use glam::Vec3;
 use std::sync::Arc;
@@ -38,6 +38,15 @@ pub const LUXFER_FIT_MEAN: luxfer_fit = 0;
 /// dimmer than that of the mean, by 1 / (1 + CV²) without other light, where CV is the spread of the response over the target
 /// relative to its mean.
 pub const LUXFER_FIT_LEAST_SQUARES: luxfer_fit = 1;
+
+/// On which side of its value light should be: a LUXFER_SENSE_ value.
+pub type luxfer_sense = i32;
+/// At it.
+pub const LUXFER_SENSE_EXACTLY: luxfer_sense = 0;
+/// At it or above: what a standard asks of a desk, or what a clipped channel of a photo says.
+pub const LUXFER_SENSE_AT_LEAST: luxfer_sense = 1;
+/// At it or below: a limit against glare.
+pub const LUXFER_SENSE_AT_MOST: luxfer_sense = 2;
 
 /// How far the answer goes to meet the target in one colour channel: a LUXFER_REACH_ value.
 pub type luxfer_reach = i32;
@@ -162,6 +171,15 @@ pub(super) fn quantity(value: luxfer_quantity) -> Result<Quantity> {
     }
 }
 
+pub(super) fn sense(value: luxfer_sense) -> Result<Sense> {
+    match value {
+        LUXFER_SENSE_EXACTLY => Ok(Sense::Exactly),
+        LUXFER_SENSE_AT_LEAST => Ok(Sense::AtLeast),
+        LUXFER_SENSE_AT_MOST => Ok(Sense::AtMost),
+        other => Err(Error::argument(format!("sense is {other}; it must be a LUXFER_SENSE_ value"))),
+    }
+}
+
 pub(super) fn reach_value(reach: Reach) -> luxfer_reach {
     match reach {
         Reach::Met => LUXFER_REACH_MET,
@@ -191,6 +209,7 @@ impl luxfer_relight_report {
 pub(super) struct Inputs {
     emitter: Option<Emitter>,
     target: Option<Vec3>,
+    sense: [Sense; 3],
 }
 
 /// A scene, its material that emits, and its mesh that is the target, as a host has named them.
@@ -262,6 +281,25 @@ pub unsafe extern "C" fn luxfer_relight_set_target(
     })
 }
 
+/// Makes the target a limit, in each channel for itself: LUXFER_SENSE_ values. What a photo clips is "at least". A limited
+/// channel keeps the mean scale of those that are to be at their target, as far as that is on its side, and goes to its
+/// limit if not. Any thread. LUXFER_INVALID_ARGUMENT if a value is none of them.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_relight_set_sense(
+    relight: *mut luxfer_relight,
+    red: luxfer_sense,
+    green: luxfer_sense,
+    blue: luxfer_sense,
+) -> luxfer_status {
+    enter(relight, |stage| {
+        let senses = [sense(red)?, sense(green)?, sense(blue)?];
+        stage.change(|inputs| {
+            inputs.sense = senses;
+            Ok(())
+        })
+    })
+}
+
 impl Emitter {
     pub(super) fn new(context: &Arc<Context>, scene: *mut luxfer_scene, material: u32, mesh: u32) -> Result<Self> {
         let scene = handle::borrow_in(context, scene, "scene")?;
@@ -292,8 +330,8 @@ pub unsafe extern "C" fn luxfer_relight_start(
     job: *mut *mut luxfer_job,
 ) -> luxfer_status {
     enter(relight, |stage| {
-        let params = params::read(params)?.params()?;
         let inputs = stage.inputs();
+        let params = relight::Params { sense: inputs.sense, ..params::read(params)?.params()? };
         let emitter = need(&inputs.emitter, "luxfer_relight_set_scene")?.clone();
         let target = *need(&inputs.target, "luxfer_relight_set_target")?;
         let scene = emitter.scene.snapshot();

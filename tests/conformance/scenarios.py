@@ -218,6 +218,7 @@ def light() -> Scenario:
     s.references("relight", relight)
     s.call("relight_set_scene", relight, scene, 1, 0)
     s.call("relight_set_target", relight, 1.0, 1.0, 1.0)
+    s.call("relight_set_sense", relight, 1, 0, 2)
     s.run("relight_start", relight, struct("relight_params", paths=2048))
     s.call("relight_get_report", relight, struct("relight_report", "size"))
     return s

@@ -157,6 +157,11 @@ class Rendering(Case):
         report = relight.run(paths=1 << 16).report
         off = np.array(report.scale) * report.response - (12, 10, 8)
         self.assertTrue((np.abs(off) <= np.multiply(report.half_width, report.response)).all(), off)
+        # A channel that may be brighter keeps what the others ask for.
+        relight.set_target((12, 12, 1e-3))
+        relight.set_sense(("exactly", "exactly", "at-least"))
+        scale = relight.run(paths=1 << 16).report.scale
+        self.assertAlmostEqual(scale[2], (scale[0] + scale[1]) / 2, delta=1e-9 * scale[2])
 
     def test_two_lamps_light_two_desks(self):
         scene = luxfer.Scene.demo(context(), "target-room")

@@ -110,6 +110,9 @@ LUXFER_QUANTITY_OUTGOING = 0
 LUXFER_QUANTITY_INCIDENT = 1
 LUXFER_FIT_MEAN = 0
 LUXFER_FIT_LEAST_SQUARES = 1
+LUXFER_SENSE_EXACTLY = 0
+LUXFER_SENSE_AT_LEAST = 1
+LUXFER_SENSE_AT_MOST = 2
 LUXFER_REACH_MET = 0
 LUXFER_REACH_TOO_BRIGHT = 1
 LUXFER_REACH_DARK = 2
@@ -120,9 +123,6 @@ LUXFER_GROUP_FIRST = 2
 LUXFER_GROUP_SECOND = 3
 LUXFER_GROUP_THIRD = 4
 LUXFER_GROUP_TYPE = 5
-LUXFER_SENSE_EXACTLY = 0
-LUXFER_SENSE_AT_LEAST = 1
-LUXFER_SENSE_AT_MOST = 2
 LUXFER_AIM_MOST = 0
 LUXFER_AIM_LEAST = 1
 LUXFER_AIM_RADIANCE = 2
@@ -1330,6 +1330,7 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_relight_create": (c_int32, [("context", POINTER(luxfer_context)), ("relight", POINTER(POINTER(luxfer_relight)))]),
     "luxfer_relight_set_scene": (c_int32, [("relight", POINTER(luxfer_relight)), ("scene", POINTER(luxfer_scene)), ("material", c_uint32), ("mesh", c_uint32)]),
     "luxfer_relight_set_target": (c_int32, [("relight", POINTER(luxfer_relight)), ("red", c_float), ("green", c_float), ("blue", c_float)]),
+    "luxfer_relight_set_sense": (c_int32, [("relight", POINTER(luxfer_relight)), ("red", c_int32), ("green", c_int32), ("blue", c_int32)]),
     "luxfer_relight_start": (c_int32, [("relight", POINTER(luxfer_relight)), ("params", POINTER(luxfer_relight_params)), ("job", POINTER(POINTER(luxfer_job)))]),
     "luxfer_relight_get_report": (c_int32, [("relight", POINTER(luxfer_relight)), ("report", POINTER(luxfer_relight_report))]),
     "luxfer_relight_retain": (c_int32, [("relight", POINTER(luxfer_relight))]),

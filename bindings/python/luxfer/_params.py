@@ -6,7 +6,7 @@ from __future__ import annotations
 import ctypes
 import difflib
 import operator
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from enum import IntEnum, IntFlag
 from typing import Any, TypeVar
 
@@ -45,6 +45,12 @@ def member(kind: type[E], value: E | str | int) -> E:
     except ValueError:
         listed = ", ".join(f"{name.lower()} = {m.value}" for name, m in kind.__members__.items())
         raise ValueError(f"{value} is no {kind.__name__}: there are {listed}") from None
+
+
+def per_channel(kind: type[E], values: E | str | int | Sequence[E | str | int]) -> tuple[E, E, E]:
+    """A member for red, green and blue: one for all, or one for each."""
+    red, green, blue = (values,) * 3 if isinstance(values, (str, int)) else values
+    return member(kind, red), member(kind, green), member(kind, blue)
 
 
 def is_array(kind: type) -> bool:

@@ -51,9 +51,7 @@ class Lamps(StageBase):
 
     def set_sense(self, goal: int, sense: Sense | str | Sequence[Sense | str]) -> None:
         """Makes a goal a limit, "at-least" or "at-most", in all channels or in each for itself."""
-        senses = (sense,) * 3 if isinstance(sense, (Sense, str)) else sense
-        red, green, blue = (_params.member(Sense, s) for s in senses)
-        self._call("set_sense", goal, red, green, blue)
+        self._call("set_sense", goal, *_params.per_channel(Sense, sense))
 
     def set_levels(self, levels: Sequence[float]) -> None:
         """The multipliers that the lamps' drivers can be dimmed to; none for drivers without steps."""

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, cast
 
 from . import _abi, _params
 from .job import Job, Progress, StageBase
-from .types import RelightReport
+from .types import RelightReport, Sense
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -39,6 +39,10 @@ class Relight(StageBase):
         """The mean radiance the mesh should have, in cd/m² per channel."""
         red, green, blue = (float(v) for v in radiance)
         self._call("set_target", red, green, blue)
+
+    def set_sense(self, sense: Sense | str | Sequence[Sense | str]) -> None:
+        """Makes the target a limit, "at-least" or "at-most", in all channels or in each for itself."""
+        self._call("set_sense", *_params.per_channel(Sense, sense))
 
     def start(self, **params: Unpack[RelightParams]) -> Job[Relight]:
         """Starts the work."""

@@ -290,6 +290,17 @@ class Fit(IntEnum):
     of the response over the target relative to its mean."""
 
 
+class Sense(IntEnum):
+    """On which side of its value light should be."""
+
+    EXACTLY = 0
+    """At it."""
+    AT_LEAST = 1
+    """At it or above: what a standard asks of a desk, or what a clipped channel of a photo says."""
+    AT_MOST = 2
+    """At it or below: a limit against glare."""
+
+
 class Reach(IntEnum):
     """How far the answer goes to meet the target in one colour channel."""
 
@@ -319,17 +330,6 @@ class Group(IntEnum):
     TYPE = 5
     """Those of a type: of about the same area; of lights without a surface points, spots, and luminaires by
     their distribution."""
-
-
-class Sense(IntEnum):
-    """On which side of its value a goal's light should be."""
-
-    EXACTLY = 0
-    """At it."""
-    AT_LEAST = 1
-    """At it or above: what a standard asks of a desk, or what a clipped channel of a photo says."""
-    AT_MOST = 2
-    """At it or below: a limit against glare."""
 
 
 class Aim(IntEnum):
