@@ -2,7 +2,7 @@
 
 use super::depth::Surface;
 use super::{CHANNELS, Frustum};
-use crate::image::{Image, colour};
+use crate::image::{Image, colour, interleave};
 use crate::simd::widest;
 use glam::{Mat3, Vec2, Vec3};
 
@@ -62,14 +62,6 @@ widest! {
             depth[k] = screen_depth;
             (px[k], py[k], pz[k]) = (position.x, position.y, position.z);
             (nx[k], ny[k], nz[k]) = (normal.x, normal.y, normal.z);
-        }
-    }
-}
-
-fn interleave(planes: &[Plane; CHANNELS], out: &mut [f32]) {
-    for (k, out) in out.chunks_exact_mut(CHANNELS).enumerate().take(TILE) {
-        for (out, plane) in out.iter_mut().zip(planes) {
-            *out = plane[k];
         }
     }
 }

@@ -9,7 +9,9 @@ pub mod colour;
 pub mod io;
 pub(crate) mod pages;
 pub mod patches;
+mod planes;
 pub mod pyramid;
 pub mod view;
 
 pub use buffer::{Image, MAX_SIDE, try_collect, try_vec, try_with_capacity};
+pub use planes::{deinterleave, interleave};

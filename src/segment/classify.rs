@@ -1,10 +1,12 @@
 //! The classifier over the whole image: tiles of a row, one plane per feature, one quadratic form for each answer.
 
-use super::Model;
-use super::select::{Chosen, Ellipsoid};
+use super::ellipsoid::Ellipsoid;
+use super::exponential::exp_f32;
+use super::select::Chosen;
+use super::{MOST_CHANNELS, Model};
 use crate::error::Result;
 use crate::exec;
-use crate::image::Image;
+use crate::image::{Image, deinterleave};
 use crate::job::Job;
 use crate::simd::widest;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -40,15 +42,16 @@ impl Blank {
 }
 
 /// Everything that answers for a tile.
-struct Judge {
+struct Judge<'a> {
+    /// The samples' columns.
+    channels: &'a [usize],
     mean: Vec<f32>,
     scale: Vec<f32>,
     logit: Form,
-    /// The planes that the logit is of.
-    columns: Vec<usize>,
-    seen: Vec<Form>,
-    /// All planes.
-    all: Vec<usize>,
+    /// The channels that the logit is of.
+    deciding: Vec<usize>,
+    /// Of all the samples' columns.
+    seen: [Form; 2],
     /// Factors on logits where features are like those painted, and where not.
     calibration: [f32; 2],
 }
@@ -85,10 +88,9 @@ impl Form {
     fn evaluate(&self, planes: &[Plane], columns: &[usize]) -> Plane {
         let mut sum = [self.c; TILE];
         let mut rest = self.a.as_slice();
-        for (i, &column) in columns.iter().enumerate() {
-            let x = &planes[column];
+        for (i, (&column, &b)) in columns.iter().zip(&self.b).enumerate() {
             // x_i (b_i + Σ_{j >= i} a_ij x_j)
-            let mut factor = [self.b[i]; TILE];
+            let mut factor = [b; TILE];
             if !rest.is_empty() {
                 let (row, after) = rest.split_at(columns.len() - i);
                 rest = after;
@@ -99,6 +101,7 @@ impl Form {
                     }
                 }
             }
+            let x = &planes[column];
             for k in 0..TILE {
                 sum[k] += factor[k] * x[k];
             }
@@ -107,33 +110,55 @@ impl Form {
     }
 }
 
+/// What is said of a tile.
+struct Answer {
+    probability: [f32; TILE],
+    /// How far beyond what was seen.
+    beyond: [f32; TILE],
+}
+
 widest! {
-    /// Probability and distance from what was seen of a tile whose planes hold raw features.
-    fn judge(judge: &Judge, planes: &mut [Plane], probability: &mut Plane, beyond: &mut Plane) {
-        for (plane, (mean, scale)) in planes.iter_mut().zip(judge.mean.iter().zip(&judge.scale)) {
-            for v in plane {
+    /// Judges at most a tile of pixels. `likely` is the region that held the tile before, and
+    /// tried first.
+    fn judge(judge: &Judge, pixels: &[f32], planes: &mut [Plane], likely: &mut usize) -> Answer {
+        deinterleave(pixels, planes);
+        for (&channel, (mean, scale)) in judge.channels.iter().zip(judge.mean.iter().zip(&judge.scale)) {
+            for v in &mut planes[channel] {
                 *v = (*v - mean) * scale;
             }
         }
+
+        // Nothing is nearer than within: one region that holds all is enough.
         let mut nearest = [f32::INFINITY; TILE];
-        for form in &judge.seen {
-            let distance = form.evaluate(planes, &judge.all);
+        let mut all_within = false;
+        for turn in 0..judge.seen.len() {
+            let region = (*likely + turn) % judge.seen.len();
+            let distance = judge.seen[region].evaluate(planes, judge.channels);
             for k in 0..TILE {
                 nearest[k] = if distance[k] < nearest[k] { distance[k] } else { nearest[k] };
             }
-            // Nothing is nearer than within.
-            if nearest.iter().fold(true, |within, &v| within & (v <= 1.0)) {
+            all_within = nearest.iter().fold(true, |within, &v| within & (v <= 1.0));
+            if all_within {
+                *likely = region;
                 break;
             }
         }
-        let logit = judge.logit.evaluate(planes, &judge.columns);
-        let [familiar, unfamiliar] = judge.calibration;
-        for k in 0..TILE {
-            let distance = if nearest[k] > 1.0 { nearest[k].sqrt() } else { 1.0 };
-            beyond[k] = 1.0 - exp(1.0 - distance);
-            let calibration = familiar + (unfamiliar - familiar) * beyond[k];
-            probability[k] = 1.0 / (1.0 + exp(-calibration * logit[k]));
+        let mut beyond = [0.0; TILE];
+        if !all_within {
+            for k in 0..TILE {
+                let distance = if nearest[k] > 1.0 { nearest[k].sqrt() } else { 1.0 };
+                beyond[k] = 1.0 - exp_f32(1.0 - distance);
+            }
         }
+
+        let logit = judge.logit.evaluate(planes, &judge.deciding);
+        let [familiar, unfamiliar] = judge.calibration;
+        let mut probability = [0.0; TILE];
+        for k in 0..TILE {
+            let calibration = familiar + (unfamiliar - familiar) * beyond[k];
+            probability[k] = 1.0 / (1.0 + exp_f32(-calibration * logit[k]));
+        }
+        Answer { probability, beyond }
     }
 }
 
@@ -146,15 +171,15 @@ pub fn run(
     blank: Blank,
     job: Job,
 ) -> Result<Classified> {
-    let (width, height, d) = (features.width, features.height, channels.len());
+    let (width, height) = (features.width, features.height);
     let single = |values: &[f64]| values.iter().map(|&v| v as f32).collect();
     let judges = Judge {
+        channels,
         mean: single(&chosen.standard.mean),
         scale: single(&chosen.standard.scale),
         logit: Form::of_model(chosen),
-        columns: chosen.columns.clone(),
-        all: (0..d).collect(),
-        seen: chosen.seen.iter().map(Form::of_ellipsoid).collect(),
+        deciding: chosen.columns.iter().map(|&c| channels[c]).collect(),
+        seen: chosen.seen.each_ref().map(Form::of_ellipsoid),
         calibration: [chosen.familiar.scale as f32, chosen.unfamiliar.scale as f32],
     };
     let Blank { mut mask, mut confidence, mut unseen } = blank;
@@ -162,21 +187,17 @@ pub fn run(
     let images = [&mut mask, &mut confidence, &mut unseen].map(|image| image.data.as_mut_slice());
     exec::for_rows_of_three(images, width, job.part(0.0, 0.9), |y, [mask, confidence, unseen]| {
         let source = features.row(y);
-        let bad_here = count_bad(source);
-        if bad_here > 0 {
-            bad.fetch_add(bad_here, Ordering::Relaxed);
-        }
-        let mut planes = vec![[0.0f32; TILE]; d];
-        let (mut probability, mut beyond) = ([0.0; TILE], [0.0; TILE]);
+        let mut planes = [[0.0; TILE]; MOST_CHANNELS];
+        let planes = &mut planes[..features.channels];
+        let mut likely = 0;
         for x in (0..width).step_by(TILE) {
             let n = TILE.min(width - x);
-            let pixels = source[x * features.channels..(x + n) * features.channels].chunks_exact(features.channels);
-            for (k, pixel) in pixels.enumerate() {
-                for (plane, &c) in planes.iter_mut().zip(channels) {
-                    plane[k] = pixel[c];
-                }
+            let pixels = &source[x * features.channels..(x + n) * features.channels];
+            let bad_here = count_bad(pixels);
+            if bad_here > 0 {
+                bad.fetch_add(bad_here, Ordering::Relaxed);
             }
-            judge(&judges, &mut planes, &mut probability, &mut beyond);
+            let Answer { mut probability, mut beyond } = judge(&judges, pixels, planes, &mut likely);
             if let Some(within) = within {
                 for (k, &w) in within.row(y)[x..x + n].iter().enumerate() {
                     if w.is_nan() || w <= 0.5 {
@@ -199,35 +220,5 @@ widest! {
     /// The number of values that are NaN or infinite.
     pub fn count_bad(values: &[f32]) -> usize {
         values.iter().map(|v| u32::from(!v.is_finite())).sum::<u32>() as usize
-    }
-}
-
-/// `eˣ` for x in `[-87, 88]`, beyond that its value at the end: within 3e-7 of it, and the same on all machines.
-#[inline(always)]
-fn exp(x: f32) -> f32 {
-    const LN_2: [f32; 2] = [0.693_359_4, -2.121_944_4e-4];
-    // Adding 1.5 × 2²³ rounds to a whole number, which then stands in the lowest bits.
-    const ROUND: f32 = 12_582_912.0;
-    let x = x.clamp(-87.0, 88.0);
-    let shifted = x * std::f32::consts::LOG2_E + ROUND;
-    let n = shifted - ROUND;
-    let r = x - n * LN_2[0] - n * LN_2[1];
-    let p = [1.0 / 120.0, 1.0 / 24.0, 1.0 / 6.0, 0.5, 1.0, 1.0].into_iter().fold(1.0 / 720.0, |p, c| p * r + c);
-    p * f32::from_bits(shifted.to_bits().wrapping_add(127) << 23)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_exponential_is_the_exponential() {
-        for i in -8700..=8800 {
-            let x = i as f32 / 100.0;
-            let relative = f64::from(exp(x)) / f64::from(x).exp() - 1.0;
-            assert!(relative.abs() < 3e-7, "{x}: {relative}");
-        }
-        assert_eq!(exp(0.0), 1.0);
-        assert!(exp(-1e30) < 1e-37 && exp(1e30) > 1e38 && exp(f32::NEG_INFINITY) >= 0.0);
     }
 }

@@ -1,107 +1,133 @@
 //! Logistic regression with a ridge, by Newton's method (iteratively reweighted least squares), in `f64`.
 
+use super::exponential::{exp_f64, ln};
+use super::table::{BLOCK, Lanes, Table, combine, dot_lanes};
 use crate::error::Result;
 use crate::job::Job;
 use crate::simd::widest;
 
-/// Weighted examples: rows of `dimension` terms of which the last is the constant.
+/// Weighted examples, a row of terms each, of which the last is the constant.
 #[derive(Clone, Copy)]
 pub struct Problem<'a> {
-    pub rows: &'a [f64],
-    pub dimension: usize,
+    pub terms: &'a Table,
     pub positive: &'a [bool],
     /// 0 leaves an example out.
     pub weights: &'a [f64],
 }
 
+/// What is minimised, at some weights.
+pub struct Objective {
+    pub value: f64,
+    pub gradient: Vec<f64>,
+    /// Lower triangle, row by row.
+    pub hessian: Vec<f64>,
+}
+
 /// The weights that minimise the mean log loss plus `ridge / 2 |w|²`, the constant term being free. The ridge makes
-/// the solution finite and unique even for separable, duplicated or constant terms. Starts at `start`, and ends when a step
-/// gains less than `precision`.
+/// the solution finite and unique even for separable, duplicated or constant terms. Starts at `start`, and ends with the step
+/// that has less than `precision` to gain.
 pub fn fit(problem: &Problem, ridge: f64, start: &[f64], precision: f64, job: Job) -> Result<Vec<f64>> {
-    let d = problem.dimension;
-    let total: f64 = problem.weights.iter().sum();
     let mut w = start.to_vec();
-    let mut value = objective(problem, ridge, total, &w);
+    let mut here = Objective::at(problem, ridge, &w);
     for _ in 0..30 {
         job.check()?;
-
-        // Gradient and Hessian (lower triangle).
-        let mut gradient = vec![0.0; d];
-        let mut hessian = vec![0.0; d * d];
-        derivatives(problem, total, &w, &mut gradient, &mut hessian);
-        for i in 0..d {
-            // The constant has a trace of a ridge too: one class could be all the weight there is.
-            let r = if i + 1 == d { 1e-6 * ridge } else { ridge };
-            gradient[i] += r * w[i];
-            hessian[i * d + i] += r;
+        let Some(step) = cholesky_solve(&mut here.hessian, &here.gradient) else { break };
+        // Half the slope along the step is what it gains if the objective is a parabola, which near the end it is.
+        let expected = 0.5 * dot(&here.gradient, &step);
+        let moved = |length: f64| -> Vec<f64> { w.iter().zip(&step).map(|(w, s)| w - length * s).collect() };
+        if expected < precision {
+            w = moved(1.0);
+            break;
         }
 
         // A Newton step, halved until the objective falls.
-        let Some(step) = cholesky_solve(&mut hessian, &gradient) else { break };
         let mut length = 1.0;
-        let (next, next_value) = loop {
-            let next: Vec<f64> = w.iter().zip(&step).map(|(w, s)| w - length * s).collect();
-            let v = objective(problem, ridge, total, &next);
-            if v <= value || length < 1e-6 {
-                break (next, v);
+        let (next, there) = loop {
+            let next = moved(length);
+            let there = Objective::at(problem, ridge, &next);
+            if there.value <= here.value || length < 1e-6 {
+                break (next, there);
             }
             length *= 0.5;
         };
-        let gain = value - next_value;
-        if gain <= 0.0 {
+        if !(there.value < here.value) {
             break;
         }
-        (w, value) = (next, next_value);
-        if gain < precision {
-            break;
-        }
+        (w, here) = (next, there);
     }
     Ok(w)
 }
 
+impl Objective {
+    pub fn at(problem: &Problem, ridge: f64, w: &[f64]) -> Self {
+        let d = w.len();
+        let mut at = Self { value: 0.0, gradient: vec![0.0; d], hessian: vec![0.0; d * d] };
+        add_log_loss(problem, w, &mut at);
+        for i in 0..d {
+            // The constant has a trace of a ridge too: one class could be all the weight there is.
+            let r = if i + 1 == d { 1e-6 * ridge } else { ridge };
+            at.value += 0.5 * r * w[i] * w[i];
+            at.gradient[i] += r * w[i];
+            at.hessian[i * d + i] += r;
+        }
+        at
+    }
+}
+
 widest! {
-    /// Adds the gradient and the lower triangle of the Hessian of the mean log loss.
-    fn derivatives(problem: &Problem, total: f64, w: &[f64], gradient: &mut [f64], hessian: &mut [f64]) {
-        let d = problem.dimension;
-        for ((x, &positive), &weight) in problem.rows.chunks_exact(d).zip(problem.positive).zip(problem.weights) {
-            if weight == 0.0 {
-                continue;
+    /// Adds the mean log loss with its derivatives.
+    fn add_log_loss(problem: &Problem, w: &[f64], to: &mut Objective) {
+        let d = w.len();
+        let scale = 1.0 / problem.weights.iter().sum::<f64>();
+        for (rows, block) in problem.terms.blocks() {
+            let (mut weight, mut target) = ([0.0; BLOCK], [0.0; BLOCK]);
+            for (k, row) in rows.enumerate() {
+                weight[k] = scale * problem.weights[row];
+                target[k] = f64::from(problem.positive[row]);
             }
-            let p = sigmoid(dot(w, x));
-            let slope = weight / total * (p - f64::from(positive));
-            let curvature = weight / total * (p * (1.0 - p)).max(1e-12);
-            for i in 0..d {
-                gradient[i] += slope * x[i];
-                let c = curvature * x[i];
-                for (h, v) in hessian[i * d..=i * d + i].iter_mut().zip(x) {
-                    *h += c * v;
+            let z = combine(w, block);
+            let (mut loss, mut slope, mut curvature) = ([0.0; BLOCK], [0.0; BLOCK], [0.0; BLOCK]);
+            for k in 0..BLOCK {
+                let e = exp_f64(-z[k].abs());
+                let larger = 1.0 / (1.0 + e);
+                let p = if z[k] > 0.0 { larger } else { e * larger };
+                loss[k] = ln(1.0 + e) + z[k].max(0.0) - target[k] * z[k];
+                slope[k] = weight[k] * (p - target[k]);
+                curvature[k] = weight[k] * (e * larger * larger).max(1e-12);
+            }
+            to.value += dot_lanes(&weight, &loss);
+            for (i, x) in block.iter().enumerate() {
+                to.gradient[i] += dot_lanes(&slope, x);
+                let mut curved = [0.0; BLOCK];
+                for k in 0..BLOCK {
+                    curved[k] = curvature[k] * x[k];
+                }
+                for (h, y) in to.hessian[i * d..=i * d + i].iter_mut().zip(block) {
+                    *h += dot_lanes(&curved, y);
                 }
             }
         }
     }
 }
 
-fn objective(problem: &Problem, ridge: f64, total: f64, w: &[f64]) -> f64 {
-    let d = problem.dimension;
-    let examples = problem.rows.chunks_exact(d).zip(problem.positive).zip(problem.weights);
-    let loss: f64 =
-        examples.filter(|(_, weight)| **weight > 0.0).map(|((x, &p), weight)| weight * log_loss(dot(w, x), p)).sum();
-    let penalty: f64 = w[..d - 1].iter().map(|v| v * v).sum::<f64>() + 1e-6 * w[d - 1] * w[d - 1];
-    loss / total + 0.5 * ridge * penalty
+/// The logits of the rows that are `wanted`, with their numbers.
+pub fn logits(terms: &Table, w: &[f64], wanted: impl Fn(usize) -> bool) -> Vec<(usize, f64)> {
+    let mut out = Vec::new();
+    for (rows, block) in terms.blocks().filter(|(rows, _)| rows.clone().any(&wanted)) {
+        let z = logits_of(w, block);
+        out.extend(rows.zip(z).filter(|(row, _)| wanted(*row)));
+    }
+    out
 }
 
-pub fn dot(a: &[f64], b: &[f64]) -> f64 {
+widest! {
+    fn logits_of(w: &[f64], block: &[Lanes]) -> Lanes {
+        combine(w, block)
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-pub fn sigmoid(z: f64) -> f64 {
-    1.0 / (1.0 + (-z).exp())
-}
-
-/// `-ln` of the probability that a logit gives to the truth.
-pub fn log_loss(logit: f64, positive: bool) -> f64 {
-    let z = if positive { -logit } else { logit };
-    if z > 30.0 { z } else { z.exp().ln_1p() }
 }
 
 /// Solves `A x = b` for a symmetric positive definite `A` whose lower triangle is given; it is overwritten.
@@ -142,9 +168,35 @@ mod tests {
     #[test]
     fn the_constant_model_is_the_logit_of_the_share() {
         let positive: Vec<bool> = (0..100).map(|i| i % 4 == 0).collect();
-        let problem = Problem { rows: &[1.0; 100], dimension: 1, positive: &positive, weights: &[1.0; 100] };
+        let terms = Table::of(&[1.0; 100], 1).unwrap();
+        let problem = Problem { terms: &terms, positive: &positive, weights: &[1.0; 100] };
         let w = fit(&problem, 1e-6, &[0.0], 1e-9, Monitor::default().job()).unwrap();
         assert!((w[0] - (1.0f64 / 3.0).ln()).abs() < 1e-5, "{w:?}");
+    }
+
+    #[test]
+    fn the_derivatives_are_those_of_the_value() {
+        let mut rng = Rng::new(2, &[]);
+        let rows: Vec<f64> = (0..3 * 50).map(|i| if i % 3 == 2 { 1.0 } else { 3.0 * rng.normal() }).collect();
+        let positive: Vec<bool> = (0..50).map(|i| i % 3 == 0).collect();
+        let weights: Vec<f64> = (0..50).map(|i| f64::from(i % 5)).collect();
+        let terms = Table::of(&rows, 3).unwrap();
+        let problem = Problem { terms: &terms, positive: &positive, weights: &weights };
+        let w = [0.4, -1.1, 0.2];
+        let here = Objective::at(&problem, 0.1, &w);
+        let step = 1e-5;
+        for i in 0..3 {
+            let [below, above] = [-step, step].map(|s| {
+                let mut w = w;
+                w[i] += s;
+                Objective::at(&problem, 0.1, &w)
+            });
+            assert!((here.gradient[i] - (above.value - below.value) / (2.0 * step)).abs() < 1e-8);
+            for j in 0..=i {
+                let second = (above.gradient[j] - below.gradient[j]) / (2.0 * step);
+                assert!((here.hessian[i * 3 + j] - second).abs() < 1e-8);
+            }
+        }
     }
 
     #[test]
@@ -154,13 +206,16 @@ mod tests {
         let (mut rows, mut positive) = (Vec::new(), Vec::new());
         for _ in 0..20_000 {
             let x = [rng.normal(), rng.normal(), 1.0];
-            positive.push(rng.next_f64() < sigmoid(dot(&truth, &x)));
+            positive.push(rng.next_f64() < 1.0 / (1.0 + (-dot(&truth, &x)).exp()));
             rows.extend(x);
         }
-        let problem = Problem { rows: &rows, dimension: 3, positive: &positive, weights: &vec![1.0; 20_000] };
+        let terms = Table::of(&rows, 3).unwrap();
+        let problem = Problem { terms: &terms, positive: &positive, weights: &vec![1.0; 20_000] };
         let w = fit(&problem, 1e-9, &[0.0; 3], 1e-9, Monitor::default().job()).unwrap();
         // Standard errors are about 0.02 to 0.03: five of them.
         assert!(w.iter().zip(&truth).all(|(w, t)| (w - t).abs() < 0.13), "{w:?}");
+        assert_eq!(logits(&terms, &w, |row| row == 777)[0].0, 777);
+        assert!((logits(&terms, &w, |row| row == 777)[0].1 - dot(&w, &rows[3 * 777..3 * 778])).abs() < 1e-12);
     }
 
     #[test]
@@ -172,7 +227,8 @@ mod tests {
             })
             .collect();
         let positive: Vec<bool> = (0..40).map(|i| i >= 20).collect();
-        let problem = Problem { rows: &rows, dimension: 4, positive: &positive, weights: &[1.0; 40] };
+        let terms = Table::of(&rows, 4).unwrap();
+        let problem = Problem { terms: &terms, positive: &positive, weights: &[1.0; 40] };
         let w = fit(&problem, 1e-3, &[0.0; 4], 1e-9, Monitor::default().job()).unwrap();
         assert!(w.iter().all(|v| v.is_finite()));
         assert!((w[0] - w[1]).abs() < 1e-9 && w[0] > 0.0 && w[2] == 0.0 && w[3].abs() < 1e-6, "{w:?}");

@@ -21,11 +21,14 @@
 
 mod classify;
 mod distance;
+mod ellipsoid;
+mod exponential;
 mod logistic;
 mod samples;
 mod select;
 mod standardise;
 pub mod strokes;
+mod table;
 #[cfg(test)]
 mod tests;
 
@@ -84,6 +87,9 @@ impl Params {
         Self { channels: 0b111, ..Self::default() }
     }
 }
+
+/// Most channels that features may have.
+const MOST_CHANNELS: usize = 16;
 
 /// The two families of classifiers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -163,7 +169,7 @@ fn not_finite(bad: usize) -> Error {
 pub fn run(input: &Input, params: &Params, job: Job) -> Result<Segmentation> {
     let features = input.features;
     params.check()?;
-    check_range("the number of feature channels", features.channels, 1, 16)?;
+    check_range("the number of feature channels", features.channels, 1, MOST_CHANNELS)?;
     let subsets = subsets(features.channels, params.channels)?;
     if let Some(within) = input.within {
         features.check_same_size("features", within, "within")?;
@@ -172,11 +178,10 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Segmentation> {
 
     // Examples.
     let channels: Vec<usize> = (0..features.channels).filter(|c| subsets.iter().any(|s| s >> c & 1 == 1)).collect();
-    let blank = || classify::Blank::new(features.width, features.height);
-    let (samples, blank) = exec::both(|| samples::draw(input, &channels, params), blank);
+    let beside = || (samples::probe(input, &channels), classify::Blank::new(features.width, features.height));
+    let (samples, (probe, blank)) = exec::both(|| samples::draw(input, &channels, params), beside);
     let (samples, blank) = (samples?, blank?);
     job.check()?;
-    let probe = samples::probe(input, &channels);
     if !samples.values.iter().chain(&probe).all(|v| v.is_finite()) {
         return Err(not_finite(
             exec::map(features.height, job, |y| classify::count_bad(features.row(y)))?.iter().sum(),

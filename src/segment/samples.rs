@@ -1,6 +1,6 @@
 //! From strokes to training samples: at most so many per class, evenly over the strokes, drawn by hashing.
 
-use super::{Input, Params};
+use super::{Input, Params, Stroke};
 use crate::error::{Error, Result};
 use crate::image::try_vec;
 use crate::rng;
@@ -40,9 +40,10 @@ pub fn draw(input: &Input, channels: &[usize], params: &Params) -> Result<Sample
     let features = input.features;
     let pixels = features.width * features.height;
 
-    // The last stroke to cover each pixel.
-    let mut owner = try_vec(pixels, u32::MAX)?;
-    let mut was_contradicted = try_vec(pixels, false)?;
+    // The last stroke to cover each pixel, and whether one of the other class did before.
+    const NONE: u32 = u32::MAX >> 1;
+    const CONTRADICTED: u32 = !NONE;
+    let mut owner = try_vec(pixels, NONE)?;
     let (mut contradictory, mut off_image) = (0, 0);
     for (s, stroke) in input.strokes.iter().enumerate() {
         for &p in &stroke.pixels {
@@ -50,18 +51,26 @@ pub fn draw(input: &Input, channels: &[usize], params: &Params) -> Result<Sample
                 off_image += 1;
                 continue;
             };
-            let differs = *slot != u32::MAX && input.strokes[*slot as usize].positive != stroke.positive;
-            if differs && !was_contradicted[p as usize] {
-                was_contradicted[p as usize] = true;
+            let (last, mut flag) = (*slot & NONE, *slot & CONTRADICTED);
+            if last != NONE && flag == 0 && input.strokes[last as usize].positive != stroke.positive {
+                flag = CONTRADICTED;
                 contradictory += 1;
             }
-            *slot = s as u32;
+            *slot = s as u32 | flag;
         }
     }
-    let mut owned: Vec<Vec<u32>> = vec![Vec::new(); input.strokes.len()];
-    for (p, &s) in owner.iter().enumerate().filter(|(_, s)| **s != u32::MAX) {
-        owned[s as usize].push(p as u32);
-    }
+    // Each stroke's own, each pixel once, with the hash that it is drawn by.
+    let mut own = |(s, stroke): (usize, &Stroke)| {
+        let mut own = Vec::new();
+        for &p in &stroke.pixels {
+            if let Some(slot) = owner.get_mut(p as usize).filter(|slot| **slot & NONE == s as u32) {
+                *slot = NONE;
+                own.push((rng::hash(params.seed, &[u64::from(p)]), p));
+            }
+        }
+        own
+    };
+    let mut owned: Vec<Vec<(u64, u32)>> = input.strokes.iter().enumerate().map(&mut own).collect();
 
     let mut samples = Samples {
         values: Vec::new(),
@@ -74,9 +83,9 @@ pub fn draw(input: &Input, channels: &[usize], params: &Params) -> Result<Sample
         off_image,
     };
     for positive in [false, true] {
-        let mut strokes: Vec<Vec<u32>> = (input.strokes.iter().zip(&owned))
+        let mut strokes: Vec<&mut Vec<(u64, u32)>> = (input.strokes.iter().zip(&mut owned))
             .filter(|(s, pixels)| s.positive == positive && !pixels.is_empty())
-            .map(|(_, pixels)| pixels.clone())
+            .map(|(_, pixels)| pixels)
             .collect();
         if strokes.is_empty() {
             let (class, opposite) = if positive { ("positive", "negative") } else { ("negative", "positive") };
@@ -88,19 +97,18 @@ pub fn draw(input: &Input, channels: &[usize], params: &Params) -> Result<Sample
                 input.strokes.len()
             )));
         }
-        let sizes: Vec<usize> = strokes.iter().map(Vec::len).collect();
-        for (stroke, share) in strokes.iter_mut().zip(shares(&sizes, params.samples_per_class)) {
+        let sizes: Vec<usize> = strokes.iter().map(|pixels| pixels.len()).collect();
+        for (pixels, share) in strokes.iter_mut().zip(shares(&sizes, params.samples_per_class)) {
             // The pixels with the smallest hashes are a random sample without replacement, whatever the stroke's order.
-            let key = |p: &u32| (rng::hash(params.seed, &[u64::from(*p)]), *p);
-            if share < stroke.len() {
-                stroke.select_nth_unstable_by_key(share, key);
-                stroke.truncate(share);
+            if share < pixels.len() {
+                pixels.select_nth_unstable(share);
+                pixels.truncate(share);
             }
-            stroke.sort_unstable();
         }
         for pixels in strokes.iter().filter(|s| !s.is_empty()) {
+            let pixels: Vec<u32> = pixels.iter().map(|(_, p)| *p).collect();
             let stroke = samples.strokes[0] + samples.strokes[1];
-            for (p, part) in parts(pixels, features.width) {
+            for (p, part) in parts(&pixels, features.width) {
                 let pixel = &features.data[p as usize * features.channels..][..features.channels];
                 samples.values.extend(channels.iter().map(|&c| f64::from(pixel[c])));
                 samples.origins.push(Origin { positive, stroke, part });
@@ -148,7 +156,7 @@ fn parts(pixels: &[u32], width: usize) -> impl Iterator<Item = (u32, usize)> {
     };
     let is_wide = extent(|p| p.0) >= extent(|p| p.1);
     let mut sorted = pixels.to_vec();
-    sorted.sort_by_key(|&p| if is_wide { (position(p).0, p) } else { (position(p).1, p) });
+    sorted.sort_unstable_by_key(|&p| if is_wide { (position(p).0, p) } else { (position(p).1, p) });
     let count = sorted.len();
     sorted.into_iter().enumerate().map(move |(k, p)| (p, k * PARTS / count))
 }

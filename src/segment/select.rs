@@ -5,12 +5,13 @@
 //! every pixel is given the mix of both that its distance from the strokes asks for.
 
 use super::Model;
-use super::logistic::{self, Problem};
-use super::samples::{PARTS, Samples};
+use super::ellipsoid::{self, Ellipsoid, Spread};
+use super::logistic::{self, Objective, Problem};
+use super::samples::{Origin, PARTS, Samples};
 use super::standardise::{Standard, term_count, terms};
+use super::table::Table;
 use crate::error::{Error, Result};
 use crate::exec;
-use crate::image::try_with_capacity;
 use crate::job::Job;
 
 /// Most folds; with more strokes than that some are held out together.
@@ -19,7 +20,7 @@ const FOLDS: usize = 8;
 const CV_SAMPLES: usize = 250;
 /// Calibration never multiplies logits by more or less than this: a handful of strokes cannot tell.
 const CALIBRATION: [f64; 2] = [0.1, 2.0];
-/// Gain in mean log loss below which a fit ends: of those that are compared, and of the one that is used.
+/// Gain in mean log loss below which a step is the last of a fit: of those that are compared, and of the one that is used.
 const CV_PRECISION: f64 = 1e-5;
 const PRECISION: f64 = 1e-9;
 
@@ -36,15 +37,8 @@ pub struct Chosen {
     pub familiar: Trust,
     /// Where they are not.
     pub unfamiliar: Trust,
-    /// For each class the mean and the inverse covariance of its samples, in all standardised features, scaled so that
-    /// 99 % of its samples are within distance 1.
-    pub seen: Vec<Ellipsoid>,
-}
-
-pub struct Ellipsoid {
-    pub centre: Vec<f64>,
-    /// Row by row.
-    pub inverse: Vec<f64>,
+    /// The regions of all standardised features that the two classes cover.
+    pub seen: [Ellipsoid; 2],
 }
 
 /// What a kind of cross-validation says.
@@ -68,22 +62,22 @@ pub struct Question<'a> {
     pub ridge: f64,
 }
 
-/// A family of models on a subset of the features: its terms at all samples.
+/// A family of models on a subset of the features: its terms at all samples, and at those that comparisons use.
 struct Candidate {
-    rows: Vec<f64>,
-    dimension: usize,
+    all: Table,
+    few: Table,
 }
 
 /// Where classes and strokes are, and how samples are held out.
 struct Trial<'a> {
     samples: &'a Samples,
     /// All features of all samples, standardised.
-    x: Vec<f64>,
+    x: Table,
     positive: Vec<bool>,
     by_part: Vec<usize>,
     by_stroke: Vec<usize>,
-    /// Weights of the samples that comparisons use.
-    weights: Vec<f64>,
+    /// The samples that comparisons use.
+    few: Vec<usize>,
     ridge: f64,
 }
 
@@ -91,26 +85,31 @@ struct Trial<'a> {
 /// of strokes where pixels are like those painted, on whole held-out strokes where they are not, and Akaike's price of a
 /// term, one sample's worth, which decides between equals for the simpler one.
 pub fn choose(question: &Question, job: Job) -> Result<Chosen> {
-    let samples = question.samples;
+    let Question { samples, subsets, .. } = *question;
     let standard = Standard::of(samples);
     let positive: Vec<bool> = samples.origins.iter().map(|o| o.positive).collect();
     let trial = Trial {
         samples,
-        x: standard.apply(&samples.values),
+        x: standard.apply(&samples.values)?,
         by_part: folds_of_parts(samples),
         by_stroke: folds_of_strokes(samples),
-        weights: balanced(&positive, |i| i % stride(samples, positive[i]) == 0),
+        few: (0..positive.len()).filter(|&i| i % stride(samples, positive[i]) == 0).collect(),
         positive,
         ridge: question.ridge,
     };
-    let mut order: Vec<(usize, Model, &Vec<usize>)> = (question.subsets.iter())
-        .flat_map(|subset| {
-            [Model::Linear, Model::Quadratic].map(|model| (term_count(model, subset.len()), model, subset))
-        })
+
+    // How much of the image is unlike what was painted, by each subset of the features.
+    let probe = standard.apply(question.probe)?;
+    let spreads = [false, true].map(|class| Spread::of(&trial.x, |i| trial.positive[i] == class));
+    let unseen = exec::map(subsets.len(), job.part(0.0, 0.1), |k| {
+        let columns = &subsets[k];
+        ellipsoid::mean_beyond(&probe, columns, &spreads.each_ref().map(|spread| spread.ellipsoid(columns)))
+    })?;
+
+    let mut order: Vec<(usize, Model, usize)> = (0..subsets.len())
+        .flat_map(|k| [Model::Linear, Model::Quadratic].map(|model| (term_count(model, subsets[k].len()), model, k)))
         .collect();
     order.sort_by_key(|candidate| candidate.0);
-
-    let probe = standard.apply(question.probe);
     let mut best: Option<(f64, Chosen, Candidate)> = None;
     let rounds = order.len() as f64;
     for (k, (terms, model, subset)) in order.into_iter().enumerate() {
@@ -119,59 +118,48 @@ pub fn choose(question: &Question, job: Job) -> Result<Chosen> {
         if best.as_ref().is_some_and(|(least, ..)| price >= *least) {
             break;
         }
-        let job = job.part(0.9 * k as f64 / rounds, 0.9 * (k + 1) as f64 / rounds);
-        let candidate = Candidate::new(model, subset, &trial)?;
-        let weights = trial.fit(&candidate, &trial.weights, &vec![0.0; candidate.dimension], CV_PRECISION, job)?;
+        let job = job.part(0.1 + 0.8 * k as f64 / rounds, 0.1 + 0.8 * (k + 1) as f64 / rounds);
+        let columns = &subsets[subset];
+        let candidate = Candidate::new(model, columns, &trial)?;
+        let weights = trial.fit_few(&candidate, |_| true, &vec![0.0; terms], job)?;
         let (familiar, unfamiliar) = exec::both(
             || validate(&trial, &candidate, &weights, &trial.by_part, job.part(0.1, 0.4)),
             || validate(&trial, &candidate, &weights, &trial.by_stroke, job.part(0.4, 1.0)),
         );
         let (familiar, unfamiliar) = (familiar?, unfamiliar?);
-        let unseen = mean_unseen(&probe, samples.dimension, subset, &trial.ellipsoids(subset));
-        let expected = familiar.loss * (1.0 - unseen) + unfamiliar.loss * unseen + price;
+        let expected = familiar.loss * (1.0 - unseen[subset]) + unfamiliar.loss * unseen[subset] + price;
         if best.as_ref().is_none_or(|(least, ..)| expected < *least) {
-            let (standard, columns) = (standard.clone(), subset.clone());
-            let chosen = Chosen { model, columns, standard, weights, familiar, unfamiliar, seen: Vec::new() };
+            // What is unlike all strokes is so by any feature: also by those that the strokes so far did not need.
+            let seen = spreads.each_ref().map(|spread| spread.ellipsoid(&(0..samples.dimension).collect::<Vec<_>>()));
+            let (standard, columns) = (standard.clone(), columns.clone());
+            let chosen = Chosen { model, columns, standard, weights, familiar, unfamiliar, seen };
             best = Some((expected, chosen, candidate));
         }
     }
     let Some((_, mut chosen, candidate)) = best else {
         return Err(Error::argument("there is no subset of channels to choose from"));
     };
-    let all = balanced(&trial.positive, |_| true);
-    chosen.weights = trial.fit(&candidate, &all, &chosen.weights, PRECISION, job.part(0.9, 1.0))?;
-    // What is unlike all strokes is so by any feature: also by those that the strokes so far did not need.
-    chosen.seen = trial.ellipsoids(&(0..samples.dimension).collect::<Vec<_>>());
+    let weights = balanced(&trial.positive);
+    let problem = Problem { terms: &candidate.all, positive: &trial.positive, weights: &weights };
+    chosen.weights = logistic::fit(&problem, trial.ridge, &chosen.weights, PRECISION, job.part(0.9, 1.0))?;
     Ok(chosen)
 }
 
 impl Candidate {
     fn new(model: Model, columns: &[usize], trial: &Trial) -> Result<Self> {
-        let dimension = term_count(model, columns.len());
-        let mut rows = try_with_capacity(trial.positive.len() * dimension)?;
-        let mut x = vec![0.0; columns.len()];
-        for all in trial.x.chunks_exact(trial.samples.dimension) {
-            x.iter_mut().zip(columns).for_each(|(x, &c)| *x = all[c]);
-            terms(model, &x, &mut rows);
-        }
-        Ok(Self { rows, dimension })
+        let all = terms(model, &trial.x, columns)?;
+        let few = Table::of_rows(&all, &trial.few)?;
+        Ok(Self { all, few })
     }
 }
 
 impl Trial<'_> {
-    fn fit(&self, of: &Candidate, weights: &[f64], start: &[f64], precision: f64, job: Job) -> Result<Vec<f64>> {
-        let problem = Problem { rows: &of.rows, dimension: of.dimension, positive: &self.positive, weights };
-        logistic::fit(&problem, self.ridge, start, precision, job)
-    }
-
-    /// The regions of the features in `columns` that the classes cover.
-    fn ellipsoids(&self, columns: &[usize]) -> Vec<Ellipsoid> {
-        let of_class = |class: bool| {
-            let all = self.x.chunks_exact(self.samples.dimension).zip(&self.positive);
-            let members = all.filter(|(_, positive)| **positive == class);
-            ellipsoid(members.flat_map(|(x, _)| columns.iter().map(|&c| x[c])).collect(), columns.len())
-        };
-        [false, true].map(of_class).into()
+    /// A fit for comparison to those of the few samples that are `used`.
+    fn fit_few(&self, of: &Candidate, used: impl Fn(usize) -> bool, start: &[f64], job: Job) -> Result<Vec<f64>> {
+        let positive: Vec<bool> = self.few.iter().map(|&i| self.positive[i]).collect();
+        let weights = balanced_where(&positive, |k| used(self.few[k]));
+        let problem = Problem { terms: &of.few, positive: &positive, weights: &weights };
+        logistic::fit(&problem, self.ridge, start, CV_PRECISION, job)
     }
 }
 
@@ -180,24 +168,16 @@ fn stride(samples: &Samples, positive: bool) -> usize {
     samples.counts[usize::from(positive)].div_ceil(CV_SAMPLES)
 }
 
-/// The mean over some pixels of how far they are from all that was painted (see `classify`).
-fn mean_unseen(probe: &[f64], dimension: usize, columns: &[usize], seen: &[Ellipsoid]) -> f64 {
-    let mut x = vec![0.0; columns.len()];
-    let mut sum = 0.0;
-    for pixel in probe.chunks_exact(dimension) {
-        x.iter_mut().zip(columns).for_each(|(x, &c)| *x = pixel[c]);
-        let nearest = seen.iter().map(|e| e.squared_distance(&x)).fold(f64::INFINITY, f64::min);
-        sum += 1.0 - (1.0 - nearest.max(1.0).sqrt()).exp();
-    }
-    sum / (probe.len() / dimension).max(1) as f64
-}
-
 /// Weights under which the classes weigh the same, whatever the number of samples that are `used` of each.
-fn balanced(positive: &[bool], used: impl Fn(usize) -> bool) -> Vec<f64> {
+fn balanced_where(positive: &[bool], used: impl Fn(usize) -> bool) -> Vec<f64> {
     let mut counts = [0usize; 2];
     (0..positive.len()).filter(|&i| used(i)).for_each(|i| counts[usize::from(positive[i])] += 1);
     let weight = |i: usize| if used(i) { 0.5 / counts[usize::from(positive[i])] as f64 } else { 0.0 };
     (0..positive.len()).map(weight).collect()
+}
+
+fn balanced(positive: &[bool]) -> Vec<f64> {
+    balanced_where(positive, |_| true)
 }
 
 fn folds_of_parts(samples: &Samples) -> Vec<usize> {
@@ -214,46 +194,42 @@ fn folds_of_strokes(samples: &Samples) -> Vec<usize> {
 /// Judges a model by fits that each leave out one fold, beginning with the `start` of all folds.
 fn validate(trial: &Trial, candidate: &Candidate, start: &[f64], fold_of: &[usize], job: Job) -> Result<Trust> {
     let Trial { samples, positive, .. } = trial;
-    let Candidate { rows, dimension, .. } = candidate;
     let count = fold_of.iter().max().map_or(0, |last| last + 1);
-    let mut size_of_stroke = vec![0usize; samples.strokes[0] + samples.strokes[1]];
-    samples.origins.iter().for_each(|o| size_of_stroke[o.stroke] += 1);
-
-    let held_out = exec::map(count, job, |fold| -> Result<Vec<(f64, bool, f64)>> {
+    let held_out = exec::map(count, job, |fold| -> Result<Vec<(usize, f64)>> {
         // A class that would be left without any sample keeps its own.
         let keeps = |class: bool| (0..positive.len()).all(|i| positive[i] != class || fold_of[i] == fold);
         let keeps = [keeps(false), keeps(true)];
-        let used =
-            |i: usize| (fold_of[i] != fold || keeps[usize::from(positive[i])]) && i % stride(samples, positive[i]) == 0;
-        let without = trial.fit(candidate, &balanced(positive, used), start, CV_PRECISION, job)?;
-        // Every stroke has the same say within its class, and the classes have the same.
-        let tested = samples.origins.iter().enumerate().filter(|(i, _)| fold_of[*i] == fold);
-        let result = tested.map(|(i, o)| {
-            let share = 0.5 / (samples.strokes[usize::from(o.positive)] * size_of_stroke[o.stroke]) as f64;
-            (logistic::dot(&without, &rows[i * dimension..(i + 1) * dimension]), o.positive, share)
-        });
-        Ok(result.collect())
+        let used = |i: usize| fold_of[i] != fold || keeps[usize::from(positive[i])];
+        let without = trial.fit_few(candidate, used, start, job)?;
+        Ok(logistic::logits(&candidate.all, &without, |i| fold_of[i] == fold))
     })?;
-    let held_out: Vec<(f64, bool, f64)> = held_out.into_iter().collect::<Result<Vec<_>>>()?.concat();
-    let wrong = held_out.iter().filter(|(z, p, _)| (*z > 0.0) != *p);
-    let error = wrong.fold(0.0, |sum, (_, _, share)| sum + share).min(1.0);
-    let (scale, loss) = calibrate(&held_out);
+    let mut logits = vec![0.0; positive.len()];
+    for fold in held_out {
+        fold?.into_iter().for_each(|(i, z)| logits[i] = z);
+    }
+
+    // Every stroke has the same say within its class, and the classes have the same.
+    let mut size_of_stroke = vec![0usize; samples.strokes[0] + samples.strokes[1]];
+    samples.origins.iter().for_each(|o| size_of_stroke[o.stroke] += 1);
+    let share = |o: &Origin| 0.5 / (samples.strokes[usize::from(o.positive)] * size_of_stroke[o.stroke]) as f64;
+    let shares: Vec<f64> = samples.origins.iter().map(share).collect();
+    let wrong = (0..positive.len()).filter(|&i| (logits[i] > 0.0) != positive[i]);
+    let error = wrong.fold(0.0, |sum, i| sum + shares[i]).min(1.0);
+    let problem = Problem { terms: &Table::of(&logits, 1)?, positive, weights: &shares };
+    let (scale, loss) = calibrate(&problem);
     Ok(Trust { error, scale, loss })
 }
 
 /// The factor on logits that gives held-out samples the least log loss (temperature scaling, Guo et al. 2017), and that
 /// loss. One factor cannot move the mask, only how sure it is.
-fn calibrate(held_out: &[(f64, bool, f64)]) -> (f64, f64) {
+fn calibrate(held_out: &Problem) -> (f64, f64) {
     // The loss is convex in the factor: where its slope changes sign, by Newton's method inside a shrinking bracket.
     let [mut low, mut high] = CALIBRATION;
+    let loss_at = |scale: f64| Objective::at(held_out, 0.0, &[scale]);
     let mut scale = 1.0;
     for _ in 0..20 {
-        let (mut slope, mut curvature) = (0.0, 0.0);
-        for &(z, positive, share) in held_out {
-            let p = logistic::sigmoid(scale * z);
-            slope += share * z * (p - f64::from(positive));
-            curvature += share * z * z * p * (1.0 - p);
-        }
+        let loss = loss_at(scale);
+        let (slope, curvature) = (loss.gradient[0], loss.hessian[0]);
         if slope > 0.0 {
             high = scale
         } else {
@@ -267,44 +243,5 @@ fn calibrate(held_out: &[(f64, bool, f64)]) -> (f64, f64) {
             break;
         }
     }
-    let loss = held_out.iter().map(|&(z, p, share)| share * logistic::log_loss(scale * z, p)).sum();
-    (scale, loss)
-}
-
-/// The region of feature space that samples of `d` features each cover.
-fn ellipsoid(members: Vec<f64>, d: usize) -> Ellipsoid {
-    let members: Vec<&[f64]> = members.chunks_exact(d).collect();
-    let n = members.len() as f64;
-    let centre: Vec<f64> = (0..d).map(|i| members.iter().map(|x| x[i]).sum::<f64>() / n).collect();
-    let mut covariance = vec![0.0; d * d];
-    for x in &members {
-        for i in 0..d {
-            for j in 0..=i {
-                covariance[i * d + j] += (x[i] - centre[i]) * (x[j] - centre[j]) / n;
-            }
-        }
-    }
-    // Standardised features have unit spread over both classes: a tenth of it is the least that counts as beyond.
-    (0..d).for_each(|i| covariance[i * d + i] += 0.01);
-    let mut inverse = vec![0.0; d * d];
-    for j in 0..d {
-        let unit: Vec<f64> = (0..d).map(|i| f64::from(i == j)).collect();
-        if let Some(column) = logistic::cholesky_solve(&mut covariance.clone(), &unit) {
-            (0..d).for_each(|i| inverse[i * d + j] = column[i]);
-        }
-    }
-    let mut ellipsoid = Ellipsoid { centre, inverse };
-    let mut distances: Vec<f64> = members.iter().map(|x| ellipsoid.squared_distance(x)).collect();
-    distances.sort_by(f64::total_cmp);
-    let reach = distances[(distances.len() - 1) * 99 / 100].max(1e-12);
-    ellipsoid.inverse.iter_mut().for_each(|v| *v /= reach);
-    ellipsoid
-}
-
-impl Ellipsoid {
-    fn squared_distance(&self, x: &[f64]) -> f64 {
-        let off = || x.iter().zip(&self.centre).map(|(x, c)| x - c);
-        let rows = self.inverse.chunks_exact(x.len());
-        rows.zip(off()).map(|(row, o)| o * row.iter().zip(off()).map(|(a, b)| a * b).sum::<f64>()).sum()
-    }
+    (scale, loss_at(scale).value)
 }

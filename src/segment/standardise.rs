@@ -2,6 +2,8 @@
 
 use super::Model;
 use super::samples::Samples;
+use super::table::Table;
+use crate::error::Result;
 
 /// Channels that are one vector: CIELAB colour, position and normal. Their components have the same unit and share one
 /// scale. Scaled each by itself, a channel that hardly varies, such as the tint of a white ceiling, would be blown up into
@@ -42,9 +44,14 @@ impl Standard {
     }
 
     /// Features, one sample after the other, made comparable.
-    pub fn apply(&self, values: &[f64]) -> Vec<f64> {
-        let standard = self.mean.iter().zip(&self.scale).cycle();
-        values.iter().zip(standard).map(|(v, (mean, scale))| (v - mean) * scale).collect()
+    pub fn apply(&self, values: &[f64]) -> Result<Table> {
+        let mut table = Table::of(values, self.mean.len())?;
+        for (rows, block) in table.blocks_mut() {
+            for (lanes, (mean, scale)) in block.iter_mut().zip(self.mean.iter().zip(&self.scale)) {
+                lanes[..rows].iter_mut().for_each(|v| *v = (*v - mean) * scale);
+            }
+        }
+        Ok(table)
     }
 }
 
@@ -56,13 +63,19 @@ pub fn term_count(model: Model, d: usize) -> usize {
     }
 }
 
-/// The terms of a model at standardised features: the features, their products `i <= j`, and 1.
-pub fn terms(model: Model, x: &[f64], out: &mut Vec<f64>) {
-    out.extend_from_slice(x);
-    if model == Model::Quadratic {
-        for i in 0..x.len() {
-            out.extend(x[i..].iter().map(|v| v * x[i]));
+/// The terms of a model in some columns of standardised features: those features, their products `i <= j`, and 1.
+pub fn terms(model: Model, features: &Table, columns: &[usize]) -> Result<Table> {
+    let mut terms = Table::new(features.rows, term_count(model, columns.len()))?;
+    for ((rows, x), (_, to)) in features.blocks().zip(terms.blocks_mut()) {
+        let mut to = to.iter_mut();
+        columns.iter().zip(&mut to).for_each(|(&c, to)| *to = x[c]);
+        if model == Model::Quadratic {
+            let pairs = (0..columns.len()).flat_map(|i| columns[i..].iter().map(move |&c| (columns[i], c)));
+            for ((a, b), to) in pairs.zip(&mut to) {
+                to.iter_mut().zip(x[a].iter().zip(&x[b])).for_each(|(to, (a, b))| *to = a * b);
+            }
         }
+        to.for_each(|constant| constant[..rows.len()].fill(1.0));
     }
-    out.push(1.0);
+    Ok(terms)
 }

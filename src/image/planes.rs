@@ -1,0 +1,69 @@
+//! Between interleaved pixels and a plane for each channel, four by four: a transposition that stays in registers.
+
+use glam::{Mat4, Vec4};
+
+/// Spreads interleaved pixels over planes, one for each channel, of `N` pixels or more.
+#[inline(always)]
+pub fn deinterleave<const N: usize>(pixels: &[f32], planes: &mut [[f32; N]]) {
+    let (channels, count) = (planes.len(), pixels.len() / planes.len());
+    let whole = if channels < 4 { 0 } else { count / 4 * 4 };
+    for (four, k) in pixels.chunks_exact(4 * channels).zip((0..whole).step_by(4)) {
+        for c in starts(channels) {
+            let rows = [0, 1, 2, 3].map(|i| Vec4::from_slice(&four[i * channels + c..][..4]));
+            let columns = Mat4::from_cols(rows[0], rows[1], rows[2], rows[3]).transpose();
+            for i in 0..4 {
+                columns.col(i).write_to_slice(&mut planes[c + i][k..k + 4]);
+            }
+        }
+    }
+    for (k, pixel) in pixels.chunks_exact(channels).enumerate().skip(whole) {
+        planes.iter_mut().zip(pixel).for_each(|(plane, &v)| plane[k] = v);
+    }
+}
+
+/// The other way round.
+#[inline(always)]
+pub fn interleave<const N: usize>(planes: &[[f32; N]], pixels: &mut [f32]) {
+    let (channels, count) = (planes.len(), pixels.len() / planes.len());
+    let whole = if channels < 4 { 0 } else { count / 4 * 4 };
+    for (four, k) in pixels.chunks_exact_mut(4 * channels).zip((0..whole).step_by(4)) {
+        for c in starts(channels) {
+            let columns = [0, 1, 2, 3].map(|i| Vec4::from_slice(&planes[c + i][k..k + 4]));
+            let rows = Mat4::from_cols(columns[0], columns[1], columns[2], columns[3]).transpose();
+            for i in 0..4 {
+                rows.col(i).write_to_slice(&mut four[i * channels + c..][..4]);
+            }
+        }
+    }
+    for (k, pixel) in pixels.chunks_exact_mut(channels).enumerate().skip(whole) {
+        pixel.iter_mut().zip(planes).for_each(|(v, plane)| *v = plane[k]);
+    }
+}
+
+/// Where groups of four channels start; the last may overlap the one before.
+#[inline(always)]
+fn starts(channels: usize) -> impl Iterator<Item = usize> {
+    (0..channels).step_by(4).map(move |c| c.min(channels - 4))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn planes_hold_the_channels_and_come_back() {
+        for channels in 1..=11 {
+            for count in [0, 1, 3, 4, 7, 64] {
+                let pixels: Vec<f32> = (0..channels * count).map(|i| i as f32).collect();
+                let mut planes = vec![[-1.0; 64]; channels];
+                deinterleave(&pixels, &mut planes);
+                for (c, plane) in planes.iter().enumerate() {
+                    assert!((0..64).all(|k| plane[k] == if k < count { (k * channels + c) as f32 } else { -1.0 }));
+                }
+                let mut back = vec![0.0; pixels.len()];
+                interleave(&planes, &mut back);
+                assert_eq!(back, pixels);
+            }
+        }
+    }
+}

@@ -1,0 +1,171 @@
+//! The regions of feature space that the samples of a class cover, and how far pixels lie beyond them.
+
+use super::MOST_CHANNELS;
+use super::logistic::cholesky_solve;
+use super::table::{BLOCK, Lanes, Table, combine, dot_lanes};
+use crate::simd::widest;
+
+/// The least variance that counts, beside the unit variance that standardised features have over both classes: a tenth of
+/// their spread is what is beyond at least.
+const LEAST_VARIANCE: f64 = 0.01;
+/// Share of a class's samples that lie within distance 1.
+const WITHIN: usize = 99;
+
+/// Mean and covariance of a class's samples.
+pub struct Spread<'a> {
+    features: &'a Table,
+    members: Vec<usize>,
+    centre: Vec<f64>,
+    /// Row by row.
+    covariance: Vec<f64>,
+}
+
+/// `(x - centre)ᵀ A (x - centre)`: the squared distance from what a class covers.
+pub struct Ellipsoid {
+    pub centre: Vec<f64>,
+    /// `A`, row by row.
+    pub inverse: Vec<f64>,
+}
+
+impl<'a> Spread<'a> {
+    /// Of the rows that are `members`.
+    pub fn of(features: &'a Table, is_member: impl Fn(usize) -> bool) -> Self {
+        let d = features.columns;
+        let members: Vec<usize> = (0..features.rows).filter(|&i| is_member(i)).collect();
+        let per_n = 1.0 / members.len() as f64;
+        let of_members = |rows: std::ops::Range<usize>| -> Lanes {
+            let start = rows.start;
+            std::array::from_fn(|k| if start + k < rows.end && is_member(start + k) { per_n } else { 0.0 })
+        };
+        let mut centre = vec![0.0; d];
+        let mut covariance = vec![0.0; d * d];
+        for (rows, block) in features.blocks() {
+            add_sums(block, &of_members(rows), &mut centre);
+        }
+        for (rows, block) in features.blocks() {
+            add_products(block, &of_members(rows), &centre, &mut covariance);
+        }
+        (0..d).for_each(|i| covariance[i * d + i] += LEAST_VARIANCE);
+        Self { features, members, centre, covariance }
+    }
+
+    /// The region in the features of some columns.
+    pub fn ellipsoid(&self, columns: &[usize]) -> Ellipsoid {
+        let (d, all) = (columns.len(), self.features.columns);
+        let mut inverse = vec![0.0; d * d];
+        for j in 0..d {
+            let unit: Vec<f64> = (0..d).map(|i| f64::from(i == j)).collect();
+            let lower = |&r: &usize| columns.iter().map(move |&c| self.covariance[r.max(c) * all + r.min(c)]);
+            let mut covariance: Vec<f64> = columns.iter().flat_map(lower).collect();
+            if let Some(column) = cholesky_solve(&mut covariance, &unit) {
+                (0..d).for_each(|i| inverse[i * d + j] = column[i]);
+            }
+        }
+        let mut ellipsoid = Ellipsoid { centre: columns.iter().map(|&c| self.centre[c]).collect(), inverse };
+        let mut distances = Vec::with_capacity(self.features.rows);
+        for (rows, block) in self.features.blocks() {
+            distances.extend_from_slice(&ellipsoid.squared_distances(block, columns)[..rows.len()]);
+        }
+        let mut distances: Vec<f64> = self.members.iter().map(|&i| distances[i]).collect();
+        let reach = (distances.len() - 1) * WITHIN / 100;
+        let reach = distances.select_nth_unstable_by(reach, f64::total_cmp).1.max(1e-12);
+        ellipsoid.inverse.iter_mut().for_each(|v| *v /= reach);
+        ellipsoid
+    }
+}
+
+impl Ellipsoid {
+    fn squared_distances(&self, block: &[Lanes], columns: &[usize]) -> Lanes {
+        squared_distances(self, block, columns)
+    }
+}
+
+/// The mean over pixels of how far they are from all regions: 0 within one of them, and then `1 - e^(1 - distance)`.
+pub fn mean_beyond(pixels: &Table, columns: &[usize], regions: &[Ellipsoid]) -> f64 {
+    let mut sum = 0.0;
+    for (rows, block) in pixels.blocks() {
+        let mut nearest = [f64::INFINITY; BLOCK];
+        for region in regions {
+            let distances = region.squared_distances(block, columns);
+            nearest.iter_mut().zip(distances).for_each(|(n, d)| *n = n.min(d));
+        }
+        sum += nearest[..rows.len()].iter().map(|n| 1.0 - (1.0 - n.max(1.0).sqrt()).exp()).sum::<f64>();
+    }
+    sum / pixels.rows.max(1) as f64
+}
+
+widest! {
+    fn add_sums(block: &[Lanes], weights: &Lanes, sums: &mut [f64]) {
+        for (sum, x) in sums.iter_mut().zip(block) {
+            *sum += dot_lanes(weights, x);
+        }
+    }
+}
+
+widest! {
+    /// Adds the lower triangle of the weighted products of what is off the centre.
+    fn add_products(block: &[Lanes], weights: &Lanes, centre: &[f64], products: &mut [f64]) {
+        let d = centre.len();
+        let mut off = [[0.0; BLOCK]; MOST_CHANNELS];
+        for ((off, x), centre) in off.iter_mut().zip(block).zip(centre) {
+            for k in 0..BLOCK {
+                off[k] = x[k] - centre;
+            }
+        }
+        for i in 0..d {
+            let mut weighted = [0.0; BLOCK];
+            for k in 0..BLOCK {
+                weighted[k] = weights[k] * off[i][k];
+            }
+            for j in 0..=i {
+                products[i * d + j] += dot_lanes(&weighted, &off[j]);
+            }
+        }
+    }
+}
+
+widest! {
+    fn squared_distances(from: &Ellipsoid, block: &[Lanes], columns: &[usize]) -> Lanes {
+        let d = columns.len();
+        let mut off = [[0.0; BLOCK]; MOST_CHANNELS];
+        for ((off, &c), centre) in off.iter_mut().zip(columns).zip(&from.centre) {
+            for k in 0..BLOCK {
+                off[k] = block[c][k] - centre;
+            }
+        }
+        let mut sum = [0.0; BLOCK];
+        for i in 0..d {
+            let row = combine(&from.inverse[i * d..(i + 1) * d], &off[..d]);
+            for k in 0..BLOCK {
+                sum[k] += off[i][k] * row[k];
+            }
+        }
+        sum
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rng::Rng;
+
+    #[test]
+    fn a_region_holds_its_members_and_distance_is_mahalanobis() {
+        let mut rng = Rng::new(5, &[]);
+        let rows: Vec<f64> = (0..400).flat_map(|_| [3.0 * rng.normal(), 7.0, 0.5 * rng.normal() + 1.0]).collect();
+        let table = Table::of(&rows, 3).unwrap();
+        let spread = Spread::of(&table, |i| i % 2 == 0);
+        let region = spread.ellipsoid(&[0, 2]);
+        let at = |x: f64, y: f64| {
+            let point = Table::of(&[x, 0.0, y], 3).unwrap();
+            region.squared_distances(point.blocks().next().unwrap().1, &[0, 2])[0]
+        };
+        let within = (0..400).step_by(2).filter(|&i| at(rows[3 * i], rows[3 * i + 2]) <= 1.0 + 1e-12).count();
+        assert_eq!(within, 198);
+        // Six times the deviation along an axis: equally far whatever the axis' own spread.
+        let (x, y) = (region.centre[0], region.centre[1]);
+        let (along, across) = (at(x + 18.0, y), at(x, y + 6.0 * 0.51));
+        assert!((along / across).ln().abs() < 0.3, "{along} {across}");
+        assert_eq!(mean_beyond(&Table::of(&[x, 0.0, y], 3).unwrap(), &[0, 2], &[region]), 0.0);
+    }
+}
