@@ -9,7 +9,7 @@ use crate::exec;
 use crate::image::{Image, deinterleave};
 use crate::job::Job;
 use crate::simd::widest;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
 /// Pixels worked on together: their planes stay in the first-level cache.
 const TILE: usize = 64;
@@ -184,12 +184,14 @@ pub fn run(
     };
     let Blank { mut mask, mut confidence, mut unseen } = blank;
     let bad = AtomicUsize::new(0);
+    // The bits of each row's sum: added up in order, they make the same mean for any number of threads.
+    let sums: Vec<AtomicU64> = (0..height).map(|_| AtomicU64::new(0)).collect();
     let images = [&mut mask, &mut confidence, &mut unseen].map(|image| image.data.as_mut_slice());
-    exec::for_rows_of_three(images, width, job.part(0.0, 0.9), |y, [mask, confidence, unseen]| {
+    exec::for_rows_of_three(images, width, job, |y, [mask, confidence, unseen]| {
         let source = features.row(y);
         let mut planes = [[0.0; TILE]; MOST_CHANNELS];
         let planes = &mut planes[..features.channels];
-        let mut likely = 0;
+        let (mut likely, mut sum) = (0, 0.0);
         for x in (0..width).step_by(TILE) {
             let n = TILE.min(width - x);
             let pixels = &source[x * features.channels..(x + n) * features.channels];
@@ -205,14 +207,16 @@ pub fn run(
                     }
                 }
             }
+            sum += f64::from(sum_of(&beyond[..n]));
             confidence[x..x + n].copy_from_slice(&probability[..n]);
             unseen[x..x + n].copy_from_slice(&beyond[..n]);
             mask[x..x + n].iter_mut().zip(&probability).for_each(|(m, &p)| *m = f32::from(p > 0.5));
         }
+        sums[y].store(sum.to_bits(), Ordering::Relaxed);
     })?;
-    let sums = exec::map(height, job.part(0.9, 1.0), |y| unseen.row(y).iter().map(|&u| f64::from(u)).sum::<f64>())?;
+    let sum: f64 = sums.iter().map(|sum| f64::from_bits(sum.load(Ordering::Relaxed))).sum();
     let looked_at = within.map_or(width * height, |w| w.data.iter().filter(|w| **w > 0.5).count());
-    let mean_unseen = sums.iter().sum::<f64>() / looked_at.max(1) as f64;
+    let mean_unseen = sum / looked_at.max(1) as f64;
     Ok(Classified { mask, confidence, unseen, mean_unseen, bad: bad.into_inner() })
 }
 
@@ -221,4 +225,12 @@ widest! {
     pub fn count_bad(values: &[f32]) -> usize {
         values.iter().map(|v| u32::from(!v.is_finite())).sum::<u32>() as usize
     }
+}
+
+/// By eight sums side by side.
+fn sum_of(values: &[f32]) -> f32 {
+    let (chunks, rest) = values.as_chunks::<8>();
+    let mut sums = [0.0; 8];
+    chunks.iter().for_each(|chunk| sums.iter_mut().zip(chunk).for_each(|(sum, v)| *sum += v));
+    sums.iter().chain(rest).sum()
 }

@@ -62,10 +62,16 @@ pub struct Question<'a> {
     pub ridge: f64,
 }
 
-/// A family of models on a subset of the features: its terms at all samples, and at those that comparisons use.
+/// A family of models on a subset of the features.
 struct Candidate {
-    all: Table,
-    few: Table,
+    model: Model,
+    columns: Vec<usize>,
+    /// At all samples.
+    terms: Table,
+    /// Fitted to the few.
+    weights: Vec<f64>,
+    familiar: Trust,
+    unfamiliar: Trust,
 }
 
 /// Where classes and strokes are, and how samples are held out.
@@ -110,55 +116,58 @@ pub fn choose(question: &Question, job: Job) -> Result<Chosen> {
         .flat_map(|k| [Model::Linear, Model::Quadratic].map(|model| (term_count(model, subsets[k].len()), model, k)))
         .collect();
     order.sort_by_key(|candidate| candidate.0);
-    let mut best: Option<(f64, Chosen, Candidate)> = None;
-    let rounds = order.len() as f64;
-    for (k, (terms, model, subset)) in order.into_iter().enumerate() {
-        // No loss is less than nothing: the price alone may rule a candidate out, and all after it.
-        let price = terms as f64 / samples.origins.len() as f64;
-        if best.as_ref().is_some_and(|(least, ..)| price >= *least) {
-            break;
+    let price = |terms: usize| terms as f64 / samples.origins.len() as f64;
+    let mut best: Option<(f64, Candidate)> = None;
+    let mut rest = order.as_slice();
+    // No loss is less than nothing: the price alone may rule a candidate out, and all after it.
+    while let Some((terms, ..)) =
+        rest.first().filter(|(t, ..)| best.as_ref().is_none_or(|(least, _)| price(*t) < *least))
+    {
+        // Those of up to twice the size are weighed at the same time.
+        let (batch, larger) = rest.split_at(rest.partition_point(|candidate| candidate.0 <= 2 * terms));
+        let done = |left: &[_]| 0.1 + 0.8 * (1.0 - left.len() as f64 / order.len() as f64);
+        let candidates = exec::map(batch.len(), job.part(done(rest), done(larger)), |i| {
+            Candidate::weigh(batch[i].1, &subsets[batch[i].2], &trial, job.part(0.0, 0.0))
+        })?;
+        for (candidate, (terms, _, subset)) in candidates.into_iter().zip(batch) {
+            let candidate = candidate?;
+            let (familiar, unfamiliar) = (candidate.familiar.loss, candidate.unfamiliar.loss);
+            let expected = familiar * (1.0 - unseen[*subset]) + unfamiliar * unseen[*subset] + price(*terms);
+            if best.as_ref().is_none_or(|(least, _)| expected < *least) {
+                best = Some((expected, candidate));
+            }
         }
-        let job = job.part(0.1 + 0.8 * k as f64 / rounds, 0.1 + 0.8 * (k + 1) as f64 / rounds);
-        let columns = &subsets[subset];
-        let candidate = Candidate::new(model, columns, &trial)?;
-        let weights = trial.fit_few(&candidate, |_| true, &vec![0.0; terms], job)?;
-        let (familiar, unfamiliar) = exec::both(
-            || validate(&trial, &candidate, &weights, &trial.by_part, job.part(0.1, 0.4)),
-            || validate(&trial, &candidate, &weights, &trial.by_stroke, job.part(0.4, 1.0)),
-        );
-        let (familiar, unfamiliar) = (familiar?, unfamiliar?);
-        let expected = familiar.loss * (1.0 - unseen[subset]) + unfamiliar.loss * unseen[subset] + price;
-        if best.as_ref().is_none_or(|(least, ..)| expected < *least) {
-            // What is unlike all strokes is so by any feature: also by those that the strokes so far did not need.
-            let seen = spreads.each_ref().map(|spread| spread.ellipsoid(&(0..samples.dimension).collect::<Vec<_>>()));
-            let (standard, columns) = (standard.clone(), columns.clone());
-            let chosen = Chosen { model, columns, standard, weights, familiar, unfamiliar, seen };
-            best = Some((expected, chosen, candidate));
-        }
+        rest = larger;
     }
-    let Some((_, mut chosen, candidate)) = best else {
+    let Some((_, Candidate { model, columns, terms, weights, familiar, unfamiliar })) = best else {
         return Err(Error::argument("there is no subset of channels to choose from"));
     };
-    let weights = balanced(&trial.positive);
-    let problem = Problem { terms: &candidate.all, positive: &trial.positive, weights: &weights };
-    chosen.weights = logistic::fit(&problem, trial.ridge, &chosen.weights, PRECISION, job.part(0.9, 1.0))?;
-    Ok(chosen)
+    let all = balanced(&trial.positive, |_| true);
+    let problem = Problem { terms: &terms, positive: &trial.positive, weights: &all };
+    let weights = logistic::fit(&problem, trial.ridge, &weights, PRECISION, job.part(0.9, 1.0))?;
+    // What is unlike all strokes is so by any feature: also by those that the strokes so far did not need.
+    let seen = spreads.map(|spread| spread.ellipsoid(&(0..samples.dimension).collect::<Vec<_>>()));
+    Ok(Chosen { model, columns, standard, weights, familiar, unfamiliar, seen })
 }
 
 impl Candidate {
-    fn new(model: Model, columns: &[usize], trial: &Trial) -> Result<Self> {
-        let all = terms(model, &trial.x, columns)?;
-        let few = Table::of_rows(&all, &trial.few)?;
-        Ok(Self { all, few })
+    fn weigh(model: Model, columns: &[usize], trial: &Trial, job: Job) -> Result<Self> {
+        let terms = terms(model, &trial.x, columns)?;
+        let few = Table::of_rows(&terms, &trial.few)?;
+        let weights = trial.fit_few(&few, |_| true, &vec![0.0; terms.columns], job)?;
+        let held_out = |fold_of| validate(trial, &terms, &few, &weights, fold_of, job);
+        let (familiar, unfamiliar) = exec::both(|| held_out(&trial.by_part), || held_out(&trial.by_stroke));
+        let (familiar, unfamiliar) = (familiar?, unfamiliar?);
+        Ok(Self { model, columns: columns.to_vec(), terms, weights, familiar, unfamiliar })
     }
 }
 
 impl Trial<'_> {
-    /// A fit for comparison to those of the few samples that are `used`.
-    fn fit_few(&self, of: &Candidate, used: impl Fn(usize) -> bool, start: &[f64], job: Job) -> Result<Vec<f64>> {
+    /// A fit for comparison, by the terms of the few samples, to those of them that are `used`.
+    fn fit_few(&self, terms: &Table, used: impl Fn(usize) -> bool, start: &[f64], job: Job) -> Result<Vec<f64>> {
         let positive: Vec<bool> = self.few.iter().map(|&i| self.positive[i]).collect();
-        let weights = balanced_where(&positive, |k| used(self.few[k]));
-        let problem = Problem { terms: &of.few, positive: &positive, weights: &weights };
+        let weights = balanced(&positive, |k| used(self.few[k]));
+        let problem = Problem { terms, positive: &positive, weights: &weights };
         logistic::fit(&problem, self.ridge, start, CV_PRECISION, job)
     }
 }
@@ -169,15 +178,11 @@ fn stride(samples: &Samples, positive: bool) -> usize {
 }
 
 /// Weights under which the classes weigh the same, whatever the number of samples that are `used` of each.
-fn balanced_where(positive: &[bool], used: impl Fn(usize) -> bool) -> Vec<f64> {
+fn balanced(positive: &[bool], used: impl Fn(usize) -> bool) -> Vec<f64> {
     let mut counts = [0usize; 2];
     (0..positive.len()).filter(|&i| used(i)).for_each(|i| counts[usize::from(positive[i])] += 1);
     let weight = |i: usize| if used(i) { 0.5 / counts[usize::from(positive[i])] as f64 } else { 0.0 };
     (0..positive.len()).map(weight).collect()
-}
-
-fn balanced(positive: &[bool]) -> Vec<f64> {
-    balanced_where(positive, |_| true)
 }
 
 fn folds_of_parts(samples: &Samples) -> Vec<usize> {
@@ -191,8 +196,9 @@ fn folds_of_strokes(samples: &Samples) -> Vec<usize> {
     samples.origins.iter().map(|o| (o.stroke + if is_lone(o.positive) { o.part } else { 0 }) % folds).collect()
 }
 
-/// Judges a model by fits that each leave out one fold, beginning with the `start` of all folds.
-fn validate(trial: &Trial, candidate: &Candidate, start: &[f64], fold_of: &[usize], job: Job) -> Result<Trust> {
+/// Judges a model, by its terms at all samples and at the few, with fits that each leave out one fold and begin with the
+/// `start` of all folds.
+fn validate(trial: &Trial, all: &Table, few: &Table, start: &[f64], fold_of: &[usize], job: Job) -> Result<Trust> {
     let Trial { samples, positive, .. } = trial;
     let count = fold_of.iter().max().map_or(0, |last| last + 1);
     let held_out = exec::map(count, job, |fold| -> Result<Vec<(usize, f64)>> {
@@ -200,8 +206,8 @@ fn validate(trial: &Trial, candidate: &Candidate, start: &[f64], fold_of: &[usiz
         let keeps = |class: bool| (0..positive.len()).all(|i| positive[i] != class || fold_of[i] == fold);
         let keeps = [keeps(false), keeps(true)];
         let used = |i: usize| fold_of[i] != fold || keeps[usize::from(positive[i])];
-        let without = trial.fit_few(candidate, used, start, job)?;
-        Ok(logistic::logits(&candidate.all, &without, |i| fold_of[i] == fold))
+        let without = trial.fit_few(few, used, start, job)?;
+        Ok(logistic::logits(all, &without, |i| fold_of[i] == fold))
     })?;
     let mut logits = vec![0.0; positive.len()];
     for fold in held_out {
