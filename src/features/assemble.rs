@@ -31,10 +31,7 @@ pub fn row(photo: &Image, surface: &Surface, frustum: &Frustum, to_room: Mat3, y
     for (t, out) in out.chunks_mut(TILE * CHANNELS).enumerate() {
         let (x, n) = (t * TILE, out.len() / CHANNELS);
         let [r, g, b, ..] = &mut planes;
-        let pixels = photo.row(y)[x * photo.channels..][..n * photo.channels].chunks_exact(photo.channels);
-        for (k, p) in pixels.enumerate() {
-            (r[k], g[k], b[k]) = if p.len() < 3 { (p[0], p[0], p[0]) } else { (p[0], p[1], p[2]) };
-        }
+        spread(&photo.row(y)[x * photo.channels..][..n * photo.channels], photo.channels, [r, g, b]);
         colour::planes_to_lab(r, g, b);
         let geometry = Geometry {
             inverse_depth: &surface.inverse_depth.row(y)[x..x + n],
@@ -45,7 +42,26 @@ pub fn row(photo: &Image, surface: &Surface, frustum: &Frustum, to_room: Mat3, y
             step: 2.0 / width as f32,
         };
         place(&geometry, &mut planes);
-        interleave(&planes, out);
+        join(&planes, out);
+    }
+}
+
+/// The first three channels of pixels; of fewer the first for all.
+fn spread(pixels: &[f32], channels: usize, [r, g, b]: [&mut Plane; 3]) {
+    if channels == 3 {
+        for (k, p) in pixels.as_chunks::<3>().0.iter().enumerate().take(TILE) {
+            (r[k], g[k], b[k]) = (p[0], p[1], p[2]);
+        }
+        return;
+    }
+    for (k, p) in pixels.chunks_exact(channels).enumerate() {
+        (r[k], g[k], b[k]) = if channels < 3 { (p[0], p[0], p[0]) } else { (p[0], p[1], p[2]) };
+    }
+}
+
+widest! {
+    fn join(planes: &[Plane; CHANNELS], out: &mut [f32]) {
+        interleave(planes, out);
     }
 }
 

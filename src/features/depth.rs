@@ -32,20 +32,18 @@ pub fn from_map(map: &DepthMap, frustum: &Frustum, radius: usize, job: Job) -> R
         return Err(Error::argument(format!("depth has {} channels; it must have 1", depth.channels)));
     }
 
-    // Distances along the ray become distances along z.
-    let mut inverse = Image::new(width, height, 1)?;
-    exec::for_rows(&mut inverse.data, width, job.part(0.0, 0.1), |y, row| {
-        for (x, (out, &d)) in row.iter_mut().zip(depth.row(y)).enumerate() {
-            let per_z = match map.kind {
-                DepthKind::AlongZ => 1.0,
-                DepthKind::AlongRay => frustum.ray(frustum.ndc(x, y, width, height)).length(),
-            };
-            *out = if d > 0.0 && d.is_finite() { per_z / d } else { 0.0 };
-        }
-    })?;
+    // Distances along the ray become distances along z; holes become 0.
+    let inverse_at = |x: usize, y: usize, d: f32| {
+        let per_z = match map.kind {
+            DepthKind::AlongZ => 1.0,
+            DepthKind::AlongRay => frustum.ray(frustum.ndc(x, y, width, height)).length(),
+        };
+        if d > 0.0 && d.is_finite() { per_z / d } else { 0.0 }
+    };
+    let inverse_row = |y: usize| depth.row(y).iter().enumerate().map(move |(x, &d)| inverse_at(x, y, d));
 
     // The scale: only ratios of depth mean anything.
-    let mut known = sample_known(&inverse, job.part(0.1, 0.15))?;
+    let mut known = sample_known(depth, inverse_at, job.part(0.0, 0.15))?;
     if known.is_empty() {
         return Err(Error::degenerate(format!(
             "depth has no positive finite value in its {width} x {height} pixels; leave it out to use the built-in layout"
@@ -58,12 +56,13 @@ pub fn from_map(map: &DepthMap, frustum: &Frustum, radius: usize, job: Job) -> R
     let (median, nearest) = (quantile(0.5), quantile(0.98));
     let (low, high) = (median / LARGEST_RATIO, median.min(f32::MAX / LARGEST_RATIO) * LARGEST_RATIO);
     let nearest = nearest.clamp(low, high);
-    exec::for_rows(&mut inverse.data, width, job.part(0.15, 0.2), |_, row| {
-        for w in row {
-            *w = if *w > 0.0 { (w.clamp(low, high) / nearest) / frustum.near } else { 0.0 };
+    let (inverse, confidence) = exec::both(|| Image::new(width, height, 1), || Image::new(width, height, 1));
+    let (mut inverse, mut confidence) = (inverse?, confidence?);
+    exec::for_rows(&mut inverse.data, width, job.part(0.15, 0.2), |y, row| {
+        for (out, w) in row.iter_mut().zip(inverse_row(y)) {
+            *out = if w > 0.0 { (w.clamp(low, high) / nearest) / frustum.near } else { 0.0 };
         }
     })?;
-    let mut confidence = Image::new(width, height, 1)?;
     exec::for_rows(&mut confidence.data, width, job.part(0.2, 0.25), |y, row| {
         row.iter_mut().zip(inverse.row(y)).for_each(|(c, &w)| *c = f32::from(w > 0.0));
     })?;
@@ -76,22 +75,28 @@ pub fn from_map(map: &DepthMap, frustum: &Frustum, radius: usize, job: Job) -> R
 }
 
 /// Known inverse depths, evenly spaced among all there are, enough for quantiles to a thousandth.
-fn sample_known(inverse: &Image, job: Job) -> Result<Vec<f32>> {
-    let is_known = |w: &&f32| **w > 0.0 && w.is_finite();
-    let counts =
-        exec::map(inverse.height, job, |y| inverse.row(y).iter().map(|w| usize::from(is_known(&w))).sum::<usize>())?;
+fn sample_known(depth: &Image, inverse_at: impl Fn(usize, usize, f32) -> f32 + Sync, job: Job) -> Result<Vec<f32>> {
+    let (width, height) = (depth.width, depth.height);
+    let at = |x: usize, y: usize| inverse_at(x, y, depth.data[y * width + x]);
+    let is_known = |w: &f32| *w > 0.0 && *w < f32::INFINITY;
+    let counts = exec::map(height, job.part(0.0, 0.5), |y| {
+        depth.row(y).iter().enumerate().map(|(x, &d)| usize::from(is_known(&inverse_at(x, y, d)))).sum::<usize>()
+    })?;
     let stride = counts.iter().sum::<usize>().div_ceil(QUANTILE_SAMPLES).max(1);
-    let mut sampled = Vec::with_capacity(QUANTILE_SAMPLES);
     let mut before = 0usize;
-    for (y, count) in counts.into_iter().enumerate() {
+    let mut skips = Vec::with_capacity(height);
+    for count in &counts {
         // The next of the row is the one that makes a whole number of strides.
-        let skip = before.next_multiple_of(stride) - before;
-        if skip < count {
-            sampled.extend(inverse.row(y).iter().filter(is_known).skip(skip).step_by(stride));
-        }
+        skips.push(before.next_multiple_of(stride) - before);
         before += count;
     }
-    Ok(sampled)
+    let sampled = exec::map(height, job.part(0.5, 1.0), |y| -> Vec<f32> {
+        if counts[y] == width {
+            return (skips[y]..width).step_by(stride).map(|x| at(x, y)).collect();
+        }
+        (0..width).map(|x| at(x, y)).filter(is_known).skip(skips[y]).step_by(stride).collect()
+    })?;
+    Ok(sampled.concat())
 }
 
 /// A guess that knows nothing of the photo but that it is an interior: farthest at mid-height, nearer towards the
@@ -111,10 +116,11 @@ pub fn neutral(width: usize, height: usize, frustum: &Frustum, radius: usize, jo
 
 /// Fills holes (confidence 0) by pulling known values down a pyramid and pushing them back up (Gortler et al. 1996).
 fn fill_holes(surface: &mut Surface, job: Job) -> Result<()> {
-    if surface.confidence.data.iter().all(|&c| c > 0.0) {
+    let (width, height) = (surface.confidence.width, surface.confidence.height);
+    let has_holes = exec::map(height, job.part(0.0, 0.0), |y| surface.confidence.row(y).contains(&0.0))?;
+    if !has_holes.contains(&true) {
         return Ok(());
     }
-    let (width, height) = (surface.confidence.width, surface.confidence.height);
     // Inverse depth and normal, premultiplied by whether they are known; the fifth channel counts.
     let mut base = Image::new(width, height, 5)?;
     for (i, out) in base.data.chunks_exact_mut(5).enumerate() {

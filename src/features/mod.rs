@@ -142,22 +142,27 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Features> {
     // Depth and normals, from the best source there is.
     let geometry_job = job.part(0.1, 0.7);
     let radius = if params.normal_radius > 0 { params.normal_radius } else { (width / 100).clamp(2, 64) };
-    let (surface, depth_source, layout) = match (&input.depth, &input.room) {
+    let geometry = || match (&input.depth, &input.room) {
         (Some(map), _) => {
             input.photo.check_same_size("photo", map.image, "depth")?;
-            (depth::from_map(map, &frustum, radius, geometry_job)?, DepthSource::Caller, None)
+            Ok((depth::from_map(map, &frustum, radius, geometry_job)?, DepthSource::Caller, None))
         }
         (None, Some(room)) => {
             let layout = layout::find(room, width, height, geometry_job.part(0.0, 0.6))?;
             let surface = layout.surface(room, width, height, &frustum, geometry_job.part(0.6, 1.0))?;
-            (surface, DepthSource::Layout, Some(layout))
+            Ok((surface, DepthSource::Layout, Some(layout)))
         }
-        (None, None) => (depth::neutral(width, height, &frustum, radius, geometry_job)?, DepthSource::Neutral, None),
+        (None, None) => {
+            Ok((depth::neutral(width, height, &frustum, radius, geometry_job)?, DepthSource::Neutral, None))
+        }
     };
+    // Making room for the answer takes as long as a tenth of it.
+    let (geometry, image) = exec::both(geometry, || Image::new(width, height, CHANNELS));
+    let (surface, depth_source, layout) = geometry?;
+    let mut image = image?;
 
     // All channels together, in room axes.
     let to_room = perspective.map_or(glam::Mat3::IDENTITY, |p| layout::facing_axes(p).transpose().as_mat3());
-    let mut image = Image::new(width, height, CHANNELS)?;
     let is_finite = AtomicBool::new(true);
     exec::for_rows(&mut image.data, width * CHANNELS, job.part(0.7, 1.0), |y, row| {
         assemble::row(&photo, &surface, &frustum, to_room, y, row);

@@ -20,14 +20,29 @@ const PREFER_CENTRED: f32 = 0.5;
 /// Steps, in radii, to the centres of the windows that hold a pixel; of equal fits the first is taken.
 const SHIFTS: [[isize; 2]; 9] = [[0, 0], [-1, -1], [1, -1], [-1, 1], [1, 1], [0, -1], [-1, 0], [1, 0], [0, 1]];
 
-/// The best plane so far of each pixel of a row: its cost, and the steps of inverse depth along it.
+/// Pixels of a row that windows are chosen for together: what they are chosen from stays in the first-level cache.
+const TILE: usize = 128;
+/// Pixels whose best plane is held in registers.
+const LANES: usize = 16;
+
+/// The best plane of each pixel of a tile: its cost, and the steps of inverse depth along it.
 struct Best {
-    cost: Vec<f32>,
-    dx: Vec<f32>,
-    dy: Vec<f32>,
+    cost: [f32; TILE],
+    dx: [f32; TILE],
+    dy: [f32; TILE],
 }
 
-/// How the rays of a frustum change from pixel to pixel of a row.
+/// The windows at one shift from the pixels of a tile.
+#[derive(Clone, Copy)]
+struct Windows<'a> {
+    fits: FitRow<'a>,
+    /// From their centres to the pixels, columns and rows.
+    steps: [f32; 2],
+    /// What their costs are multiplied by.
+    favour: f32,
+}
+
+/// How the rays of a frustum change from pixel to pixel of a tile.
 #[derive(Clone, Copy)]
 struct Rays {
     /// x of the first ray, and of each step.
@@ -41,62 +56,85 @@ struct Rays {
 /// Unit normals in camera space, towards the camera. Pixels with confidence 0 do not count and face the camera.
 pub fn fit(inverse_depth: &Image, confidence: &Image, frustum: &Frustum, radius: usize, job: Job) -> Result<Image> {
     let (width, height) = (inverse_depth.width, inverse_depth.height);
-    let bands = exec::map(height.div_ceil(BAND), job.part(0.0, 0.6), |band| {
-        plane_fit::band(inverse_depth, confidence, radius, band * BAND..((band + 1) * BAND).min(height))
-    })?;
+    let bands = || {
+        exec::map(height.div_ceil(BAND), job.part(0.0, 0.6), |band| {
+            plane_fit::band(inverse_depth, confidence, radius, band * BAND..((band + 1) * BAND).min(height))
+        })
+    };
+    // Making room takes a while too.
+    let (bands, normals) = exec::both(bands, || Image::new(width, height, 3));
+    let (bands, mut normals) = (bands?, normals?);
     let fits_of = |y: usize| FitRow::of(&bands[y / BAND], y % BAND, width);
 
-    let mut normals = Image::new(width, height, 3)?;
     let origin = frustum.ray(frustum.ndc(0, 0, width, height));
     let step_x = (frustum.right - frustum.left) / (frustum.near * width as f32);
     let step_y = (frustum.bottom - frustum.top) / (frustum.near * height as f32);
     let r = radius as isize;
+    let off_weight = 1.0 / (2.0 * radius as f32 + 1.0);
     exec::for_rows(&mut normals.data, width * 3, job.part(0.6, 1.0), |y, row| {
-        // The best window with the pixel in it, judged also by how well it meets the pixel itself.
         let w = inverse_depth.row(y);
-        let mut best = Best { cost: vec![f32::INFINITY; width], dx: vec![0.0; width], dy: vec![0.0; width] };
-        for [sx, sy] in SHIFTS {
-            let (shift, centre) = (sx * r, y as isize + sy * r);
-            let here = (-shift).max(0) as usize..width.saturating_sub(shift.max(0) as usize);
-            if centre < 0 || centre >= height as isize || here.is_empty() {
-                continue;
+        // Where windows to the left or to the right would be cut off, there are fewer of them.
+        let inner = radius.min(width)..width.saturating_sub(radius).max(radius.min(width));
+        for part in [0..inner.start, inner.clone(), inner.end..width] {
+            for start in part.clone().step_by(TILE) {
+                let tile = start..(start + TILE).min(part.end);
+                let windows = SHIFTS.map(|[sx, sy]| {
+                    let (shift, centre) = (sx * r, y as isize + sy * r);
+                    let there = tile.start as isize + shift..tile.end as isize + shift;
+                    let is_inside =
+                        (0..height as isize).contains(&centre) && there.start >= 0 && there.end <= width as isize;
+                    is_inside.then(|| Windows {
+                        fits: fits_of(centre as usize).columns(there.start as usize..there.end as usize),
+                        steps: [shift as f32, (sy * r) as f32],
+                        favour: if (sx, sy) == (0, 0) { PREFER_CENTRED } else { 1.0 },
+                    })
+                });
+                let best = best_of(&w[tile.clone()], &windows, off_weight);
+                let first_x = origin.x + step_x * tile.start as f32;
+                let rays = Rays { first_x, step_x, y: origin.y + step_y * y as f32, step_y };
+                let out = &mut row[3 * tile.start..3 * tile.end];
+                plane_normals(&w[tile.clone()], &confidence.row(y)[tile], &best, rays, out);
             }
-            let there = here.start.wrapping_add_signed(shift)..here.end.wrapping_add_signed(shift);
-            let favour = if (sx, sy) == (0, 0) { PREFER_CENTRED } else { 1.0 };
-            let off_weight = 1.0 / (2.0 * radius as f32 + 1.0);
-            let fits = fits_of(centre as usize).columns(there);
-            let steps = [shift as f32, (sy * r) as f32];
-            prefer(
-                &w[here.clone()],
-                fits,
-                steps,
-                [favour, off_weight],
-                [&mut best.cost[here.clone()], &mut best.dx[here.clone()], &mut best.dy[here]],
-            );
         }
-        let rays = Rays { first_x: origin.x, step_x, y: origin.y + step_y * y as f32, step_y };
-        plane_normals(w, confidence.row(y), &best, rays, row);
     })?;
     Ok(normals)
 }
 
 widest! {
-    /// Takes the fits that cost less than the best so far: `steps` away from them, `weights` of the whole and of how far
-    /// they miss the pixel.
-    fn prefer(w: &[f32], fits: FitRow, steps: [f32; 2], weights: [f32; 2], best: [&mut [f32]; 3]) {
-        let n = w.len();
-        let [cost, dx, dy] = best;
-        let (cost, dx, dy) = (&mut cost[..n], &mut dx[..n], &mut dy[..n]);
-        let (value, fit_dx, fit_dy, residual) =
-            (&fits.value[..n], &fits.dx[..n], &fits.dy[..n], &fits.residual[..n]);
-        for x in 0..n {
-            let off = value[x] - fit_dx[x] * steps[0] - fit_dy[x] * steps[1] - w[x];
-            let new = weights[0] * (residual[x] + off * off * weights[1]);
-            let is_better = new < cost[x];
-            cost[x] = if is_better { new } else { cost[x] };
-            dx[x] = if is_better { fit_dx[x] } else { dx[x] };
-            dy[x] = if is_better { fit_dy[x] } else { dy[x] };
+    /// The windows with the pixels in them that cost least: by what they leave, and by how far they miss the pixel itself.
+    fn best_of(w: &[f32], windows: &[Option<Windows>; 9], off_weight: f32) -> Best {
+        let mut best = Best { cost: [f32::INFINITY; TILE], dx: [0.0; TILE], dy: [0.0; TILE] };
+        for start in (0..w.len()).step_by(LANES) {
+            let w = lanes(w, start);
+            // New arrays for old: what is changed in place goes through memory, masked, which takes three times as long.
+            let (mut cost, mut dx, mut dy) = ([f32::INFINITY; LANES], [0.0; LANES], [0.0; LANES]);
+            for Windows { fits, steps, favour } in windows.iter().flatten() {
+                let (value, residual) = (lanes(fits.value, start), lanes(fits.residual, start));
+                let (fit_dx, fit_dy) = (lanes(fits.dx, start), lanes(fits.dy, start));
+                let new: [f32; LANES] = std::array::from_fn(|k| {
+                    let off = value[k] - fit_dx[k] * steps[0] - fit_dy[k] * steps[1] - w[k];
+                    favour * (residual[k] + off * off * off_weight)
+                });
+                let is_better: [bool; LANES] = std::array::from_fn(|k| new[k] < cost[k]);
+                let better = |new: [f32; LANES], old: [f32; LANES]| -> [f32; LANES] {
+                    std::array::from_fn(|k| if is_better[k] { new[k] } else { old[k] })
+                };
+                (cost, dx, dy) = (better(new, cost), better(fit_dx, dx), better(fit_dy, dy));
+            }
+            best.cost[start..start + LANES].copy_from_slice(&cost);
+            best.dx[start..start + LANES].copy_from_slice(&dx);
+            best.dy[start..start + LANES].copy_from_slice(&dy);
         }
+        best
+    }
+}
+
+/// Values from `start` on; zeros where there are none.
+#[inline(always)]
+fn lanes(values: &[f32], start: usize) -> [f32; LANES] {
+    match values.get(start..start + LANES).map(TryInto::try_into) {
+        Some(Ok(whole)) => whole,
+        _ => std::array::from_fn(|k| values.get(start + k).copied().unwrap_or(0.0)),
     }
 }
 

@@ -135,7 +135,7 @@ widest! {
             let region = (*likely + turn) % judge.seen.len();
             let distance = judge.seen[region].evaluate(planes, judge.channels);
             for k in 0..TILE {
-                nearest[k] = if distance[k] < nearest[k] { distance[k] } else { nearest[k] };
+                nearest[k] = nearest[k].min(distance[k]);
             }
             all_within = nearest.iter().fold(true, |within, &v| within & (v <= 1.0));
             if all_within {
