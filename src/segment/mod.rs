@@ -40,7 +40,8 @@ use crate::exec;
 use crate::features::CHANNELS;
 use crate::image::Image;
 use crate::job::Job;
-use select::Question;
+use samples::Samples;
+use select::{Chosen, Question};
 
 #[derive(Clone, Copy)]
 pub struct Input<'a> {
@@ -176,27 +177,11 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Segmentation> {
         check_range("the number of channels of within", within.channels, 1, 1)?;
     }
 
-    // Examples.
     let channels: Vec<usize> = (0..features.channels).filter(|c| subsets.iter().any(|s| s >> c & 1 == 1)).collect();
-    let beside = || (samples::probe(input, &channels), classify::Blank::new(features.width, features.height));
-    let (samples, (probe, blank)) = exec::both(|| samples::draw(input, &channels, params), beside);
-    let (samples, blank) = (samples?, blank?);
-    job.check()?;
-    if !samples.values.iter().chain(&probe).all(|v| v.is_finite()) {
-        return Err(not_finite(
-            exec::map(features.height, job, |y| classify::count_bad(features.row(y)))?.iter().sum(),
-        ));
-    }
-
-    // The model and the channels that do best on strokes they have not seen.
-    let columns = |subset: &u32| (0..channels.len()).filter(|&i| subset >> channels[i] & 1 == 1).collect();
-    let question = Question {
-        samples: &samples,
-        subsets: &subsets.iter().map(columns).collect::<Vec<Vec<usize>>>(),
-        probe: &probe,
-        ridge: params.ridge,
-    };
-    let chosen = select::choose(&question, job.part(0.05, 0.4))?;
+    // Making room for the answers takes a while, which learning can share.
+    let blank = || classify::Blank::new(features.width, features.height);
+    let (learnt, blank) = exec::both(|| learn(input, params, &subsets, &channels, job.part(0.0, 0.4)), blank);
+    let ((samples, chosen), blank) = (learnt?, blank?);
 
     // Every pixel.
     let classified = classify::run(features, input.within, &channels, &chosen, blank, job.part(0.4, 1.0))?;
@@ -216,4 +201,26 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Segmentation> {
         contradictory: samples.contradictory,
         off_image: samples.off_image,
     })
+}
+
+/// Draws examples of the given channels, and finds the model and the subset of channels that do best on strokes they have
+/// not seen.
+fn learn(input: &Input, params: &Params, subsets: &[u32], channels: &[usize], job: Job) -> Result<(Samples, Chosen)> {
+    let features = input.features;
+    let (samples, probe) = exec::both(|| samples::draw(input, channels, params), || samples::probe(input, channels));
+    let samples = samples?;
+    job.check()?;
+    if !samples.values.iter().chain(&probe).all(|v| v.is_finite()) {
+        let bad = exec::map(features.height, job, |y| classify::count_bad(features.row(y)))?;
+        return Err(not_finite(bad.iter().sum()));
+    }
+    let columns = |subset: &u32| (0..channels.len()).filter(|&i| subset >> channels[i] & 1 == 1).collect();
+    let question = Question {
+        samples: &samples,
+        subsets: &subsets.iter().map(columns).collect::<Vec<Vec<usize>>>(),
+        probe: &probe,
+        ridge: params.ridge,
+    };
+    let chosen = select::choose(&question, job)?;
+    Ok((samples, chosen))
 }
