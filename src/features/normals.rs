@@ -141,19 +141,25 @@ fn lanes(values: &[f32], start: usize) -> [f32; LANES] {
 widest! {
     /// Normals of planes `1/z = a · ray` from the inverse depth `w` and its steps, turned to the camera.
     fn plane_normals(w: &[f32], confidence: &[f32], best: &Best, rays: Rays, out: &mut [f32]) {
-        let n = w.len();
-        let (confidence, cost, dx, dy) = (&confidence[..n], &best.cost[..n], &best.dx[..n], &best.dy[..n]);
+        let n = w.len().min(TILE);
+        let (w, confidence) = (&w[..n], &confidence[..n]);
         let (per_x, per_y) = (1.0 / rays.step_x, 1.0 / rays.step_y);
-        for (x, out) in out.chunks_exact_mut(3).enumerate().take(n) {
+        let mut planes = [[0.0; TILE]; 3];
+        let [nx, ny, nz] = &mut planes;
+        for x in 0..n {
             // a · ray = w > 0: `a` points away from the camera.
-            let (ax, ay) = (dx[x] * per_x, dy[x] * per_y);
+            let (ax, ay) = (best.dx[x] * per_x, best.dy[x] * per_y);
             let az = w[x] - ax * (rays.first_x + rays.step_x * x as f32) - ay * rays.y;
             let length = (ax * ax + ay * ay + az * az).sqrt();
-            let is_plane = confidence[x] > 0.0 && cost[x] < f32::INFINITY && length > 0.0 && length < f32::INFINITY;
-            let scale = if is_plane { -1.0 / length } else { 0.0 };
-            out[0] = if is_plane { ax * scale } else { 0.0 };
-            out[1] = if is_plane { ay * scale } else { 0.0 };
-            out[2] = if is_plane { az * scale } else { -1.0 };
+            let is_plane =
+                (confidence[x] > 0.0) & (best.cost[x] < f32::INFINITY) & (length > 0.0) & (length < f32::INFINITY);
+            let scale = -1.0 / length;
+            nx[x] = if is_plane { ax * scale } else { 0.0 };
+            ny[x] = if is_plane { ay * scale } else { 0.0 };
+            nz[x] = if is_plane { az * scale } else { -1.0 };
+        }
+        for (x, out) in out.as_chunks_mut::<3>().0.iter_mut().enumerate().take(n) {
+            *out = [nx[x], ny[x], nz[x]];
         }
     }
 }
