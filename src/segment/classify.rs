@@ -112,9 +112,11 @@ impl Form {
 
 /// What is said of a tile.
 struct Answer {
+    mask: [f32; TILE],
     probability: [f32; TILE],
-    /// How far beyond what was seen.
+    /// How far beyond what was seen, and whether no pixel is: then all their features are finite.
     beyond: [f32; TILE],
+    all_within: bool,
 }
 
 widest! {
@@ -153,12 +155,13 @@ widest! {
 
         let logit = judge.logit.evaluate(planes, &judge.deciding);
         let [familiar, unfamiliar] = judge.calibration;
-        let mut probability = [0.0; TILE];
+        let (mut mask, mut probability) = ([0.0; TILE], [0.0; TILE]);
         for k in 0..TILE {
             let calibration = familiar + (unfamiliar - familiar) * beyond[k];
             probability[k] = 1.0 / (1.0 + exp_f32(-calibration * logit[k]));
+            mask[k] = if probability[k] > 0.5 { 1.0 } else { 0.0 };
         }
-        Answer { probability, beyond }
+        Answer { mask, probability, beyond, all_within }
     }
 }
 
@@ -184,6 +187,7 @@ pub fn run(
     };
     let Blank { mut mask, mut confidence, mut unseen } = blank;
     let bad = AtomicUsize::new(0);
+    let looks_at_all = channels.len() == features.channels;
     // The bits of each row's sum: added up in order, they make the same mean for any number of threads.
     let sums: Vec<AtomicU64> = (0..height).map(|_| AtomicU64::new(0)).collect();
     let images = [&mut mask, &mut confidence, &mut unseen].map(|image| image.data.as_mut_slice());
@@ -195,22 +199,21 @@ pub fn run(
         for x in (0..width).step_by(TILE) {
             let n = TILE.min(width - x);
             let pixels = &source[x * features.channels..(x + n) * features.channels];
-            let bad_here = count_bad(pixels);
-            if bad_here > 0 {
-                bad.fetch_add(bad_here, Ordering::Relaxed);
+            let mut answer = judge(&judges, pixels, planes, &mut likely);
+            if !(answer.all_within && looks_at_all) {
+                bad.fetch_add(count_bad(pixels), Ordering::Relaxed);
             }
-            let Answer { mut probability, mut beyond } = judge(&judges, pixels, planes, &mut likely);
             if let Some(within) = within {
                 for (k, &w) in within.row(y)[x..x + n].iter().enumerate() {
                     if w.is_nan() || w <= 0.5 {
-                        (probability[k], beyond[k]) = (0.0, 0.0);
+                        (answer.mask[k], answer.probability[k], answer.beyond[k]) = (0.0, 0.0, 0.0);
                     }
                 }
             }
-            sum += f64::from(sum_of(&beyond[..n]));
-            confidence[x..x + n].copy_from_slice(&probability[..n]);
-            unseen[x..x + n].copy_from_slice(&beyond[..n]);
-            mask[x..x + n].iter_mut().zip(&probability).for_each(|(m, &p)| *m = f32::from(p > 0.5));
+            sum += f64::from(sum_of(&answer.beyond[..n]));
+            mask[x..x + n].copy_from_slice(&answer.mask[..n]);
+            confidence[x..x + n].copy_from_slice(&answer.probability[..n]);
+            unseen[x..x + n].copy_from_slice(&answer.beyond[..n]);
         }
         sums[y].store(sum.to_bits(), Ordering::Relaxed);
     })?;
