@@ -120,8 +120,8 @@ struct Answer {
 }
 
 widest! {
-    /// Judges at most a tile of pixels. `likely` is the region that held the tile before, and
-    /// tried first.
+    /// Judges at most a tile of pixels; the answers beyond the last mean nothing. `likely` is the region that held a tile
+    /// before, and is tried first: which one is does not change the answer.
     fn judge(judge: &Judge, pixels: &[f32], planes: &mut [Plane], likely: &mut usize) -> Answer {
         deinterleave(pixels, planes);
         for (&channel, (mean, scale)) in judge.channels.iter().zip(judge.mean.iter().zip(&judge.scale)) {

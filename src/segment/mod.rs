@@ -17,6 +17,9 @@
 //! Known weakness: with strokes on few surfaces nothing held out tells channels apart, and the simplest that separate what
 //! was painted are taken; probabilities there are too sure.
 //!
+//! Nothing is kept from one run to the next: with one stroke more everything is learnt and judged anew, so that an answer
+//! depends on the strokes alone and not on the order in which they came to be seen.
+//!
 //! Not modelled: neighbourhood. Every pixel is judged alone.
 
 mod classify;
