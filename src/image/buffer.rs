@@ -27,7 +27,7 @@ pub fn try_vec<T: Clone>(len: usize, value: T) -> Result<Vec<T>> {
 pub fn try_with_capacity<T>(len: usize) -> Result<Vec<T>> {
     let mut data = Vec::new();
     data.try_reserve_exact(len).map_err(|_| no_memory::<T>(len))?;
-    prefer_huge(&data);
+    prefer_huge(data.spare_capacity_mut());
     Ok(data)
 }
 
@@ -44,7 +44,8 @@ pub fn try_collect<T>(items: impl IntoIterator<Item = T>) -> Result<Vec<T>> {
     Ok(data)
 }
 
-fn no_memory<T>(len: usize) -> Error {
+/// The error where there is no room for so many items.
+pub(crate) fn no_memory<T>(len: usize) -> Error {
     let mib = (len as f64) * size_of::<T>() as f64 / (1 << 20) as f64;
     Error::new(ErrorKind::OutOfMemory, format!("could not allocate {mib:.1} MiB"))
 }

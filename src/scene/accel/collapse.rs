@@ -6,13 +6,15 @@
 //!
 //! The tree is cut into parts near its root, which are done in parallel. Where it is cut depends on the tree alone.
 
-use super::costs::{Binary, Branch, Content, Scale, Source, distribute};
+use super::costs::{Binary, Branch, Content, Source, distribute};
 use super::lines::{Draft, Lines};
 use super::node::{Child, Node};
 use super::packet::{Packet, WIDTH};
+use super::tree::{Tree, half_area};
 use super::{Accel, pages};
 use crate::error::{Error, ErrorKind, Result};
 use crate::job::Job;
+use glam::Vec3;
 use rayon::prelude::*;
 use std::collections::{BinaryHeap, HashMap};
 
@@ -25,13 +27,12 @@ const PAGE_LINES: usize = 64;
 
 /// Builds the nodes and packets of `accel`.
 pub(super) fn run(source: &Source, accel: &mut Accel, job: Job) -> Result<()> {
-    let scale = Scale::of(accel.low, accel.high);
     // Costs: of the parts in parallel, then of what lies above them.
     let cut = source.cut();
-    let part = |&root: &u32| job.check().and_then(|()| Binary::new(source, root, &HashMap::new(), &[], scale));
+    let part = |&root: &u32| job.check().and_then(|()| Binary::new(source, root, &HashMap::new(), &[]));
     let mut binaries: Vec<Binary> = cut.par_iter().map(part).collect::<Result<_>>()?;
     let places: HashMap<u32, u32> = cut.iter().enumerate().map(|(i, &node)| (node, i as u32)).collect();
-    binaries.push(Binary::new(source, 0, &places, &binaries, scale)?);
+    binaries.push(Binary::new(source, Tree::ROOT, &places, &binaries)?);
     // Choices: those above the parts first; they leave subtrees of parts, which are done in parallel.
     let choice = Choice { source, binaries: &binaries };
     let mut top = choice.widen((cut.len(), 0), true)?;
@@ -65,19 +66,18 @@ pub(super) fn run(source: &Source, accel: &mut Accel, job: Job) -> Result<()> {
 impl Source<'_> {
     /// Roots of the parts: the tree is opened where its boxes are largest. Empty for a small tree.
     fn cut(&self) -> Vec<u32> {
-        let parts = (self.units.len() / PART_LEAVES).min(PARTS);
+        let parts = (self.tree.pairs.len() / PART_LEAVES).min(PARTS);
         if parts < FEW_PARTS {
             return Vec::new();
         }
-        let nodes = &self.tree.nodes;
         // Areas are not negative: their bits sort as they do.
-        let entry = |index: u32| (nodes[index as usize].aabb().half_area().to_bits(), index);
-        let mut open = BinaryHeap::from([entry(0)]);
+        let entry = |index: u32| (half_area(self.tree[index].aabb()).to_bits(), index);
+        let mut open = BinaryHeap::from([entry(Tree::ROOT)]);
         let mut leaves = Vec::new();
         while open.len() + leaves.len() < parts
             && let Some((_, index)) = open.pop()
         {
-            let node = &nodes[index as usize];
+            let node = &self.tree[index];
             if node.is_leaf() {
                 leaves.push(index);
             } else {
@@ -186,6 +186,7 @@ impl Choice<'_> {
         let packets = ranked.map(|(_, at)| self.is_packet(at).then(|| self.triangles(at)));
         wide.stack_need = wide.stack_need.max(this.waiting + len);
         let waiting = this.waiting + len - 1;
+        let unscale = 1.0 / self.source.scale;
         for (lane, &(_, at)) in ranked[..len].iter().enumerate() {
             let mut child = Child::EMPTY;
             if leave && at.0 != root.0 {
@@ -193,10 +194,11 @@ impl Choice<'_> {
             } else if let Some(ids) = &packets[lane] {
                 child = Child::of_packet(wide.lines.push(&self.packet(ids))?);
             } else {
-                open.push(Open { place: at, area: self.area(at), parent: Some((node, lane)), waiting });
+                open.push(Open { place: at, area: self.branch(at).area, parent: Some((node, lane)), waiting });
             }
             let branch = self.branch(at);
-            wide.lines.get_mut::<Node>(node).set(lane, branch.low, branch.high, child);
+            let [low, high] = [branch.shape.min, branch.shape.max].map(|p| Vec3::from(p * unscale));
+            wide.lines.get_mut::<Node>(node).set(lane, low, high, child);
         }
         Ok(())
     }
@@ -206,14 +208,8 @@ impl Choice<'_> {
     /// one behind the other, so that the chance of any is less.
     fn promise(&self, place: Place) -> f32 {
         let branch = self.branch(place);
-        let area = self.area(place);
-        let chance = branch.surface / (branch.surface + area);
-        chance * area / branch.cost[0]
-    }
-
-    fn area(&self, place: Place) -> f32 {
-        let branch = self.branch(place);
-        self.binaries[place.0].scale.area(branch.low, branch.high)
+        let chance = branch.surface / (branch.surface + branch.area);
+        chance * branch.area / branch.cost[0]
     }
 
     fn is_packet(&self, (binary, at): Place) -> bool {
@@ -278,8 +274,8 @@ impl Choice<'_> {
                     open[waiting] = (part as usize, 0);
                     waiting += 1;
                 }
-                Content::Unit(unit) => {
-                    for id in self.source.units[unit as usize].ids() {
+                Content::Leaf(first) => {
+                    for id in self.branch((binary, at)).triangles(first) {
                         pages::prefetch(&raw const self.source.triangles[id as usize], 1);
                         ids[len] = id;
                         len += 1;

@@ -16,6 +16,8 @@ pub(super) trait Lanes: Copy {
 
     fn splat(value: f32) -> Self;
     fn load(row: &Row) -> Self;
+    /// The same from any place.
+    fn load_from(values: &[f32; 8]) -> Self;
     fn store(self) -> Row;
     fn add(self, other: Self) -> Self;
     fn sub(self, other: Self) -> Self;
@@ -25,6 +27,8 @@ pub(super) trait Lanes: Copy {
     fn min(self, other: Self) -> Self;
     fn max(self, other: Self) -> Self;
     fn abs(self) -> Self;
+    /// Bits of a mask are replaced by others.
+    fn with_bits(self, mask: u32, others: &[u32; 8]) -> Self;
     /// `self * factor + term`, rounded once or twice: for bounds that have a margin only.
     fn mul_add(self, factor: Self, term: Self) -> Self;
     fn le(self, other: Self) -> Self::Mask;
@@ -72,6 +76,11 @@ impl Lanes for Baseline {
     }
 
     #[inline(always)]
+    fn load_from(values: &[f32; 8]) -> Self {
+        Self([Vec4::from_slice(&values[..4]), Vec4::from_slice(&values[4..])])
+    }
+
+    #[inline(always)]
     fn store(self) -> Row {
         let mut row = Row([0.0; 8]);
         self.0[0].write_to_slice(&mut row.0[..4]);
@@ -112,6 +121,13 @@ impl Lanes for Baseline {
     #[inline(always)]
     fn abs(self) -> Self {
         Self(self.0.map(Vec4::abs))
+    }
+
+    #[inline(always)]
+    fn with_bits(self, mask: u32, others: &[u32; 8]) -> Self {
+        let mut row = self.store();
+        row.0.iter_mut().zip(others).for_each(|(value, bits)| *value = f32::from_bits(value.to_bits() & !mask | bits));
+        Self::load(&row)
     }
 
     #[inline(always)]
@@ -210,6 +226,11 @@ mod avx2 {
         }
 
         #[inline(always)]
+        fn load_from(values: &[f32; 8]) -> Self {
+            Self(unsafe { _mm256_loadu_ps(values.as_ptr()) })
+        }
+
+        #[inline(always)]
         fn store(self) -> Row {
             let mut row = Row([0.0; 8]);
             unsafe { _mm256_store_ps(row.0.as_mut_ptr(), self.0) };
@@ -249,6 +270,14 @@ mod avx2 {
         #[inline(always)]
         fn abs(self) -> Self {
             Self(unsafe { _mm256_andnot_ps(_mm256_set1_ps(-0.0), self.0) })
+        }
+
+        #[inline(always)]
+        fn with_bits(self, mask: u32, others: &[u32; 8]) -> Self {
+            unsafe {
+                let kept = _mm256_andnot_ps(_mm256_castsi256_ps(_mm256_set1_epi32(mask as i32)), self.0);
+                Self(_mm256_or_ps(kept, _mm256_castsi256_ps(_mm256_loadu_si256(others.as_ptr().cast()))))
+            }
         }
 
         #[inline(always)]

@@ -7,6 +7,7 @@ use super::node::Node;
 use super::packet::Packet;
 use super::pages::{self, Pages};
 use crate::error::Result;
+use crate::image::try_with_capacity;
 use std::ops::DerefMut;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,7 +39,7 @@ const fn lines_of<T>() -> usize {
 
 impl Draft {
     pub fn with_room(len: usize) -> Result<Self> {
-        Ok(Self { list: pages::reserve(len)? })
+        Ok(Self { list: try_with_capacity(len)? })
     }
 
     /// Appends a node or a packet; gives its line.

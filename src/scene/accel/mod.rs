@@ -12,16 +12,18 @@
 
 mod aligned;
 mod build;
+mod cluster;
 mod collapse;
 mod costs;
 mod lanes;
+mod leaves;
 mod lines;
 mod node;
 mod packet;
 mod pages;
 mod reinsert;
 mod stack;
-mod units;
+mod tree;
 
 use crate::error::Result;
 use crate::job::Job;

@@ -4,14 +4,13 @@
 //! looking up pages costs as much as reading them. On Linux it is therefore put on huge pages, which the system grants
 //! to those who ask.
 
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::Result;
+use crate::image::pages::{HUGE, prefer_huge};
+use crate::image::{no_memory, try_with_capacity};
 use rayon::prelude::*;
-use std::hint::black_box;
 use std::mem::MaybeUninit;
 use std::ops::{Deref, DerefMut};
 
-/// Bytes of a huge page.
-const HUGE: usize = 2 << 20;
 /// Bytes from which on a huge page takes no longer to get than the small ones it replaces.
 const WORTH: usize = HUGE / 4;
 
@@ -69,26 +68,27 @@ fn room_on_huge_pages<T>(len: usize) -> Result<(Vec<MaybeUninit<T>>, usize)> {
     // The last page is a huge one too where most of its small ones would be needed.
     let huge = if bytes % HUGE >= WORTH { bytes.next_multiple_of(HUGE) } else { bytes / HUGE * HUGE };
     let around = if huge == 0 { 0 } else { 2 * HUGE / size_of::<T>() };
-    let mut room = reserve::<MaybeUninit<T>>(len.saturating_add(around))?;
+    let mut room = Vec::<MaybeUninit<T>>::new();
+    make_room(&mut room, len.saturating_add(around))?;
     // SAFETY: such items need not be initialised.
     unsafe { room.set_len(len + around) };
     if huge == 0 {
         return Ok((room, 0));
     }
     let first = (room.as_ptr() as usize).wrapping_neg() % HUGE / size_of::<T>();
-    #[cfg(target_os = "linux")]
-    // SAFETY: the range is part of one allocation. The advice changes nothing that can be observed but speed, and where
-    // it is not taken, nothing at all: its result does not matter.
-    unsafe {
-        libc::madvise(room.as_mut_ptr().add(first).cast(), huge, libc::MADV_HUGEPAGE);
-    }
+    prefer_huge(&room[first..first + huge / size_of::<T>()]);
     Ok((room, first))
 }
 
-/// An error where there is no room for so many bytes.
-pub(super) fn expect_room(bytes: usize) -> Result<()> {
-    // A reservation that nothing uses might be optimised away, and found possible.
-    reserve::<u8>(bytes).map(|room| drop(black_box(room)))
+/// Copies of an item, written in parallel: it is the first writing of a page that takes time.
+pub(super) fn filled<T: Copy + Send + Sync>(len: usize, item: T) -> Result<Vec<T>> {
+    let mut list = try_with_capacity(len)?;
+    if len * size_of::<T>() < HUGE {
+        list.resize(len, item);
+    } else {
+        rayon::iter::repeat_n(item, len).with_min_len(HUGE / 4 / size_of::<T>()).collect_into_vec(&mut list);
+    }
+    Ok(list)
 }
 
 /// Asks memory for a number of cache lines from an item on, which will be needed soon.
@@ -110,31 +110,5 @@ pub(super) fn make_room<T>(list: &mut Vec<T>, more: usize) -> Result<()> {
     if list.capacity() - list.len() >= more {
         return Ok(());
     }
-    list.try_reserve(more).map_err(|_| no_room::<T>(list.len() + more))
-}
-
-/// An empty list with room for `len` items, or an error.
-pub(super) fn reserve<T>(len: usize) -> Result<Vec<T>> {
-    let mut list = Vec::new();
-    list.try_reserve_exact(len).map_err(|_| no_room::<T>(len))?;
-    Ok(list)
-}
-
-#[cold]
-fn no_room<T>(len: usize) -> Error {
-    let mib = (len as f64) * size_of::<T>() as f64 / (1 << 20) as f64;
-    Error::new(ErrorKind::OutOfMemory, format!("could not allocate {mib:.1} MiB"))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn room_that_no_machine_has_is_an_error() {
-        assert!(expect_room(1 << 20).is_ok());
-        for bytes in [1 << 60, usize::MAX] {
-            assert_eq!(expect_room(bytes).unwrap_err().kind, ErrorKind::OutOfMemory);
-        }
-    }
+    list.try_reserve(more).map_err(|_| no_memory::<T>(list.len() + more))
 }

@@ -6,16 +6,19 @@
 //! paper's: of two children the one that promises more is entered first, and neither that can promise no gain.
 
 use super::pages;
-use crate::error::{Error, Result};
+use super::tree::{Pair, Tree, half_area};
+use crate::error::Result;
+use crate::image::try_collect;
 use crate::job::Job;
 use obvhs::aabb::Aabb;
-use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::node::Bvh2Node;
 use rayon::prelude::*;
 use std::cmp::Reverse;
 
-/// Searches made by one piece of parallel work.
-const CHUNK: usize = 64;
+/// Pairs of nodes looked at by one piece of parallel work.
+const CHUNK: usize = 256;
+/// Bits of an area that tell its size well enough: the exponent, and a few of the fraction.
+const SIZE_BITS: u32 = 8 + 4;
 
 /// A subtree, the node beside which it is better, and the area by which all boxes together shrink.
 #[derive(Clone, Copy)]
@@ -26,91 +29,96 @@ struct Move {
 }
 
 pub(super) struct Reinsertion<'a> {
-    nodes: &'a mut [Bvh2Node],
-    /// Of each pair of siblings: nodes `2 * i + 1` and `2 * i + 2`.
-    parents: Vec<u32>,
+    tree: &'a mut Tree,
     touched: Vec<bool>,
-    moves: Vec<Move>,
 }
 
 fn pair(node: u32) -> usize {
-    (node as usize - 1) / 2
+    node as usize / 2
+}
+
+/// Areas are not negative: their bits sort as they do.
+fn size(area: f32) -> usize {
+    (area.to_bits() >> (31 - SIZE_BITS)) as usize
 }
 
 fn sibling(node: u32) -> u32 {
-    ((node - 1) ^ 1) + 1
+    node ^ 1
 }
 
 impl<'a> Reinsertion<'a> {
-    /// The root is node 0, and siblings are next to each other from node 1 on.
-    pub fn new(tree: &'a mut Bvh2) -> Result<Self> {
-        let nodes = tree.nodes.as_mut_slice();
-        let mut parents = pages::reserve(nodes.len() / 2)?;
-        parents.resize(nodes.len() / 2, 0);
-        for (at, node) in nodes.iter().enumerate().filter(|(_, node)| !node.is_leaf()) {
-            parents[pair(node.first_index)] = at as u32;
-        }
-        let mut touched = pages::reserve(nodes.len())?;
-        touched.resize(nodes.len(), false);
-        Ok(Self { nodes, parents, touched, moves: Vec::new() })
+    pub fn new(tree: &'a mut Tree) -> Result<Self> {
+        let touched = pages::filled(tree.len(), false)?;
+        Ok(Self { tree, touched })
     }
 
-    /// Tries to move a number of the largest nodes. The builder puts these first, about, so only twice as many are looked at.
-    pub fn round(&mut self, count: usize, job: Job) -> Result<()> {
-        let seen = (2 * count).min(self.nodes.len());
-        let mut largest: Vec<u64> = pages::reserve(seen)?;
-        // Areas are not negative: their bits sort as they do.
-        let key = |at: usize| u64::from(self.nodes[at].aabb().half_area().to_bits()) << 32 | at as u64;
-        largest.extend((1..seen).map(key));
-        if count < largest.len() {
-            largest.select_nth_unstable_by_key(count, |&key| Reverse(key));
-            largest.truncate(count);
+    /// An area that a share of all nodes have or exceed: about, and rather fewer.
+    pub fn area_of_largest(&self, share: f32) -> f32 {
+        let mut counts = vec![0; 1 << SIZE_BITS];
+        for node in self.tree.pairs.iter().flat_map(|pair| &pair.0) {
+            counts[size(half_area(node.aabb()))] += 1;
         }
-        let mut moves = std::mem::take(&mut self.moves);
-        moves.clear();
-        pages::make_room(&mut moves, largest.len())?;
-        moves.extend(largest.iter().map(|&key| Move { from: key as u32, to: 0, gain: 0.0 }));
-        moves.par_chunks_mut(CHUNK).try_for_each(|moves| {
+        let mut left = (share * self.tree.len() as f32) as usize;
+        let enough = |count: &usize| {
+            left = left.checked_sub(*count)?;
+            Some(())
+        };
+        let smaller = counts.len() - counts.iter().rev().map_while(enough).count();
+        f32::from_bits((smaller as u32) << (31 - SIZE_BITS))
+    }
+
+    /// Tries to move all nodes of at least an area.
+    pub fn round(&mut self, least: f32, job: Job) -> Result<()> {
+        let search = |(i, pairs): (usize, &[Pair])| {
             job.check()?;
-            let mut stack = Vec::new();
-            moves.iter_mut().for_each(|this| *this = self.best_move(this.from, &mut stack));
-            Ok::<_, Error>(())
-        })?;
-        moves.retain(|m| m.gain > 0.0);
+            let (mut moves, mut stack) = (Vec::new(), Vec::new());
+            let first = (2 * CHUNK * i) as u32;
+            for (from, node) in (first..).zip(pairs.iter().flat_map(|pair| &pair.0)) {
+                if from > Tree::ROOT && half_area(node.aabb()) >= least {
+                    let this = self.best_move(from, &mut stack);
+                    if this.gain > 0.0 {
+                        moves.push(this);
+                    }
+                }
+            }
+            Ok(moves)
+        };
+        let found: Vec<Vec<Move>> = self.tree.pairs.par_chunks(CHUNK).enumerate().map(search).collect::<Result<_>>()?;
+        let mut moves = try_collect(found.into_iter().flatten())?;
         moves.par_sort_unstable_by_key(|m| (Reverse(m.gain.to_bits()), m.from));
         for &this in &moves {
             self.make(this);
         }
         self.touched.fill(false);
-        self.moves = moves;
         Ok(())
     }
 
     fn parent(&self, node: u32) -> u32 {
-        self.parents[pair(node)]
+        self.tree.parents[pair(node)]
     }
 
     fn aabb(&self, node: u32) -> &Aabb {
-        self.nodes[node as usize].aabb()
+        self.tree[node].aabb()
     }
 
     /// Where a subtree is best: its parent goes, the boxes on the way up shrink, and those on the way down grow.
     fn best_move(&self, from: u32, waiting: &mut Vec<Waiting>) -> Move {
         let this = self.aabb(from);
         let best = Move { from, to: 0, gain: 0.0 };
-        let mut search = Search { nodes: self.nodes, this, area: this.half_area(), best, waiting };
+        let mut search = Search { tree: self.tree, this, area: half_area(this), best, waiting };
         let parent = self.parent(from);
         let (mut pivot, mut beside) = (parent, sibling(from));
         // What is gained on the way up to the pivot, and the box of what stays below it.
-        let mut gained = self.aabb(parent).half_area();
+        let mut gained = half_area(self.aabb(parent));
         let mut rest = *self.aabb(beside);
         loop {
             search.below(gained, beside);
             if pivot != parent {
                 rest = rest.union(self.aabb(beside));
-                gained += self.aabb(pivot).half_area() - rest.half_area();
+                gained += half_area(self.aabb(pivot)) - half_area(&rest);
             }
-            if pivot == 0 {
+            // Even a place that made no other box grow would need one of the subtree's size above it.
+            if pivot == Tree::ROOT || gained - search.area <= search.best.gain {
                 return search.best;
             }
             beside = sibling(pivot);
@@ -126,8 +134,8 @@ impl<'a> Reinsertion<'a> {
         }
         changed.iter().for_each(|&node| self.touched[node as usize] = true);
         // The sibling takes the parent's place, the node at the new place the sibling's, and a new parent of both its.
-        let stays = self.nodes[beside as usize];
-        let joined = self.nodes[to as usize];
+        let stays = self.tree[beside];
+        let joined = self.tree[to];
         self.put(parent, stays);
         self.put(beside, joined);
         self.put(to, Bvh2Node::new(joined.aabb().union(self.aabb(from)), 0, from.min(beside)));
@@ -136,22 +144,22 @@ impl<'a> Reinsertion<'a> {
     }
 
     fn put(&mut self, at: u32, node: Bvh2Node) {
-        self.nodes[at as usize] = node;
+        self.tree[at] = node;
         if !node.is_leaf() {
-            self.parents[pair(node.first_index)] = at;
+            self.tree.parents[pair(node.first_index)] = at;
         }
     }
 
     /// Boxes from a node up, as far as they change.
     fn refit_above(&mut self, mut node: u32) {
-        while node != 0 {
+        while node != Tree::ROOT {
             node = self.parent(node);
-            let first = self.nodes[node as usize].first_index;
+            let first = self.tree[node].first_index;
             let union = self.aabb(first).union(self.aabb(first + 1));
             if union == *self.aabb(node) {
                 return;
             }
-            self.nodes[node as usize].set_aabb(union);
+            self.tree[node].set_aabb(union);
         }
     }
 }
@@ -161,7 +169,7 @@ type Waiting = (f32, u32);
 
 /// The search for the best place of a subtree.
 struct Search<'a> {
-    nodes: &'a [Bvh2Node],
+    tree: &'a Tree,
     this: &'a Aabb,
     area: f32,
     best: Move,
@@ -193,14 +201,14 @@ impl Search<'_> {
     /// area of the subtree.
     #[inline(always)]
     fn beside(&mut self, gained: f32, to: u32) {
-        let node = &self.nodes[to as usize];
-        let gain = gained - node.aabb().union(self.this).half_area();
+        let node = &self.tree[to];
+        let gain = gained - half_area(&node.aabb().union(self.this));
         if gain > self.best.gain {
             (self.best.to, self.best.gain) = (to, gain);
         }
-        let below = gain + node.aabb().half_area();
+        let below = gain + half_area(node.aabb());
         if !node.is_leaf() && below - self.area > self.best.gain {
-            pages::prefetch(&raw const self.nodes[node.first_index as usize], 2);
+            pages::prefetch(&raw const self.tree[node.first_index], 1);
             self.waiting.push((below, node.first_index));
         }
     }
@@ -211,8 +219,22 @@ mod tests {
     use super::*;
     use crate::job::Monitor;
     use crate::rng::Rng;
+    use obvhs::bvh2::Bvh2;
     use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
     use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
+
+    /// The same tree, whose root is node 0 there.
+    fn tree_of(bvh: &Bvh2) -> Tree {
+        let mut nodes = vec![Bvh2Node::default()];
+        nodes.extend(&bvh.nodes);
+        let mut parents = vec![Tree::ROOT; nodes.len() / 2];
+        for (at, node) in (0..).zip(&mut nodes).skip(1).filter(|(_, node)| !node.is_leaf()) {
+            node.first_index += 1;
+            parents[pair(node.first_index)] = at;
+        }
+        let (pairs, _) = nodes.as_chunks();
+        Tree { pairs: pairs.iter().map(|&pair| Pair(pair)).collect(), parents }
+    }
 
     #[test]
     fn boxes_shrink_stay_tight_and_lose_no_leaf() {
@@ -226,33 +248,29 @@ mod tests {
         let boxes: Vec<Aabb> = (0..LEAVES).map(|_| random_box()).collect();
         let indices = (0..LEAVES as u32).collect();
         let builder = &mut PlocBuilder::with_capacity(LEAVES);
-        let mut tree = builder.build(PlocSearchDistance::Minimum, &boxes, indices, SortPrecision::U64, 0);
-        let area = |tree: &Bvh2| tree.nodes.iter().map(|node| node.aabb().half_area()).sum::<f32>();
-        let before = area(&tree);
-        // The builder's own implementation, which does not order its search, on the same nodes.
-        let mut peer = tree.clone();
-        let (share, rounds) = (0.5, [1.0, 0.2, 0.1, 0.0]);
-        ReinsertionOptimizer::default().run(&mut peer, share, Some(rounds.to_vec()));
-        let nodes = tree.nodes.len() as f32;
+        let mut peer = builder.build(PlocSearchDistance::Minimum, &boxes, indices, SortPrecision::U64, 0);
+        let mut tree = tree_of(&peer);
+        let area_of_all = |nodes: &[Bvh2Node]| nodes.iter().map(|node| node.aabb().half_area()).sum::<f32>();
+        let before = area_of_all(&peer.nodes);
+        // The implementation of obvhs, which does not order its search, on the same nodes.
+        ReinsertionOptimizer::default().run(&mut peer, 0.5, Some(vec![1.0, 0.2, 0.1, 0.0]));
         let mut reinsertion = Reinsertion::new(&mut tree).unwrap();
-        for round in rounds {
-            reinsertion.round((nodes * share * round) as usize, Monitor::default().job()).unwrap();
+        for share in [0.5, 0.1, 0.05, 0.0] {
+            reinsertion.round(reinsertion.area_of_largest(share), Monitor::default().job()).unwrap();
         }
-        assert!(
-            area(&peer) < before && area(&tree) < 1.003 * area(&peer),
-            "{before}: {}, {}",
-            area(&tree),
-            area(&peer)
-        );
-        let (mut seen, mut open) = ([false; LEAVES], vec![0]);
+        let nodes: Vec<Bvh2Node> = tree.pairs.iter().flat_map(|pair| pair.0).collect();
+        let (after, after_peer) = (area_of_all(&nodes), area_of_all(&peer.nodes));
+        assert!(after_peer < before && after < 1.003 * after_peer, "{before}: {after}, {after_peer}");
+        let (mut seen, mut open) = ([false; LEAVES], vec![Tree::ROOT]);
         while let Some(at) = open.pop() {
-            let node = &tree.nodes[at];
-            let first = node.first_index as usize;
+            let node = &tree[at];
+            let first = node.first_index;
             if node.is_leaf() {
-                assert!(!seen[first] && *node.aabb() == boxes[first]);
-                seen[first] = true;
+                assert!(!seen[first as usize] && *node.aabb() == boxes[first as usize]);
+                seen[first as usize] = true;
             } else {
-                assert!(*node.aabb() == tree.nodes[first].aabb().union(tree.nodes[first + 1].aabb()));
+                assert!(*node.aabb() == tree[first].aabb().union(tree[first + 1].aabb()));
+                assert!(tree.parents[pair(first)] == at);
                 open.extend([first, first + 1]);
             }
         }

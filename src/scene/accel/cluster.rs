@@ -1,0 +1,246 @@
+//! The binary tree, from its leaves up: hierarchical, parallel, locally-ordered clustering (Benthin, Meister, Barczak,
+//! Mehalwal, Tsakok and Kensler 2024, "H-PLOC").
+//!
+//! The list of leaves is halved, and halved again, where the curve they are sorted along crosses the largest cubes of space.
+//! From the smallest ranges up, the clusters left of two halves are merged with their nearest neighbours until few are
+//! left: each with the one of those around it with which it has the smallest box, where that holds for both.
+//!
+//! On regular grids, which the walls of rooms are, all merges of neighbours cost the same. Of equal boxes a cluster prefers
+//! the one whose place differs from its own in the lowest bits: as both agree on that, a row of equal clusters is merged
+//! two by two. (Taken in order, hardly any two would choose each other, and those that did would lie anywhere.)
+
+use super::lanes::{Baseline, Lanes};
+use super::leaves::Leaves;
+use super::pages;
+use super::tree::{Pair, Tree};
+use crate::error::Result;
+use crate::job::Job;
+use obvhs::aabb::Aabb;
+use obvhs::bvh2::node::Bvh2Node;
+
+/// Clusters that a range is merged down to before it is joined with its neighbour.
+const FEW: usize = 32;
+/// Neighbours on either side that a cluster chooses from.
+const REACH: usize = 8;
+/// Leaves of the ranges that are done by one thread.
+const SERIAL: usize = 1024;
+const LANES: usize = 8;
+/// Bits of an area that tell the partner instead.
+const PARTNER: u32 = 2 * FEW as u32 - 1;
+
+/// The tree over all leaves, of which there is one at least.
+pub(super) fn binary_tree(leaves: &Leaves, wide: bool, job: Job) -> Result<Tree> {
+    let mut clusters = pages::filled(leaves.order.len(), Cluster::default())?;
+    // The first pair is the root's.
+    let len = leaves.order.len() + 1;
+    let mut tree = Tree { pairs: pages::filled(len, Pair::default())?, parents: pages::filled(len, Tree::ROOT)? };
+    let new = New { pairs: &mut tree.pairs[1..], parents: &mut tree.parents[1..], first: 1 };
+    let mut all = Range { leaves: &leaves.list, order: &leaves.order, clusters: &mut clusters, new, wide };
+    let left = all.merge(job)?;
+    let left = merge_nearest(&mut all.clusters[..left], &mut all.new, 1, wide);
+    debug_assert_eq!(left, 1);
+    tree.pairs[0].0[1] = clusters[0].node;
+    tree.pairs.pop();
+    tree.parents.pop();
+    Ok(tree)
+}
+
+/// A subtree whose sibling is not known yet.
+#[derive(Clone, Copy, Default)]
+struct Cluster {
+    node: Bvh2Node,
+    /// A pair of nodes that nothing below takes.
+    pair: u32,
+}
+
+/// Pairs of nodes that are to be filled.
+struct New<'a> {
+    pairs: &'a mut [Pair],
+    parents: &'a mut [u32],
+    /// The first of them, counted from that of all.
+    first: u32,
+}
+
+impl New<'_> {
+    fn split_at(&mut self, middle: usize) -> (New<'_>, New<'_>) {
+        let (left_pairs, pairs) = self.pairs.split_at_mut(middle);
+        let (left_parents, parents) = self.parents.split_at_mut(middle);
+        let left = New { pairs: left_pairs, parents: left_parents, first: self.first };
+        (left, New { pairs, parents, first: self.first + middle as u32 })
+    }
+
+    /// Makes two clusters siblings. Of their free pairs they take one; the other one is their parent's.
+    fn join(&mut self, a: &Cluster, b: &Cluster) -> Cluster {
+        let (pair, free) = (a.pair.min(b.pair), a.pair.max(b.pair));
+        self.pairs[(pair - self.first) as usize] = Pair([a.node, b.node]);
+        for (node, child) in [(2 * pair, &a.node), (2 * pair + 1, &b.node)] {
+            if !child.is_leaf() {
+                self.parents[(child.first_index / 2 - self.first) as usize] = node;
+            }
+        }
+        Cluster { node: Bvh2Node::new(a.node.aabb().union(b.node.aabb()), 0, 2 * pair), pair: free }
+    }
+}
+
+/// Some leaves, and what is made of them. There are as many new pairs as leaves, one more than it takes to join all.
+struct Range<'a> {
+    leaves: &'a [Bvh2Node],
+    order: &'a [(u64, u32)],
+    clusters: &'a mut [Cluster],
+    new: New<'a>,
+    wide: bool,
+}
+
+impl Range<'_> {
+    /// Leaves a few clusters at the front, and tells how many.
+    fn merge(&mut self, job: Job) -> Result<usize> {
+        let len = self.order.len();
+        if len <= FEW {
+            for (i, (cluster, &(_, leaf))) in self.clusters.iter_mut().zip(self.order).enumerate() {
+                *cluster = Cluster { node: self.leaves[leaf as usize], pair: self.new.first + i as u32 };
+            }
+            return Ok(len);
+        }
+        let middle = self.middle();
+        let (mut left, mut right) = self.halves(middle);
+        let (left, right) = if len > SERIAL {
+            job.check()?;
+            rayon::join(|| left.merge(job), || right.merge(job))
+        } else {
+            (left.merge(job), right.merge(job))
+        };
+        let (left, right) = (left?, right?);
+        self.clusters.copy_within(middle..middle + right, left);
+        Ok(merge_nearest(&mut self.clusters[..left + right], &mut self.new, FEW, self.wide))
+    }
+
+    /// Where the highest bit changes in which codes differ.
+    fn middle(&self) -> usize {
+        let (first, last) = (self.order[0].0, self.order[self.order.len() - 1].0);
+        if first == last {
+            return self.order.len() / 2;
+        }
+        let bit = 1 << (first ^ last).ilog2();
+        self.order.partition_point(|(code, _)| code & bit == 0)
+    }
+
+    fn halves(&mut self, middle: usize) -> (Range<'_>, Range<'_>) {
+        let Self { leaves, wide, .. } = *self;
+        let (left_order, order) = self.order.split_at(middle);
+        let (left_clusters, clusters) = self.clusters.split_at_mut(middle);
+        let (left_new, new) = self.new.split_at(middle);
+        let left = Range { leaves, order: left_order, clusters: left_clusters, new: left_new, wide };
+        (left, Range { leaves, order, clusters, new, wide })
+    }
+}
+
+/// Merges neighbours until few are left, at the front; tells how many.
+fn merge_nearest(clusters: &mut [Cluster], new: &mut New, few: usize, wide: bool) -> usize {
+    let mut len = clusters.len();
+    if len <= few {
+        return len;
+    }
+    let mut boxes = Boxes::of(clusters);
+    while len > few {
+        let choices = boxes.choose(len, wide);
+        let partner = |i: usize| i ^ (choices[i].to_bits() & PARTNER) as usize;
+        let mut kept = 0;
+        for i in 0..len {
+            let other = partner(i);
+            if partner(other) != i {
+                clusters[kept] = clusters[i];
+                kept += 1;
+            } else if i < other {
+                clusters[kept] = new.join(&clusters[i], &clusters[other]);
+                kept += 1;
+            }
+        }
+        boxes.update(&clusters[..kept], len);
+        len = kept;
+    }
+    len
+}
+
+const ROOM: usize = 2 * FEW + 2 * REACH;
+
+/// Boxes side by side, with empty space around them: boxes too large to be chosen.
+struct Boxes([[f32; ROOM]; 6]);
+
+const TOO_LARGE: f32 = 1e15;
+
+/// `[i][k]`: the bits in which places `i` and `i - REACH + k` differ.
+static DIFFER: [[[u32; LANES]; 2 * REACH + 1]; 2 * FEW / LANES] = {
+    let mut table = [[[0; LANES]; 2 * REACH + 1]; 2 * FEW / LANES];
+    let mut i = 0;
+    while i < 2 * FEW {
+        let mut k = 0;
+        while k <= 2 * REACH {
+            table[i / LANES][k][i % LANES] = (i ^ (i + k).wrapping_sub(REACH)) as u32 & PARTNER;
+            k += 1;
+        }
+        i += 1;
+    }
+    table
+};
+
+impl Boxes {
+    fn of(clusters: &[Cluster]) -> Self {
+        let (low, high) = ([-TOO_LARGE; ROOM], [TOO_LARGE; ROOM]);
+        let mut boxes = Self([low, low, low, high, high, high]);
+        boxes.update(clusters, 0);
+        boxes
+    }
+
+    /// Takes the boxes of some clusters, where there were a number of them before.
+    fn update(&mut self, clusters: &[Cluster], before: usize) {
+        for (i, cluster) in clusters.iter().enumerate() {
+            self.set(i, cluster.node.min.into(), cluster.node.max.into());
+        }
+        (clusters.len()..before).for_each(|i| self.set(i, [-TOO_LARGE; 3], [TOO_LARGE; 3]));
+    }
+
+    fn set(&mut self, i: usize, low: [f32; 3], high: [f32; 3]) {
+        for axis in 0..3 {
+            self.0[axis][REACH + i] = low[axis];
+            self.0[3 + axis][REACH + i] = high[axis];
+        }
+    }
+
+    /// For each box the neighbour with which it has the smallest box together: bits of that box's area (as it is not negative they sort
+    /// as it does), the lowest of which are replaced by those in which the two places differ.
+    fn choose(&self, len: usize, wide: bool) -> [f32; 2 * FEW] {
+        #[cfg(target_arch = "x86_64")]
+        if wide {
+            // SAFETY: the processor has these.
+            return unsafe { self.choose_avx2(len) };
+        }
+        self.choose_with::<Baseline>(len)
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2,fma")]
+    fn choose_avx2(&self, len: usize) -> [f32; 2 * FEW] {
+        self.choose_with::<super::lanes::Avx2>(len)
+    }
+
+    #[inline(always)]
+    fn choose_with<L: Lanes>(&self, len: usize) -> [f32; 2 * FEW] {
+        let mut choices = [0.0; 2 * FEW];
+        let rows = |at: usize| -> [L; 6] {
+            std::array::from_fn(|k| L::load_from(self.0[k][at..at + LANES].first_chunk().unwrap_or(&[0.0; LANES])))
+        };
+        for (i, choices) in choices.chunks_exact_mut(LANES).enumerate().take(len.div_ceil(LANES)) {
+            let own = rows(REACH + LANES * i);
+            let mut best = L::splat(f32::MAX);
+            for k in (0..REACH).chain(REACH + 1..2 * REACH + 1) {
+                let other = rows(LANES * i + k);
+                let extent = |axis: usize| own[3 + axis].max(other[3 + axis]).sub(own[axis].min(other[axis]));
+                let [x, y, z] = [extent(0), extent(1), extent(2)];
+                let area = x.add(y).mul(z).add(x.mul(y));
+                best = best.min(area.with_bits(PARTNER, &DIFFER[i][k]));
+            }
+            choices.copy_from_slice(&best.store().0);
+        }
+        choices
+    }
+}
