@@ -52,6 +52,7 @@ const ARROWS: &[(&str, &[&str])] = &[
 const UNSAFE: &[&str] = &[
     "simd.rs",
     "image/pages.rs",
+    "scene/accel/cluster.rs",
     "scene/accel/lanes.rs",
     "scene/accel/lines.rs",
     "scene/accel/mod.rs",

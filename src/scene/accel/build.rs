@@ -57,8 +57,8 @@ fn binary_tree(leaves: &Leaves, wide: bool, job: Job) -> Result<Tree> {
     let mut tree = cluster::binary_tree(leaves, wide, job)?;
     job.report(0.7);
     let mut reinsertion = Reinsertion::new(&mut tree)?;
-    for share in ROUNDS {
-        reinsertion.round(reinsertion.area_of_largest(share), job)?;
+    for least in reinsertion.areas_of_largest(ROUNDS) {
+        reinsertion.round(least, job)?;
     }
     job.check()?;
     job.report(1.0);

@@ -15,7 +15,6 @@ use super::pages;
 use super::tree::{Pair, Tree};
 use crate::error::Result;
 use crate::job::Job;
-use obvhs::aabb::Aabb;
 use obvhs::bvh2::node::Bvh2Node;
 
 /// Clusters that a range is merged down to before it is joined with its neighbour.

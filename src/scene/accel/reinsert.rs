@@ -17,6 +17,8 @@ use std::cmp::Reverse;
 
 /// Pairs of nodes looked at by one piece of parallel work.
 const CHUNK: usize = 256;
+/// Pairs counted by one piece of parallel work.
+const COUNTED: usize = 1 << 15;
 /// Bits of an area that tell its size well enough: the exponent, and a few of the fraction.
 const SIZE_BITS: u32 = 8 + 4;
 
@@ -52,19 +54,24 @@ impl<'a> Reinsertion<'a> {
         Ok(Self { tree, touched })
     }
 
-    /// An area that a share of all nodes have or exceed: about, and rather fewer.
-    pub fn area_of_largest(&self, share: f32) -> f32 {
-        let mut counts = vec![0; 1 << SIZE_BITS];
-        for node in self.tree.pairs.iter().flat_map(|pair| &pair.0) {
-            counts[size(half_area(node.aabb()))] += 1;
-        }
-        let mut left = (share * self.tree.len() as f32) as usize;
-        let enough = |count: &usize| {
-            left = left.checked_sub(*count)?;
-            Some(())
+    /// For each share of all nodes the area that so many have or exceed: about, and rather fewer.
+    pub fn areas_of_largest<const N: usize>(&self, shares: [f32; N]) -> [f32; N] {
+        let count = |pairs: &[Pair]| {
+            let mut counts = vec![0; 1 << SIZE_BITS];
+            pairs.iter().flat_map(|pair| &pair.0).for_each(|node| counts[size(half_area(node.aabb()))] += 1);
+            counts
         };
-        let smaller = counts.len() - counts.iter().rev().map_while(enough).count();
-        f32::from_bits((smaller as u32) << (31 - SIZE_BITS))
+        let add = |mut a: Vec<u32>, b: Vec<u32>| {
+            a.iter_mut().zip(b).for_each(|(a, b)| *a += b);
+            a
+        };
+        let counts = self.tree.pairs.par_chunks(COUNTED).map(count).reduce_with(add).unwrap_or_default();
+        shares.map(|share| {
+            let mut left = (share * self.tree.len() as f32) as u32;
+            let is_full = |&count: &u32| left.checked_sub(count).map(|less| left = less).is_none();
+            let smallest = counts.iter().rposition(is_full).map_or(0, |size| size + 1);
+            f32::from_bits((smallest as u32) << (31 - SIZE_BITS))
+        })
     }
 
     /// Tries to move all nodes of at least an area.
@@ -255,8 +262,8 @@ mod tests {
         // The implementation of obvhs, which does not order its search, on the same nodes.
         ReinsertionOptimizer::default().run(&mut peer, 0.5, Some(vec![1.0, 0.2, 0.1, 0.0]));
         let mut reinsertion = Reinsertion::new(&mut tree).unwrap();
-        for share in [0.5, 0.1, 0.05, 0.0] {
-            reinsertion.round(reinsertion.area_of_largest(share), Monitor::default().job()).unwrap();
+        for least in reinsertion.areas_of_largest([0.5, 0.1, 0.05, 0.0]) {
+            reinsertion.round(least, Monitor::default().job()).unwrap();
         }
         let nodes: Vec<Bvh2Node> = tree.pairs.iter().flat_map(|pair| pair.0).collect();
         let (after, after_peer) = (area_of_all(&nodes), area_of_all(&peer.nodes));
