@@ -203,13 +203,11 @@ impl Choice<'_> {
         Ok(())
     }
 
-    /// What a search for any hit may expect of a child, which visits the last lane first: the chance of a hit, over the cost
-    /// of looking for it. A line that meets the box of `n` triangles meets `surface / area` of them on average; those may lie
-    /// one behind the other, so that the chance of any is less.
+    /// What a search for any hit may expect of a child, which visits the last lane first: the triangles met by a line, over
+    /// the cost of looking for them.
     fn promise(&self, place: Place) -> f32 {
         let branch = self.branch(place);
-        let chance = branch.surface / (branch.surface + branch.area);
-        chance * branch.area / branch.cost[0]
+        branch.surface / branch.cost[0]
     }
 
     fn is_packet(&self, (binary, at): Place) -> bool {

@@ -115,14 +115,18 @@ impl<'a> Reinsertion<'a> {
         let mut search = Search { tree: self.tree, this, area: half_area(this), best, waiting };
         let parent = self.parent(from);
         let (mut pivot, mut beside) = (parent, sibling(from));
-        // What is gained on the way up to the pivot, and the box of what stays below it.
+        // What is gained on the way up to the pivot, and the box of what stays below it, as long as that is smaller.
         let mut gained = half_area(self.aabb(parent));
-        let mut rest = *self.aabb(beside);
+        let mut rest = Some(*self.aabb(beside));
         loop {
             search.below(gained, beside);
-            if pivot != parent {
-                rest = rest.union(self.aabb(beside));
-                gained += half_area(self.aabb(pivot)) - half_area(&rest);
+            if pivot != parent
+                && let Some(smaller) = rest
+            {
+                let smaller = smaller.union(self.aabb(beside));
+                let less = half_area(self.aabb(pivot)) - half_area(&smaller);
+                gained += less;
+                rest = (less > 0.0).then_some(smaller);
             }
             // Even a place that made no other box grow would need one of the subtree's size above it.
             if pivot == Tree::ROOT || gained - search.area <= search.best.gain {
