@@ -97,9 +97,9 @@ fn load_10m(pool: &Pool) {
     println!("{:.0}", peak_memory().map_or(f64::NAN, |bytes| bytes as f64 / 1e6));
 }
 
-/// The case that made the builder of the binary tree slow on rooms: on regular grids all merges of neighbours cost the
-/// same. Trees over exact boxes, and over boxes enlarged by up to 1/1000 as this library hands them over, both traced by
-/// obvhs itself; this library's own structure over the same triangles beside them.
+/// The case that makes binary trees slow on rooms: on regular grids all merges of neighbours cost the same. The trees of
+/// obvhs over exact boxes, and over boxes enlarged by up to 1/1000 so that no two are equal, both traced by obvhs itself;
+/// this library's own structure over the same triangles, whose boxes are exact, beside them.
 fn ties(pool: &Pool) {
     const TIE_RAYS: usize = 5_000;
     let mut table =

@@ -35,8 +35,9 @@ pub(super) fn build(triangles: &[[Vec3; 3]], job: Job) -> Result<Accel> {
     (accel.low, accel.high) = (leaves.low, leaves.high);
     accel.largest = leaves.low.abs().max(leaves.high.abs()).extend(0.0);
     job.report(0.1);
-    let tree = binary_tree(&leaves, accel.wide_vectors, job.part(0.1, 0.8))?;
-    collapse::run(&Source { triangles, tree: &tree, scale: leaves.scale }, &mut accel, job)?;
+    let scale = leaves.scale;
+    let tree = binary_tree(leaves, accel.wide_vectors, job.part(0.1, 0.8))?;
+    collapse::run(&Source { triangles, tree: &tree, scale }, &mut accel, job)?;
     job.report(1.0);
     Ok(accel)
 }
@@ -53,9 +54,10 @@ fn has_wide_vectors() -> bool {
     return false;
 }
 
-fn binary_tree(leaves: &Leaves, wide: bool, job: Job) -> Result<Tree> {
-    let mut tree = cluster::binary_tree(leaves, wide, job)?;
-    job.report(0.7);
+fn binary_tree(leaves: Leaves, wide: bool, job: Job) -> Result<Tree> {
+    let mut tree = cluster::binary_tree(&leaves, wide, job)?;
+    drop(leaves);
+    job.report(0.4);
     let mut reinsertion = Reinsertion::new(&mut tree)?;
     for least in reinsertion.areas_of_largest(ROUNDS) {
         reinsertion.round(least, job)?;

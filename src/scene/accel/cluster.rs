@@ -1,7 +1,7 @@
 //! The binary tree, from its leaves up: hierarchical, parallel, locally-ordered clustering (Benthin, Meister, Barczak,
 //! Mehalwal, Tsakok and Kensler 2024, "H-PLOC").
 //!
-//! The list of leaves is halved, and halved again, where the curve they are sorted along crosses the largest cubes of space.
+//! The list of leaves is halved, and halved again, where the curve they are sorted along leaves the largest cells of space.
 //! From the smallest ranges up, the clusters left of two halves are merged with their nearest neighbours until few are
 //! left: each with the one of those around it with which it has the smallest box, where that holds for both.
 //!
@@ -205,8 +205,8 @@ impl Boxes {
         }
     }
 
-    /// For each box the neighbour with which it has the smallest box together: bits of that box's area (as it is not negative they sort
-    /// as it does), the lowest of which are replaced by those in which the two places differ.
+    /// For each box the neighbour with which it has the smallest box together: bits of that box's area (as it is not
+    /// negative they sort as it does), the lowest of which are replaced by those in which the two places differ.
     fn choose(&self, len: usize, wide: bool) -> [f32; 2 * FEW] {
         #[cfg(target_arch = "x86_64")]
         if wide {
@@ -241,5 +241,39 @@ impl Boxes {
             choices.copy_from_slice(&best.store().0);
         }
         choices
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::job::Monitor;
+    use crate::scene::accel::leaves;
+    use glam::Vec3;
+
+    fn depth(tree: &Tree, node: u32) -> u32 {
+        match &tree[node] {
+            node if node.is_leaf() => 0,
+            node => 1 + depth(tree, node.first_index).max(depth(tree, node.first_index + 1)),
+        }
+    }
+
+    #[test]
+    fn equal_merges_make_a_balanced_tree() {
+        // Every other square of a grid, so that no two triangles are made one leaf.
+        let square = |i: u32, j: u32| {
+            let corner = |x, y| Vec3::new((2 * i) as f32 + x, (2 * j) as f32 + y, 0.0);
+            [corner(0.0, 0.0), corner(1.0, 0.0), corner(0.0, 1.0)]
+        };
+        let triangles: Vec<[Vec3; 3]> = (0..64).flat_map(|i| (0..64).map(move |j| square(i, j))).collect();
+        let monitor = Monitor::default();
+        let leaves = leaves::gather(&triangles, monitor.job()).unwrap();
+        assert_eq!(leaves.list.len(), 64 * 64);
+        let tree = binary_tree(&leaves, false, monitor.job()).unwrap();
+        assert!((12..=14).contains(&depth(&tree, Tree::ROOT)), "{}", depth(&tree, Tree::ROOT));
+        #[cfg(target_arch = "x86_64")]
+        if std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma") {
+            assert!(binary_tree(&leaves, true, monitor.job()).unwrap().parents == tree.parents);
+        }
     }
 }

@@ -39,8 +39,9 @@ pub(super) struct Branch {
     pub content: Content,
     /// Triangles below.
     count: u32,
-    /// Half the area of its box, and of the boxes of all leaves below: about the area of the triangles, which are mostly flat boxes.
+    /// Half the area of its box.
     pub area: f32,
+    /// The same of all leaves below together: about the area of their triangles, as most of those are flat boxes.
     pub surface: f32,
     /// `cost[i]`: the least expected cost as at most `i + 1` wide subtrees.
     pub cost: [f32; 7],

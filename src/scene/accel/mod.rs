@@ -1,8 +1,9 @@
 //! Acceleration structure over triangles: nearest hits and occlusion.
 //!
-//! A binary tree is built by obvhs (parallel locally-ordered clustering, Meister and Bittner 2018), improved by
-//! reinsertion (the same authors, 2018) and collapsed into nodes of eight children whose leaves hold up to eight
-//! triangles, tested at once.
+//! Triangles are sorted along a curve through space (`leaves`) and clustered into a binary tree (`cluster`: Benthin et al.
+//! 2024), whose nodes are those of obvhs. It is improved by reinsertion (`reinsert`: Meister and Bittner 2018) and collapsed
+//! into nodes of eight children (`costs`, `collapse`: Ylitie et al. 2017) whose leaves hold up to eight triangles, tested at
+//! once.
 //!
 //! The triangle test is watertight (Woop, Benthin and Wald 2013), the box test conservative to match it: a ray never
 //! slips through a shared edge or vertex. The nearest hit is a function of the triangles alone: equal distances are

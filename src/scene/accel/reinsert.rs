@@ -66,10 +66,11 @@ impl<'a> Reinsertion<'a> {
             a
         };
         let counts = self.tree.pairs.par_chunks(COUNTED).map(count).reduce_with(add).unwrap_or_default();
+        let largest = size(half_area(self.aabb(Tree::ROOT)));
         shares.map(|share| {
             let mut left = (share * self.tree.len() as f32) as u32;
             let is_full = |&count: &u32| left.checked_sub(count).map(|less| left = less).is_none();
-            let smallest = counts.iter().rposition(is_full).map_or(0, |size| size + 1);
+            let smallest = counts[..=largest].iter().rposition(is_full).map_or(0, |size| size + 1);
             f32::from_bits((smallest as u32) << (31 - SIZE_BITS))
         })
     }
