@@ -81,12 +81,13 @@ impl New<'_> {
     }
 }
 
-/// Some leaves, and what is made of them. There are as many new pairs as leaves, one more than it takes to join all.
+/// Some leaves in their order along the curve, and what is made of them. There are as many new pairs as leaves, one more than it takes to join all.
 struct Range<'a> {
     leaves: &'a [Bvh2Node],
     order: &'a [(u64, u32)],
     clusters: &'a mut [Cluster],
     new: New<'a>,
+    /// Whether the processor has wide vectors.
     wide: bool,
 }
 
@@ -162,9 +163,10 @@ fn merge_nearest(clusters: &mut [Cluster], new: &mut New, few: usize, wide: bool
 
 const ROOM: usize = 2 * FEW + 2 * REACH;
 
-/// Boxes side by side, with empty space around them: boxes too large to be chosen.
+/// Low and high ends of boxes side by side, with boxes around them that are too large to be chosen.
 struct Boxes([[f32; ROOM]; 6]);
 
+/// Scenes are of unit size, though they may lie 2^24 times as far away.
 const TOO_LARGE: f32 = 1e15;
 
 /// `[i][k]`: the bits in which places `i` and `i - REACH + k` differ.
@@ -210,9 +212,11 @@ impl Boxes {
     fn choose(&self, len: usize, wide: bool) -> [f32; 2 * FEW] {
         #[cfg(target_arch = "x86_64")]
         if wide {
-            // SAFETY: the processor has these.
+            // SAFETY: `wide` is set only where the processor reports these.
             return unsafe { self.choose_avx2(len) };
         }
+        #[cfg(not(target_arch = "x86_64"))]
+        let _ = wide;
         self.choose_with::<Baseline>(len)
     }
 

@@ -56,11 +56,13 @@ pub(super) fn gather(triangles: &[[Vec3; 3]], job: Job) -> Result<Leaves> {
     let (mut leaves_left, mut order_left, mut first) = (&mut list[..], &mut order[..], 0);
     let mut targets = Vec::with_capacity(chunks.len());
     for chunk in chunks {
-        let (leaves, order);
-        (leaves, leaves_left) = leaves_left.split_at_mut(chunk.leaves.len());
-        (order, order_left) = order_left.split_at_mut(chunk.leaves.len());
-        first += leaves.len() as u32;
-        targets.push((first - leaves.len() as u32, chunk, leaves, order));
+        let (leaves, order, len) = (leaves_left, order_left, chunk.leaves.len());
+        let (leaves, after) = leaves.split_at_mut(len);
+        leaves_left = after;
+        let (order, after) = order.split_at_mut(len);
+        order_left = after;
+        targets.push((first, chunk, leaves, order));
+        first += len as u32;
     }
     targets.into_par_iter().for_each(|(first, chunk, leaves, order)| {
         for (i, ((leaf, place), &unscaled)) in leaves.iter_mut().zip(order).zip(&chunk.leaves).enumerate() {
