@@ -36,6 +36,19 @@ fn main() {
     if std::env::args().any(|arg| arg == LOAD_10M) {
         return load_10m(&pool);
     }
+    // Names on the command line choose among the scenes: `cargo bench --bench rays -- demo kitchen`.
+    let chosen: Vec<String> = std::env::args().skip(1).filter(|arg| !arg.starts_with("--")).collect();
+    let all = chosen.is_empty();
+    // On a thread of the pool, where the library builds: handing work to it takes as long as building 38 triangles.
+    pool.run(|| compare(|name| all || chosen.iter().any(|c| c == name)));
+    if all {
+        ties(&pool);
+        peak_of_10m();
+    }
+}
+
+/// Everything that is measured against Embree.
+fn compare(is_chosen: impl Fn(&str) -> bool) {
     let engines = Embree::open(2);
     if let Err(reason) = &engines {
         println!("# no Embree: {reason}");
@@ -54,12 +67,9 @@ fn main() {
         ("apartment", scenes::apartment()),
         ("sponza", scenes::sponza()),
     ];
-    // Names on the command line choose among the scenes: `cargo bench --bench rays -- demo kitchen`.
-    let chosen: Vec<String> = std::env::args().skip(1).filter(|arg| !arg.starts_with("--")).collect();
-    let all = chosen.is_empty();
-    for (name, setting) in settings.into_iter().filter(|(name, _)| all || chosen.iter().any(|c| c == name)) {
+    for (name, setting) in settings.into_iter().filter(|(name, _)| is_chosen(name)) {
         match setting {
-            Ok(setting) => measure(&setting, &pool, engines.as_ref(), &mut table, &mut built),
+            Ok(setting) => measure(&setting, engines.as_ref(), &mut table, &mut built),
             Err(reason) => {
                 for kind in ["closest", "any"] {
                     if is_headline(kind, name) {
@@ -71,10 +81,6 @@ fn main() {
     }
     table.print("Rays per second on one thread; ratios are ours over Embree's");
     built.print("Building on two threads; ratios are our time over Embree's");
-    if all {
-        ties(&pool);
-        peak_of_10m();
-    }
 }
 
 /// Peak memory of a scene of ten million triangles made ready for rendering, in a process of its own.
@@ -162,11 +168,11 @@ fn is_headline(kind: &str, scene: &str) -> bool {
     }
 }
 
-fn measure(setting: &Setting, pool: &Pool, embree: Result<&Embree, &String>, table: &mut Table, built: &mut Table) {
+fn measure(setting: &Setting, embree: Result<&Embree, &String>, table: &mut Table, built: &mut Table) {
     let triangles = setting.triangles();
     let (positions, indices) = one_mesh(setting);
     let monitor = Monitor::default();
-    let build = || pool.run(|| Accel::build(&triangles, monitor.job())).expect("a scene to trace");
+    let build = || Accel::build(&triangles, monitor.job()).expect("a scene to trace");
     let accel = build();
 
     // Building.
