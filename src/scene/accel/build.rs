@@ -12,7 +12,7 @@ use crate::job::Job;
 use glam::{Vec3, Vec4};
 
 /// Rounds of reinsertion: the share of all nodes, the largest, that each tries to move. More of either gain little.
-const ROUNDS: [f32; 3] = [0.16, 0.08, 0.04];
+const ROUNDS: [f32; 3] = [0.1, 0.1, 0.03];
 
 pub(super) fn build(triangles: &[[Vec3; 3]], job: Job) -> Result<Accel> {
     if triangles.len() >= 1 << 31 {
