@@ -18,10 +18,7 @@ const LEAST_LAMP: f64 = 4.0;
 /// A lamp cut off by the border is one of the whole lamps if it is at most this much longer than the longest of them.
 const CUT_LAMP_SLACK: f64 = 1.1;
 
-pub struct Exemplar<'a> {
-    pub image: &'a Image,
-    /// Confidence that a pixel is light.
-    pub light: &'a Image,
+pub struct Exemplar {
     pub width: usize,
     pub height: usize,
     /// Finite and on the plane.
@@ -57,8 +54,8 @@ pub struct Working {
     pub shown_lit: Vec<bool>,
 }
 
-impl<'a> Exemplar<'a> {
-    pub fn new(input: &Input<'a>, working_side: f64, job: Job) -> Result<Self> {
+impl Exemplar {
+    pub fn new(input: &Input, working_side: f64, job: Job) -> Result<Self> {
         let Input { unwarped: image, light, valid, photo } = *input;
         let (width, height) = (image.width, image.height);
 
@@ -98,13 +95,13 @@ impl<'a> Exemplar<'a> {
         let sources = Sources { image, light, components: &components, usable: &usable, shown: &shown };
         let working = Working::new(&sources, working_side, job)?;
         let lit_share = lit as f64 / total as f64;
-        Ok(Self { image, light, width, height, shown, components, whole, cut, photo_area, lit_share, working })
+        Ok(Self { width, height, shown, components, whole, cut, photo_area, lit_share, working })
     }
 
-    /// The statistics of its pattern, in unwarped pixels; `periods` as in [`Pattern`].
-    pub fn statistics(&self, periods: [Option<f64>; 2]) -> Statistics {
-        let Self { image, width, height, components, whole, .. } = self;
-        let colour = |i: usize| self.shown[i].then(|| image.rgb(i % width, i / width));
+    /// The statistics of the pattern of `unwarped`, in its pixels; `periods` as in [`Pattern`].
+    pub fn statistics(&self, unwarped: &Image, periods: [Option<f64>; 2]) -> Statistics {
+        let Self { width, height, components, whole, .. } = self;
+        let colour = |i: usize| self.shown[i].then(|| unwarped.rgb(i % width, i / width));
         Statistics::of(&Pattern { width: *width, height: *height, components, whole, periods, colour })
     }
 
@@ -199,6 +196,12 @@ impl Working {
         }
         let shown_lit = channel(7).map(|&v| v >= 0.5).collect();
         Ok(Self { width, height, pitch, colour, confidence, lit, usable, shown: all(6), shown_lit })
+    }
+
+    /// The index of a pixel, if there is one.
+    pub fn index(&self, x: i32, y: i32) -> Option<usize> {
+        let (x, y) = (usize::try_from(x).ok()?, usize::try_from(y).ok()?);
+        (x < self.width && y < self.height).then(|| y * self.width + x)
     }
 
     /// The smallest box `[x0, y0, x1, y1)` that holds every usable pixel.

@@ -5,7 +5,7 @@
 //! lies in patches of its own shift, and not at all where less does or where another lamp took the place.
 
 use super::exemplar::Exemplar;
-use super::patches::Layout;
+use super::layout::Layout;
 use crate::error::Result;
 use crate::image::try_vec;
 use crate::job::Job;
@@ -55,9 +55,9 @@ pub fn resolve(exemplar: &Exemplar, layout: &Layout, rules: Rules, seed: u64, jo
     let mut shown: BTreeMap<(u32, u32), usize> = BTreeMap::new();
     for y in 0..layout.height {
         job.check()?;
-        for x in 0..layout.width {
-            if let Some(source) = layout.source(x, y, working).filter(|&s| lamp_at[s] != u32::MAX) {
-                *shown.entry((lamp_at[source], layout.labels[y * layout.width + x])).or_default() += 1;
+        for (x, label) in layout.labels(y).enumerate() {
+            if let Some(source) = layout.source(x, y, label, working).filter(|&s| lamp_at[s] != u32::MAX) {
+                *shown.entry((lamp_at[source], label)).or_default() += 1;
             }
         }
     }
@@ -80,23 +80,40 @@ pub fn resolve(exemplar: &Exemplar, layout: &Layout, rules: Rules, seed: u64, jo
     claims.sort_by(|a, b| b.0.total_cmp(&a.0).then((a.1, a.2).cmp(&(b.1, b.2))));
 
     // Best first; who comes late finds the place taken. Free lamps keep a pixel between them.
-    let mut taken = try_vec(layout.width * layout.height, false)?;
+    let mut taken = Bits::new(layout.width * layout.height)?;
     let mut instances = Vec::new();
     let margin = i32::from(!is_lattice);
     for (_, k, label) in claims {
         let near = |x: usize, y: usize| {
             let around = |at: usize| at as i32 - margin..=at as i32 + margin;
-            around(y).any(|v| around(x).filter_map(|u| texel(u, v)).any(|(u, v)| taken[v * layout.width + u]))
+            around(y).any(|v| around(x).filter_map(|u| texel(u, v)).any(|(u, v)| taken.get(v * layout.width + u)))
         };
         let clashes = place(k, label).filter(|&(x, y)| near(x, y)).count();
         let allowed = if is_lattice { LATTICE_SLACK * place(k, label).count() as f64 } else { 0.0 };
         if clashes as f64 <= allowed {
-            place(k, label).for_each(|(x, y)| taken[y * layout.width + x] = true);
+            place(k, label).for_each(|(x, y)| taken.set(y * layout.width + x));
             instances.push(Instance { component: k as usize, shift: layout.shifts[label as usize].exact });
         }
     }
     show_sharply(exemplar, &mut instances, seed);
     Ok(instances)
+}
+
+/// A set of pixels, in the space of a bit each.
+struct Bits(Vec<u64>);
+
+impl Bits {
+    fn new(count: usize) -> Result<Self> {
+        Ok(Self(try_vec(count.div_ceil(64), 0)?))
+    }
+
+    fn get(&self, i: usize) -> bool {
+        self.0[i / 64] >> (i % 64) & 1 != 0
+    }
+
+    fn set(&mut self, i: usize) {
+        self.0[i / 64] |= 1 << (i % 64);
+    }
 }
 
 /// Every lamp again where it comes in when it leaves a texture of this size, in unwarped pixels.

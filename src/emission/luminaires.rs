@@ -11,14 +11,23 @@ use glam::{DVec2, DVec3, Vec3};
 /// Largest distance in texels between an outline and the corners of its texels: a staircase becomes one line.
 const OUTLINE_TOLERANCE: f64 = 1.0;
 
-/// Takes out every connected piece of light smaller than `least` texels; gives those that stay.
-pub fn sweep(texture: &mut Image, mask: &mut Image, least: f64) -> Result<Components> {
-    let found = components(mask)?;
-    if found.list.iter().all(|piece| piece.area as f64 >= least) {
-        return Ok(found);
+/// How long a piece of light may be, in texels, to be a crumb of that area.
+pub fn reach(crumb: f64) -> usize {
+    (2.0 * crumb.sqrt()).ceil() as usize
+}
+
+/// Takes out every connected piece of light smaller than `crumb` texels, and compact: no longer than the [`reach`] of one.
+pub fn sweep(texture: &mut Image, mask: &mut Image, crumb: f64) -> Result<()> {
+    if crumb <= 1.0 {
+        return Ok(());
     }
-    take_out(texture, mask, &found, |k, _| (found.list[k].area as f64) < least);
-    components(mask)
+    let found = components(mask)?;
+    let reach = reach(crumb);
+    let is_crumb = |piece: &Component| (piece.area as f64) < crumb && piece.size().into_iter().all(|s| s <= reach);
+    if found.list.iter().any(is_crumb) {
+        take_out(texture, mask, &found, |k, _| is_crumb(&found.list[k]));
+    }
+    Ok(())
 }
 
 /// Takes out the texels of lamps that `goes` names by lamp and texel, and rims whose lamps all go: texels less than half of
@@ -44,19 +53,6 @@ pub fn take_out(texture: &mut Image, mask: &mut Image, found: &Components, goes:
             texture.data[3 * i..3 * i + 3].fill(0.0);
             mask.data[i] = 0.0;
         }
-    }
-}
-
-/// Gives every texel of a lamp the lamp's mean colour.
-pub fn even_out(texture: &mut Image, found: &Components) {
-    let mut sums = vec![DVec3::ZERO; found.list.len()];
-    let lit = || found.labels.iter().enumerate().filter(|(_, l)| **l != 0).map(|(i, &l)| (3 * i, l as usize - 1));
-    for (i, lamp) in lit() {
-        sums[lamp] += Vec3::from_slice(&texture.data[i..]).as_dvec3();
-    }
-    for (i, lamp) in lit() {
-        let mean = (sums[lamp] / found.list[lamp].area as f64).as_vec3();
-        texture.data[i..i + 3].copy_from_slice(&mean.to_array());
     }
 }
 

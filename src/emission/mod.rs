@@ -23,36 +23,35 @@ mod correlation;
 mod exemplar;
 mod ground;
 mod lamps;
+mod layout;
 mod luminaires;
+mod measure;
 mod metadata;
 mod patches;
 mod period;
+mod plan;
 mod recover;
 mod seam;
 pub mod statistics;
 #[cfg(test)]
 mod tests;
+mod window;
 
 pub use ground::Ground;
+pub use measure::{Measure, measure};
 pub use period::Continuation;
+pub use plan::{Plan, Tile};
 
 use crate::error::{Error, Result, check_range};
 use crate::geometry::Homography;
 use crate::image::Image;
 use crate::job::Job;
-use clipping::Clipping;
 use components::Components;
-use exemplar::{AreaSums, Exemplar};
+use exemplar::Exemplar;
 use glam::{DVec2, Vec3};
-use lamps::Rules;
-use patches::{Guide, Layout, Shift};
+use layout::Layout;
+use plan::Layer;
 use statistics::{Pattern, Statistics};
-
-/// Most working pixels of a result; larger ones are synthesised at a coarser size.
-const MOST_WORKING_PIXELS: f64 = (1 << 26) as f64;
-
-/// Share of the smallest lamp's area up to which a piece of light is none: a crumb of an edge that resampling broke off.
-const CRUMB: f64 = 0.02;
 
 #[derive(Clone, Copy)]
 pub struct Input<'a> {
@@ -179,42 +178,6 @@ impl Params {
     }
 }
 
-/// What an exemplar shows, in unwarped pixels.
-pub struct Measure {
-    /// Median over its whole lamps of the longer side; 0 without one.
-    pub lamp_length: f64,
-    /// The shorter period of the lattice of the lamps; without one the median distance from a whole lamp to the nearest other, 0
-    /// if there are less than two.
-    pub spacing: f64,
-    /// Width of what it shows.
-    pub width: f64,
-}
-
-/// Measures an exemplar. Errors as of [`run`].
-pub fn measure(input: &Input, params: &Params, job: Job) -> Result<Measure> {
-    params.check()?;
-    check_input(input)?;
-    let exemplar = Exemplar::new(input, working_side(input, params), job.part(0.0, 0.5))?;
-    let (continuation, _) = period::find(&exemplar, params.least_regularity, job.part(0.5, 1.0))?;
-    let spacing = match continuation {
-        Continuation::Lattice([a, b]) => a.length().min(b.length()),
-        _ => {
-            let centres: Vec<DVec2> = exemplar.lamps().map(|lamp| lamp.centre).collect();
-            let mut nearest = statistics::nearest_distances(&centres);
-            nearest.sort_by(f64::total_cmp);
-            nearest.get(nearest.len() / 2).copied().filter(|d| d.is_finite()).unwrap_or(0.0)
-        }
-    };
-    let mut lengths: Vec<usize> = exemplar.lamps().map(|lamp| lamp.size()[0].max(lamp.size()[1])).collect();
-    lengths.sort_unstable();
-    let columns = (0..exemplar.width).filter(|&x| (0..exemplar.height).any(|y| exemplar.shown[y * exemplar.width + x]));
-    Ok(Measure {
-        lamp_length: lengths.get(lengths.len() / 2).map_or(0.0, |&l| l as f64),
-        spacing,
-        width: columns.count() as f64,
-    })
-}
-
 /// The emission of a texture the caller has made: what is brighter than nothing is light.
 pub fn given(texture: &Image, job: Job) -> Result<Emission> {
     let texture = texture.to_rgb()?;
@@ -264,84 +227,31 @@ fn check_input(input: &Input) -> Result<()> {
 ///
 /// Errors: a parameter out of range, images of different size; no valid pixel; no light (`Degenerate`).
 pub fn run(input: &Input, params: &Params, job: Job) -> Result<Emission> {
-    params.check()?;
-    check_input(input)?;
-    let exemplar = Exemplar::new(input, working_side(input, params), job.part(0.0, 0.1))?;
-    let working = &exemplar.working;
-
-    // How the pattern goes on, the size of a patch, and the metadata at that scale.
-    let window = if params.tileable { None } else { window(&exemplar, params)? };
-    let inside = window.as_ref().filter(|w| w.is_shown).map(|w| w.corner);
-    let (continuation, regularity) = match inside {
-        Some(_) => (Continuation::Copy, 0.0),
-        None => {
-            let (found, regularity) = period::find(&exemplar, params.least_regularity, job.part(0.1, 0.2))?;
-            let size = DVec2::new(params.width as f64, params.height as f64) * params.scale;
-            (if params.tileable { found.fitted(size)? } else { found }, regularity)
-        }
-    };
-    let block = if params.block > 0 { params.block } else { default_block(&exemplar, continuation) };
-    let reach = continuation
-        .lattice()
-        .map_or(f64::INFINITY, |[a, b]| (a / working.pitch).length().max((b / working.pitch).length()) / 2.0);
-    let cap = reach.min(block as f64).max(1.0);
-    let exemplar_metadata =
-        metadata::compute(&working.confidence, &working.lit, working.width, working.height, cap, job.part(0.2, 0.25))?;
-
-    // Which part of the exemplar each part of the texture shows.
-    let size = DVec2::new(params.width as f64, params.height as f64) * params.scale;
-    let canvas = (size / working.pitch).ceil();
-    let canvas = (canvas.x as usize, canvas.y as usize);
-    let layout = match inside {
-        Some(corner) => copy(corner, canvas, working.pitch)?,
-        None => {
-            let guide = Guide { working, metadata: &exemplar_metadata, metadata_weight: params.metadata_weight };
-            let offset = window.map_or(params.offset * params.scale, |w| -w.corner);
-            patches::place(&guide, continuation, offset, canvas, block, params.seed, job.part(0.25, 0.8))?
-        }
-    };
-
-    // Whole lamps as pieces, the rest as the patches have it; then full detail.
-    let (instances, by_pixel) = match inside {
-        None if params.whole_lamps => {
-            let rules = Rules { is_lattice: continuation.lattice().is_some(), wraps: params.tileable };
-            let mut instances = lamps::resolve(&exemplar, &layout, rules, params.seed, job.part(0.8, 0.85))?;
-            if params.tileable {
-                instances = lamps::wrapped(&instances, size);
-            }
-            (instances, exemplar.whole.iter().zip(&exemplar.cut).map(|(whole, cut)| !whole && !cut).collect())
-        }
-        _ => (Vec::new(), vec![true; exemplar.whole.len()]),
-    };
-    let source = recover::Source {
-        exemplar: &exemplar,
-        layout: &layout,
-        instances: &instances,
-        by_pixel: &by_pixel,
-        photo: input.photo,
-        clipping: Clipping::find(input.unwarped, &exemplar.shown, &exemplar.components, params.clip_level),
-        scale: params.scale,
-    };
-    let (mut texture, mut mask) = recover::run(&source, params.width, params.height, job.part(0.85, 0.94))?;
-    let least = match instances.is_empty() {
-        true => 0.0,
-        false => CRUMB * exemplar.lamps().map(|l| l.area as f64).fold(f64::INFINITY, f64::min) / params.scale.powi(2),
-    };
-    let components = luminaires::sweep(&mut texture, &mut mask, least)?;
-    if params.even_lamps {
-        luminaires::even_out(&mut texture, &components);
-    }
+    let plan = Plan::new(input, params, job.part(0.0, 0.85))?;
+    let (texture, mask) = plan.tile(input, plan.whole(), job.part(0.85, 0.94))?;
+    let components = luminaires::components(&mask)?;
     let luminaires = luminaires::find(&texture, &components, job.part(0.95, 1.0))?;
 
+    let Layer { exemplar, continuation, regularity, metadata, layout, .. } = plan.layer;
     let periods = continuation.periods();
     let statistics = [
-        exemplar.statistics(periods).scaled(1.0 / params.scale),
+        exemplar.statistics(input.unwarped, periods).scaled(1.0 / params.scale),
         statistics_of(&texture, &components, periods.map(|p| p.map(|p| p / params.scale))),
     ];
     let error = statistics[1].difference(&statistics[0]);
-    let metadata = shown_metadata(&layout, &exemplar, &exemplar_metadata)?;
+    let shown = shown_metadata(&layout, &exemplar, &metadata)?;
     job.report(1.0);
-    Ok(Emission { texture, mask, exemplar_metadata, metadata, luminaires, continuation, regularity, statistics, error })
+    Ok(Emission {
+        texture,
+        mask,
+        exemplar_metadata: metadata,
+        metadata: shown,
+        luminaires,
+        continuation,
+        regularity,
+        statistics,
+        error,
+    })
 }
 
 /// The statistics of a texture; lamps are whole that do not touch its border.
@@ -354,80 +264,15 @@ fn statistics_of(texture: &Image, components: &Components, periods: [Option<f64>
     Statistics::of(&Pattern { width, height, components, whole: &whole, periods, colour })
 }
 
-/// Longest side of the exemplar at work: coarser than asked for where the result would have too many working pixels.
-fn working_side(input: &Input, params: &Params) -> f64 {
-    let longest = input.unwarped.width.max(input.unwarped.height) as f64;
-    let side = longest.min(params.working_side as f64);
-    let pixels = params.width as f64 * params.height as f64 * (params.scale * side / longest).powi(2);
-    side * (MOST_WORKING_PIXELS / pixels).sqrt().min(1.0)
-}
-
-/// A part of the exemplar as large as the texture.
-struct Window {
-    corner: DVec2,
-    /// Whether all of it is.
-    is_shown: bool,
-}
-
-/// Of the parts that are shown everywhere that whose share of light is nearest to the exemplar's, less the offset; nothing
-/// where there is none.
-fn window(exemplar: &Exemplar, params: &Params) -> Result<Option<Window>> {
-    let side = |n: usize| (n as f64 * params.scale - 1e-9).ceil().max(1.0);
-    let (w, h) = (side(params.width), side(params.height));
-    if w > exemplar.width as f64 || h > exemplar.height as f64 {
-        return Ok(None);
-    }
-    let (w, h) = (w as usize, h as usize);
-    let shown = AreaSums::new(|i| exemplar.shown[i], exemplar.width, exemplar.height)?;
-    let lit = AreaSums::new(|i| exemplar.components.labels[i] != 0, exemplar.width, exemplar.height)?;
-    let target = exemplar.lit_share * (w * h) as f64;
-    let mut best: Option<(f64, DVec2)> = None;
-    for y in 0..=exemplar.height - h {
-        for x in 0..=exemplar.width - w {
-            if shown.count(x, y, w, h) == w * h {
-                let off = (lit.count(x, y, w, h) as f64 - target).abs();
-                if best.is_none_or(|b| off < b.0) {
-                    best = Some((off, DVec2::new(x as f64, y as f64)));
-                }
-            }
-        }
-    }
-    Ok(best.map(|(_, best)| {
-        let corner = best - (params.offset * params.scale).round();
-        let inside = corner.cmpge(DVec2::ZERO).all()
-            && corner.x + w as f64 <= exemplar.width as f64
-            && corner.y + h as f64 <= exemplar.height as f64;
-        let is_shown = inside && shown.count(corner.x as usize, corner.y as usize, w, h) == w * h;
-        Window { corner, is_shown }
-    }))
-}
-
-/// The layout of a texture that is a part of the exemplar.
-fn copy(corner: DVec2, (width, height): (usize, usize), pitch: DVec2) -> Result<Layout> {
-    let working = (-corner / pitch).round();
-    let shift = Shift { working: [working.x as i32, working.y as i32], exact: -corner };
-    Ok(Layout { width, height, labels: crate::image::try_vec(width * height, 0)?, shifts: vec![shift] })
-}
-
-/// A patch that holds more than one lamp and its neighbours: one and a half times the longer period; without one, a quarter
-/// of the exemplar.
-fn default_block(exemplar: &Exemplar, continuation: Continuation) -> usize {
-    let working = &exemplar.working;
-    let quarter = working.width.min(working.height) as f64 / 4.0;
-    let side = match continuation {
-        Continuation::Lattice([a, b]) => 1.5 * (a / working.pitch).length().max((b / working.pitch).length()),
-        _ => quarter,
-    };
-    side.clamp(16.0, (2.0 * quarter).max(16.0)).round() as usize
-}
-
 /// The exemplar's metadata as the layout shows them; where it shows nothing, nothing is near.
 fn shown_metadata(layout: &Layout, exemplar: &Exemplar, metadata: &Image) -> Result<Image> {
     let mut out = Image::new(layout.width, layout.height, 3)?;
-    for (i, pixel) in out.data.chunks_exact_mut(3).enumerate() {
-        match layout.source(i % layout.width, i / layout.width, &exemplar.working) {
-            Some(source) => pixel.copy_from_slice(&metadata.data[3 * source..3 * source + 3]),
-            None => pixel.copy_from_slice(&[0.0, 1.0, 1.0]),
+    for (y, row) in out.data.chunks_exact_mut(3 * layout.width).enumerate() {
+        for (x, (label, pixel)) in layout.labels(y).zip(row.chunks_exact_mut(3)).enumerate() {
+            match layout.source(x, y, label, &exemplar.working) {
+                Some(source) => pixel.copy_from_slice(&metadata.data[3 * source..3 * source + 3]),
+                None => pixel.copy_from_slice(&[0.0, 1.0, 1.0]),
+            }
         }
     }
     Ok(out)

@@ -6,6 +6,7 @@
 //! the lamps stay in phase, and errors do not add up from patch to patch because every shift is measured from the origin.
 
 use super::exemplar::{AreaSums, Working};
+use super::layout::{Layout, NONE, Shift};
 use super::period::Continuation;
 use super::seam;
 use crate::error::Result;
@@ -14,9 +15,7 @@ use crate::image::{Image, try_vec};
 use crate::job::Job;
 use crate::rng::{self, Rng};
 use glam::{DMat2, DVec2};
-
-/// The label of a pixel that no patch shows.
-pub const NONE: u32 = u32::MAX;
+use std::collections::BTreeMap;
 
 /// Candidates per patch where any shift is allowed, and the most where the lattice allows too many.
 const FREE_CANDIDATES: usize = 192;
@@ -27,32 +26,6 @@ const TOLERANCE: (f32, f32) = (1.1, 1e-6);
 const ENOUGH_COVERAGE: f64 = 0.95;
 /// Added to the cost of a seam on a lamp: more than any path around it.
 const LAMP_COST: f32 = 1e4;
-
-/// A shift of the exemplar: where it is shown, less where it is taken from.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Shift {
-    /// In working pixels.
-    pub working: [i32; 2],
-    /// The same before rounding, in unwarped pixels.
-    pub exact: DVec2,
-}
-
-/// Which shift of the exemplar each working pixel of the result shows.
-pub struct Layout {
-    pub width: usize,
-    pub height: usize,
-    /// Indices into `shifts`, or [`NONE`].
-    pub labels: Vec<u32>,
-    pub shifts: Vec<Shift>,
-}
-
-impl Layout {
-    /// The exemplar's working pixel shown at a pixel of the result, if any.
-    pub fn source(&self, x: usize, y: usize, working: &Working) -> Option<usize> {
-        let shift = self.shifts.get(self.labels[y * self.width + x] as usize)?.working;
-        index(working, x as i32 - shift[0], y as i32 - shift[1])
-    }
-}
 
 /// Colour and metadata of the exemplar, and their weights.
 pub struct Guide<'a> {
@@ -89,7 +62,13 @@ struct Rect {
 struct Quilt<'a> {
     guide: &'a Guide<'a>,
     features: Vec<[f32; 6]>,
+    /// The rows that no block reaches any more, and all shifts.
     layout: Layout,
+    /// The labels of the rows from `first` on that blocks still reach.
+    first: usize,
+    open: Vec<u32>,
+    /// The label of each shift.
+    labels: BTreeMap<([i32; 2], [u64; 2]), u32>,
     continuation: Continuation,
     /// Where the lattice begins, in unwarped pixels.
     offset: DVec2,
@@ -129,10 +108,23 @@ pub fn place(
         }
     }
 
-    let layout = Layout { width, height, labels: try_vec(width * height, NONE)?, shifts: Vec::new() };
-    let mut quilt = Quilt { guide, features: guide.features(), layout, continuation, offset, bounds, admissible, seed };
+    let mut quilt = Quilt {
+        guide,
+        features: guide.features(),
+        layout: Layout::new(width, height),
+        first: 0,
+        // A row of blocks, and the row of pixels above it.
+        open: try_vec(width * (h + 1), NONE)?,
+        labels: BTreeMap::new(),
+        continuation,
+        offset,
+        bounds,
+        admissible,
+        seed,
+    };
     let overlap = [w / 3, h / 3];
     for y in (0..height).step_by(h - overlap[1]) {
+        quilt.close(y.saturating_sub(1));
         for x in (0..width).step_by(w - overlap[0]) {
             job.check()?;
             let rect = Rect { x, y, w: w.min(width - x), h: h.min(height - y) };
@@ -140,10 +132,26 @@ pub fn place(
         }
         job.report((y + 1) as f64 / height as f64);
     }
+    quilt.close(height);
     Ok(quilt.layout)
 }
 
 impl Quilt<'_> {
+    fn label(&self, x: usize, y: usize) -> u32 {
+        self.open[(y - self.first) * self.layout.width + x]
+    }
+
+    /// Gives the rows above `y` to the layout.
+    fn close(&mut self, y: usize) {
+        let width = self.layout.width;
+        let done = (y - self.first) * width;
+        self.open[..done].chunks_exact(width).for_each(|row| self.layout.push(row));
+        self.open.copy_within(done.., 0);
+        let rest = self.open.len() - done;
+        self.open[rest..].fill(NONE);
+        self.first = y;
+    }
+
     /// Places patches until nothing of the block is empty that any of them could show.
     fn fill(&mut self, rect: &Rect, overlap: [usize; 2], job: Job) -> Result<()> {
         let mut first = true;
@@ -169,7 +177,10 @@ impl Quilt<'_> {
 
     /// The exemplar pixel each pixel of a block already shows.
     fn known(&self, rect: &Rect) -> Vec<Option<u32>> {
-        let pixel = |i: usize| self.layout.source(rect.x + i % rect.w, rect.y + i / rect.w, self.guide.working);
+        let pixel = |i: usize| {
+            let (x, y) = (rect.x + i % rect.w, rect.y + i / rect.w);
+            self.layout.source(x, y, self.label(x, y), self.guide.working)
+        };
         (0..rect.w * rect.h).map(|i| pixel(i).map(|s| s as u32)).collect()
     }
 
@@ -177,7 +188,7 @@ impl Quilt<'_> {
     fn candidates(&self, rect: &Rect) -> Vec<Shift> {
         let mut shifts: Vec<Shift> = Vec::new();
         let mut neighbour = |x: usize, y: usize| {
-            if let Some(&shift) = self.layout.shifts.get(self.layout.labels[y * self.layout.width + x] as usize)
+            if let Some(&shift) = self.layout.shifts.get(self.label(x, y) as usize)
                 && !shifts.contains(&shift)
             {
                 shifts.push(shift);
@@ -246,7 +257,7 @@ impl Quilt<'_> {
         let working = self.guide.working;
         exec::map(shifts.len(), job, |n| {
             let [dx, dy] = shifts[n].working;
-            let source = |[x, y]: [i32; 2]| index(working, x - dx, y - dy).filter(|&s| working.usable[s]);
+            let source = |[x, y]: [i32; 2]| working.index(x - dx, y - dy).filter(|&s| working.usable[s]);
             let fills = empty.iter().filter(|&&p| source(p).is_some()).count();
             let (mut sum, mut count) = (0f64, 0u32);
             for &(p, old) in filled {
@@ -301,7 +312,8 @@ impl Quilt<'_> {
     ) {
         let working = self.guide.working;
         let source = |x: usize, y: usize| {
-            index(working, (rect.x + x) as i32 - shift.working[0], (rect.y + y) as i32 - shift.working[1])
+            working
+                .index((rect.x + x) as i32 - shift.working[0], (rect.y + y) as i32 - shift.working[1])
                 .filter(|&s| working.usable[s])
         };
         let cost = |x: usize, y: usize| match (known[y * rect.w + x].map(|k| k as usize), source(x, y)) {
@@ -327,18 +339,17 @@ impl Quilt<'_> {
                 from_row = seam::horizontal_cut(&strip, rect.w, h);
             }
         }
-        let label = match self.layout.shifts.iter().rposition(|s| *s == shift) {
-            Some(index) => index as u32,
-            None => {
-                self.layout.shifts.push(shift);
-                self.layout.shifts.len() as u32 - 1
-            }
-        };
+        let shifts = &mut self.layout.shifts;
+        let key = (shift.working, shift.exact.to_array().map(f64::to_bits));
+        let label = *self.labels.entry(key).or_insert_with(|| {
+            shifts.push(shift);
+            shifts.len() as u32 - 1
+        });
         for (i, old) in known.iter().enumerate() {
             let (x, y) = (i % rect.w, i / rect.w);
             let beyond = overlap.is_some() && x >= from_column[y] && y >= from_row[x];
             if (old.is_none() || beyond) && source(x, y).is_some() {
-                self.layout.labels[(rect.y + y) * self.layout.width + rect.x + x] = label;
+                self.open[(rect.y + y - self.first) * self.layout.width + rect.x + x] = label;
             }
         }
     }
@@ -346,9 +357,4 @@ impl Quilt<'_> {
 
 fn free_shift(working: [i32; 2], pitch: DVec2) -> Shift {
     Shift { working, exact: DVec2::new(f64::from(working[0]), f64::from(working[1])) * pitch }
-}
-
-fn index(working: &Working, x: i32, y: i32) -> Option<usize> {
-    let (x, y) = (usize::try_from(x).ok()?, usize::try_from(y).ok()?);
-    (x < working.width && y < working.height).then(|| y * working.width + x)
 }

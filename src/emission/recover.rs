@@ -4,15 +4,14 @@
 //! where the area the texel covers is averaged. What is light is decided in the unwarped image: where it is magnified, by its
 //! confidence between pixels, so that outlines are no staircases; where it is reduced, by share of area.
 
-use super::clipping::Clipping;
-use super::exemplar::{Exemplar, LIT};
+use super::Input;
+use super::exemplar::LIT;
 use super::lamps::Instance;
-use super::patches::Layout;
+use super::plan::{Layer, Tile};
 use crate::error::Result;
-use crate::geometry::Homography;
 use crate::image::Image;
 use crate::job::Job;
-use glam::{DVec2, Vec3, Vec4};
+use glam::{DVec2, DVec3, Vec3, Vec4};
 use rayon::prelude::*;
 
 /// Most samples along each side of a texel.
@@ -20,53 +19,53 @@ const MOST_SAMPLES: f64 = 16.0;
 /// Rows of texels that share one list of lamps.
 const BAND: usize = 16;
 
-pub struct Source<'a> {
-    pub exemplar: &'a Exemplar<'a>,
-    pub layout: &'a Layout,
-    /// Lamps copied as a whole.
-    pub instances: &'a [Instance],
-    /// Which components of the exemplar follow the patches pixel by pixel instead.
-    pub by_pixel: &'a [bool],
-    pub photo: Option<(&'a Image, Homography)>,
-    /// Where the photo is clipped, the colours of the lamps it shows.
-    pub clipping: Option<Clipping>,
-    /// Unwarped pixels per texel.
-    pub scale: f64,
+/// Which lamps may touch each band of rows, and their texels: index, then `[x0, y0, x1, y1)`.
+#[derive(Default)]
+pub struct Bands(Vec<Vec<(u32, [u32; 4])>>);
+
+impl Bands {
+    pub fn new(layer: &Layer, width: usize, height: usize) -> Self {
+        let mut bands = vec![Vec::new(); height.div_ceil(BAND)];
+        for (i, instance) in layer.instances.iter().enumerate() {
+            if let Some(range) = texels(layer, instance, width, height) {
+                let rows = range[1] / BAND..=(range[3] - 1) / BAND;
+                bands[rows].iter_mut().for_each(|b: &mut Vec<_>| b.push((i as u32, range.map(|r| r as u32))));
+            }
+        }
+        Self(bands)
+    }
 }
 
-/// The texture and its mask.
-pub fn run(source: &Source, width: usize, height: usize, job: Job) -> Result<(Image, Image)> {
+/// A tile of the texture and its mask.
+pub fn run(layer: &Layer, input: &Input, tile: Tile, job: Job) -> Result<(Image, Image)> {
+    let Tile { width, height, .. } = tile;
     let mut texture = Image::new(width, height, 3)?;
     let mut mask = Image::new(width, height, 1)?;
-
-    // Which lamps may touch each band of rows, and their range of texels.
-    let mut bands: Vec<Vec<(usize, [usize; 4])>> = vec![Vec::new(); height.div_ceil(BAND)];
-    for (i, instance) in source.instances.iter().enumerate() {
-        if let Some(range) = source.texels(instance, width, height) {
-            bands[range[1] / BAND..=(range[3] - 1) / BAND].iter_mut().for_each(|b| b.push((i, range)));
-        }
-    }
-
-    let follows_patches = source.by_pixel.contains(&true);
+    let source = Source { layer, input };
+    let follows_patches = layer.by_pixel.contains(&true);
     let rows = texture.data.par_chunks_exact_mut(3 * width).zip(mask.data.par_chunks_exact_mut(width)).enumerate();
-    rows.try_for_each(|(y, (colours, coverage))| {
+    rows.try_for_each(|(row, (colours, coverage))| {
         job.check()?;
+        let y = tile.y + row;
         let mut add = |x: usize, (colour, share): (Vec3, f32)| {
             if share > 0.0 {
-                coverage[x] += share;
-                colours[3 * x..3 * x + 3].iter_mut().zip(colour.to_array()).for_each(|(o, c)| *o += c);
+                let at = x - tile.x;
+                coverage[at] += share;
+                colours[3 * at..3 * at + 3].iter_mut().zip(colour.to_array()).for_each(|(o, c)| *o += c);
             }
         };
-        for &(i, [x0, y0, x1, y1]) in &bands[y / BAND] {
+        for &(i, range) in &layer.bands.0[y / BAND] {
+            let [x0, y0, x1, y1] = range.map(|r| r as usize);
             if (y0..y1).contains(&y) {
-                let Instance { component, shift } = source.instances[i];
-                (x0..x1).for_each(|x| add(x, source.texel(x, y, shift, |label| label == component as u32 + 1)));
+                let Instance { component, shift } = layer.instances[i as usize];
+                let columns = x0.max(tile.x)..x1.min(tile.x + width);
+                columns.for_each(|x| add(x, source.texel(x, y, shift, |label| label == component as u32 + 1)));
             }
         }
         if follows_patches {
-            for x in 0..width {
+            for x in tile.x..tile.x + width {
                 if let Some(shift) = source.shift_at(x, y) {
-                    add(x, source.texel(x, y, shift, |label| label != 0 && source.by_pixel[label as usize - 1]));
+                    add(x, source.texel(x, y, shift, |label| label != 0 && layer.by_pixel[label as usize - 1]));
                 }
             }
         }
@@ -77,37 +76,66 @@ pub fn run(source: &Source, width: usize, height: usize, job: Job) -> Result<(Im
     Ok((texture, mask))
 }
 
-impl Source<'_> {
+/// The mean colour of every component of the exemplar.
+pub fn mean_colours(layer: &Layer, input: &Input, job: Job) -> Result<Vec<Vec3>> {
+    let source = Source { layer, input };
+    let exemplar = &layer.exemplar;
+    let mut sums = vec![DVec3::ZERO; exemplar.components.list.len()];
+    for y in 0..exemplar.height {
+        job.check()?;
+        for x in 0..exemplar.width {
+            let label = exemplar.components.labels[y * exemplar.width + x];
+            if label != 0 {
+                let centre = DVec2::new(x as f64, y as f64) + 0.5;
+                let value = source.from_photo(centre, 1.0).unwrap_or_else(|| input.unwarped.rgb(x, y));
+                sums[label as usize - 1] += source.unclipped(label, value).as_dvec3();
+            }
+        }
+    }
+    Ok(sums.iter().zip(&exemplar.components.list).map(|(sum, lamp)| (*sum / lamp.area as f64).as_vec3()).collect())
+}
+
+/// The texels `[x0, y0, x1, y1)` a lamp may touch.
+fn texels(layer: &Layer, instance: &Instance, width: usize, height: usize) -> Option<[usize; 4]> {
+    let lamp = &layer.exemplar.components.list[instance.component];
+    let shift = layer.rounded(instance.shift);
+    let point = |p: [usize; 2]| DVec2::new(p[0] as f64, p[1] as f64);
+    let low = ((point(lamp.min) + shift) / layer.scale).floor() - 1.0;
+    let high = ((point(lamp.max) + 1.0 + shift) / layer.scale).ceil() + 1.0;
+    let low = low.max(DVec2::ZERO);
+    let high = high.min(point([width, height]));
+    (low.x < high.x && low.y < high.y).then(|| [low.x as usize, low.y as usize, high.x as usize, high.y as usize])
+}
+
+impl Layer {
     /// Shifts become whole pixels where pixels are copied one to one, so that copies are exact.
     fn rounded(&self, shift: DVec2) -> DVec2 {
         if self.scale == 1.0 { shift.round() } else { shift }
     }
+}
 
-    /// The texels `[x0, y0, x1, y1)` a lamp may touch.
-    fn texels(&self, instance: &Instance, width: usize, height: usize) -> Option<[usize; 4]> {
-        let lamp = &self.exemplar.components.list[instance.component];
-        let shift = self.rounded(instance.shift);
-        let point = |p: [usize; 2]| DVec2::new(p[0] as f64, p[1] as f64);
-        let low = ((point(lamp.min) + shift) / self.scale).floor() - 1.0;
-        let high = ((point(lamp.max) + 1.0 + shift) / self.scale).ceil() + 1.0;
-        let low = low.max(DVec2::ZERO);
-        let high = high.min(point([width, height]));
-        (low.x < high.x && low.y < high.y).then(|| [low.x as usize, low.y as usize, high.x as usize, high.y as usize])
-    }
+/// What is shown, and the images it is taken from.
+#[derive(Clone, Copy)]
+struct Source<'a> {
+    layer: &'a Layer,
+    input: &'a Input<'a>,
+}
 
+impl Source<'_> {
     /// The shift of the patch that shows a texel's centre.
     fn shift_at(&self, x: usize, y: usize) -> Option<DVec2> {
-        let p = DVec2::new(x as f64 + 0.5, y as f64 + 0.5) * self.scale / self.exemplar.working.pitch;
-        let (u, v) = ((p.x as usize).min(self.layout.width - 1), (p.y as usize).min(self.layout.height - 1));
-        let label = self.layout.labels[v * self.layout.width + u];
-        self.layout.shifts.get(label as usize).map(|s| s.exact)
+        let Layer { layout, exemplar, scale, .. } = self.layer;
+        let p = DVec2::new(x as f64 + 0.5, y as f64 + 0.5) * *scale / exemplar.working.pitch;
+        let (u, v) = ((p.x as usize).min(layout.width - 1), (p.y as usize).min(layout.height - 1));
+        layout.shift(u, v).map(|s| s.exact)
     }
 
     /// The light of the components that `is_shown` names by label, averaged over a texel; and the share it covers.
     fn texel(&self, x: usize, y: usize, shift: DVec2, is_shown: impl Fn(u32) -> bool) -> (Vec3, f32) {
-        let n = self.scale.ceil().clamp(1.0, MOST_SAMPLES);
-        let spacing = self.scale / n;
-        let corner = DVec2::new(x as f64, y as f64) * self.scale - self.rounded(shift);
+        let scale = self.layer.scale;
+        let n = scale.ceil().clamp(1.0, MOST_SAMPLES);
+        let spacing = scale / n;
+        let corner = DVec2::new(x as f64, y as f64) * scale - self.layer.rounded(shift);
         let (mut colour, mut inside) = (Vec3::ZERO, 0u32);
         for i in 0..(n * n) as usize {
             let step = DVec2::new((i % n as usize) as f64 + 0.5, (i / n as usize) as f64 + 0.5);
@@ -117,20 +145,10 @@ impl Source<'_> {
             let light: f32 = taps.iter().map(|&(pixel, w)| w * self.light(pixel, is_magnified, &is_shown)).sum();
             if light >= LIT {
                 inside += 1;
-                let value = self.from_photo(p, spacing).unwrap_or_else(|| {
-                    // Only light mixes with light.
-                    let lit = taps.iter().filter(|t| t.1 > 0.0 && is_shown(self.label(t.0)));
-                    let sum: Vec4 = lit
-                        .map(|&(i, w)| {
-                            (self.exemplar.image.rgb(i % self.exemplar.width, i / self.exemplar.width) * w).extend(w)
-                        })
-                        .sum();
-                    sum.truncate() / sum.w.max(f32::MIN_POSITIVE)
-                });
                 let lamp = taps.iter().map(|&(pixel, _)| self.label(pixel)).find(|&label| is_shown(label));
-                colour += match (&self.clipping, lamp) {
-                    (Some(clipping), Some(label)) if label != 0 => clipping.undo(label as usize - 1, value),
-                    _ => value,
+                colour += match (&self.layer.even, lamp) {
+                    (Some(means), Some(label)) if label != 0 => means[label as usize - 1],
+                    _ => self.colour(p, spacing, &taps, lamp, &is_shown),
                 };
             }
         }
@@ -138,19 +156,47 @@ impl Source<'_> {
         (colour / samples, inside as f32 / samples)
     }
 
+    /// The light at a point, from the finest source there is.
+    fn colour(
+        &self,
+        p: DVec2,
+        side: f64,
+        taps: &[(usize, f32); 4],
+        lamp: Option<u32>,
+        is_shown: &impl Fn(u32) -> bool,
+    ) -> Vec3 {
+        let value = self.from_photo(p, side).unwrap_or_else(|| {
+            // Only light mixes with light.
+            let unwarped = self.input.unwarped;
+            let lit = taps.iter().filter(|t| t.1 > 0.0 && is_shown(self.label(t.0)));
+            let sum: Vec4 =
+                lit.map(|&(i, w)| (unwarped.rgb(i % unwarped.width, i / unwarped.width) * w).extend(w)).sum();
+            sum.truncate() / sum.w.max(f32::MIN_POSITIVE)
+        });
+        self.unclipped(lamp.unwrap_or(0), value)
+    }
+
+    /// The light of a component where the photo shows `value`.
+    fn unclipped(&self, label: u32, value: Vec3) -> Vec3 {
+        match (&self.layer.clipping, label.checked_sub(1)) {
+            (Some(clipping), Some(component)) => clipping.undo(component as usize, value),
+            _ => value,
+        }
+    }
+
     /// Label of an unwarped pixel; `usize::MAX` is none.
     fn label(&self, pixel: usize) -> u32 {
-        self.exemplar.components.labels.get(pixel).copied().unwrap_or(0)
+        self.layer.exemplar.components.labels.get(pixel).copied().unwrap_or(0)
     }
 
     /// How much an unwarped pixel is of the light that is shown. Beside a lamp confidence fades away; where it is none of a
     /// lamp's, it is nobody's.
     fn light(&self, pixel: usize, is_graded: bool, is_shown: &impl Fn(u32) -> bool) -> f32 {
         let label = self.label(pixel);
-        if label != 0 && !is_shown(label) || !self.exemplar.shown.get(pixel).is_some_and(|&s| s) {
+        if label != 0 && !is_shown(label) || !self.layer.exemplar.shown.get(pixel).is_some_and(|&s| s) {
             return 0.0;
         }
-        match (is_graded, self.exemplar.light.data[pixel].min(1.0)) {
+        match (is_graded, self.input.light.data[pixel].min(1.0)) {
             (false, _) => f32::from(label != 0),
             (true, confidence) if label != 0 || confidence < LIT => confidence.max(0.0),
             _ => 0.0,
@@ -159,7 +205,7 @@ impl Source<'_> {
 
     /// Pixels and weights of a bilinear look-up, or of the pixel a point lies in.
     fn taps(&self, p: DVec2, nearest: bool) -> [(usize, f32); 4] {
-        let (width, height) = (self.exemplar.width, self.exemplar.height);
+        let (width, height) = (self.layer.exemplar.width, self.layer.exemplar.height);
         let at = |x: f64, y: f64| {
             let inside = x >= 0.0 && y >= 0.0 && x < width as f64 && y < height as f64;
             if inside { y as usize * width + x as usize } else { usize::MAX }
@@ -179,7 +225,7 @@ impl Source<'_> {
 
     /// The photo's colour at a point of the unwarped image, averaged over a square of the given side there.
     fn from_photo(&self, p: DVec2, side: f64) -> Option<Vec3> {
-        let (photo, to_photo) = self.photo?;
+        let (photo, to_photo) = self.input.photo?;
         let (right, down) = (to_photo.apply(p + DVec2::X * side / 2.0), to_photo.apply(p + DVec2::Y * side / 2.0));
         let centre = to_photo.apply(p);
         let stretch = 2.0 * (right - centre).length().max((down - centre).length());

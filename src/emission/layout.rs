@@ -1,0 +1,104 @@
+//! Which part of the exemplar each part of the texture shows, in the space that its patches need.
+
+use super::exemplar::Working;
+use glam::DVec2;
+
+/// The label of a pixel that no patch shows.
+pub const NONE: u32 = u32::MAX;
+
+/// A shift of the exemplar: where it is shown, less where it is taken from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shift {
+    /// In working pixels.
+    pub working: [i32; 2],
+    /// The same before rounding, in unwarped pixels.
+    pub exact: DVec2,
+}
+
+/// Which shift of the exemplar each working pixel of the result shows. Patches are wide, so a row is kept as its runs of one
+/// label: positions only, however large the texture is.
+#[derive(Clone, Debug, Default)]
+pub struct Layout {
+    pub width: usize,
+    pub height: usize,
+    pub shifts: Vec<Shift>,
+    /// End (exclusive) and label of each run, row after row.
+    runs: Vec<(u32, u32)>,
+    /// Where the runs of each row end.
+    ends: Vec<usize>,
+}
+
+impl Layout {
+    pub fn new(width: usize, height: usize) -> Self {
+        Self { width, height, shifts: Vec::new(), runs: Vec::new(), ends: Vec::new() }
+    }
+
+    /// All of it shows one shift.
+    pub fn single(width: usize, height: usize, shift: Shift) -> Self {
+        let runs = vec![(width as u32, 0); height];
+        Self { width, height, shifts: vec![shift], runs, ends: (1..=height).collect() }
+    }
+
+    /// Appends a row of labels: indices into `shifts`, or [`NONE`].
+    pub fn push(&mut self, labels: &[u32]) {
+        for (x, &label) in labels.iter().enumerate() {
+            if labels.get(x + 1) != Some(&label) {
+                self.runs.push((x as u32 + 1, label));
+            }
+        }
+        self.ends.push(self.runs.len());
+    }
+
+    /// The runs of a row, from left to right: end (exclusive) and label.
+    pub fn row(&self, y: usize) -> &[(u32, u32)] {
+        let start = y.checked_sub(1).map_or(0, |above| self.ends[above]);
+        &self.runs[start..self.ends[y]]
+    }
+
+    /// The label of every pixel of a row.
+    pub fn labels(&self, y: usize) -> impl Iterator<Item = u32> {
+        let mut start = 0;
+        self.row(y).iter().flat_map(move |&(end, label)| {
+            let length = end - std::mem::replace(&mut start, end);
+            std::iter::repeat_n(label, length as usize)
+        })
+    }
+
+    /// The shift that a pixel shows.
+    pub fn shift(&self, x: usize, y: usize) -> Option<&Shift> {
+        let row = self.row(y);
+        let run = row.partition_point(|&(end, _)| end as usize <= x);
+        self.shifts.get(row.get(run)?.1 as usize)
+    }
+
+    /// The exemplar's working pixel that a label shows at a pixel of the result, if any.
+    pub fn source(&self, x: usize, y: usize, label: u32, working: &Working) -> Option<usize> {
+        let [dx, dy] = self.shifts.get(label as usize)?.working;
+        working.index(x as i32 - dx, y as i32 - dy)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rng::Rng;
+
+    #[test]
+    fn runs_tell_every_pixel() {
+        let (width, height) = (37, 12);
+        let mut rng = Rng::new(4, &[]);
+        let rows: Vec<Vec<u32>> = (0..height)
+            .map(|_| (0..width).map(|_| if rng.next_f64() < 0.3 { NONE } else { rng.below(3) as u32 }).collect())
+            .collect();
+        let mut layout = Layout::new(width, height);
+        layout.shifts = (0..3).map(|i| Shift { working: [i, 0], exact: DVec2::ZERO }).collect();
+        rows.iter().for_each(|row| layout.push(row));
+        for (y, row) in rows.iter().enumerate() {
+            assert_eq!(&layout.labels(y).collect::<Vec<_>>(), row);
+            for (x, &label) in row.iter().enumerate() {
+                assert_eq!(layout.shift(x, y), layout.shifts.get(label as usize));
+            }
+        }
+        assert_eq!(Layout::single(5, 2, layout.shifts[1]).shift(4, 1), Some(&layout.shifts[1]));
+    }
+}

@@ -1,0 +1,45 @@
+//! What an exemplar shows, for those who set the size of its pattern by its lamps.
+
+use super::exemplar::Exemplar;
+use super::period::{self, Continuation};
+use super::plan::working_side;
+use super::{Input, Params, check_input, statistics};
+use crate::error::Result;
+use crate::job::Job;
+use glam::DVec2;
+
+/// What an exemplar shows, in unwarped pixels.
+pub struct Measure {
+    /// Median over its whole lamps of the longer side; 0 without one.
+    pub lamp_length: f64,
+    /// The shorter period of the lattice of the lamps; without one the median distance from a whole lamp to the nearest other, 0
+    /// if there are less than two.
+    pub spacing: f64,
+    /// Width of what it shows.
+    pub width: f64,
+}
+
+/// Measures an exemplar. Errors as of [`run`].
+pub fn measure(input: &Input, params: &Params, job: Job) -> Result<Measure> {
+    params.check()?;
+    check_input(input)?;
+    let exemplar = Exemplar::new(input, working_side(input, params), job.part(0.0, 0.5))?;
+    let (continuation, _) = period::find(&exemplar, params.least_regularity, job.part(0.5, 1.0))?;
+    let spacing = match continuation {
+        Continuation::Lattice([a, b]) => a.length().min(b.length()),
+        _ => {
+            let centres: Vec<DVec2> = exemplar.lamps().map(|lamp| lamp.centre).collect();
+            let mut nearest = statistics::nearest_distances(&centres);
+            nearest.sort_by(f64::total_cmp);
+            nearest.get(nearest.len() / 2).copied().filter(|d| d.is_finite()).unwrap_or(0.0)
+        }
+    };
+    let mut lengths: Vec<usize> = exemplar.lamps().map(|lamp| lamp.size()[0].max(lamp.size()[1])).collect();
+    lengths.sort_unstable();
+    let columns = (0..exemplar.width).filter(|&x| (0..exemplar.height).any(|y| exemplar.shown[y * exemplar.width + x]));
+    Ok(Measure {
+        lamp_length: lengths.get(lengths.len() / 2).map_or(0.0, |&l| l as f64),
+        spacing,
+        width: columns.count() as f64,
+    })
+}

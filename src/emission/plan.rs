@@ -1,0 +1,247 @@
+//! The plan of a texture: which lamp and which patch goes where, and no texel yet.
+//!
+//! A plan holds positions only. Any tile of the texture is rendered from it alone, so a texture of any size needs the memory
+//! of a tile; and since a texel depends on nothing but its place, the bits are the same whatever the tiles, their order and
+//! the number of threads.
+
+use super::clipping::Clipping;
+use super::exemplar::Exemplar;
+use super::lamps::{self, Instance, Rules};
+use super::layout::Layout;
+use super::patches::{self, Guide};
+use super::period::{self, Continuation};
+use super::recover::{self, Bands};
+use super::window::{self, Window};
+use super::{Input, Params, luminaires, metadata};
+use crate::error::{Error, Result};
+use crate::image::Image;
+use crate::job::Job;
+use glam::{DVec2, Vec3};
+
+/// Most working pixels of a result; larger ones are planned at a coarser size.
+const MOST_WORKING_PIXELS: f64 = (1 << 28) as f64;
+
+/// Share of the smallest lamp's area up to which a piece of light is none: a crumb of an edge that resampling broke off.
+const CRUMB: f64 = 0.02;
+
+/// A part of a texture, in texels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Tile {
+    pub x: usize,
+    pub y: usize,
+    pub width: usize,
+    pub height: usize,
+}
+
+/// What a texture of `width` × `height` texels shows, and where.
+pub struct Plan {
+    pub width: usize,
+    pub height: usize,
+    pub(super) layer: Layer,
+    /// Area in texels below which a piece of light is a crumb.
+    crumb: f64,
+}
+
+/// Where the texture shows what of an exemplar.
+pub(super) struct Layer {
+    pub exemplar: Exemplar,
+    pub continuation: Continuation,
+    pub regularity: f64,
+    /// Of the exemplar, at working size.
+    pub metadata: Image,
+    pub layout: Layout,
+    /// Lamps copied as a whole.
+    pub instances: Vec<Instance>,
+    pub bands: Bands,
+    /// Which components of the exemplar follow the patches pixel by pixel instead.
+    pub by_pixel: Vec<bool>,
+    /// Where the photo is clipped, the colours of the lamps it shows.
+    pub clipping: Option<Clipping>,
+    /// The mean colour of each component, where lamps shine evenly.
+    pub even: Option<Vec<Vec3>>,
+    /// Unwarped pixels per texel.
+    pub scale: f64,
+}
+
+impl Plan {
+    /// Plans the texture that [`super::run`] makes. Errors as there.
+    pub fn new(input: &Input, params: &Params, job: Job) -> Result<Self> {
+        params.check()?;
+        super::check_input(input)?;
+        let mut layer = Layer::new(input, params, job)?;
+        if params.tileable {
+            layer.instances = lamps::wrapped(&layer.instances, params.size());
+        }
+        let (width, height) = (params.width, params.height);
+        layer.bands = Bands::new(&layer, width, height);
+        Ok(Self { width, height, crumb: layer.crumb(), layer })
+    }
+
+    /// The number of lamps that are copied as a whole.
+    pub fn lamps(&self) -> usize {
+        self.layer.instances.len()
+    }
+
+    /// Renders a tile of the texture, and its mask, from the input that the plan was made of.
+    ///
+    /// Errors: `InvalidArgument` for a tile that is empty or reaches beyond the texture, or an input of another size.
+    pub fn tile(&self, input: &Input, tile: Tile, job: Job) -> Result<(Image, Image)> {
+        self.check_tile(tile)?;
+        super::check_input(input)?;
+        let size = (input.unwarped.width, input.unwarped.height);
+        if size != (self.layer.exemplar.width, self.layer.exemplar.height) {
+            return Err(Error::argument(format!(
+                "the unwarped image is {} x {}; the plan was made of one of {} x {}",
+                size.0, size.1, self.layer.exemplar.width, self.layer.exemplar.height
+            )));
+        }
+        // A crumb, and whatever joins a piece to something larger, lies within its reach of the tile.
+        let reach = luminaires::reach(self.crumb);
+        let around = tile.widened(if self.crumb > 0.0 { reach + 2 } else { 0 }, self.width, self.height);
+        let (mut texture, mut mask) = recover::run(&self.layer, input, around, job)?;
+        luminaires::sweep(&mut texture, &mut mask, self.crumb)?;
+        if around == tile {
+            return Ok((texture, mask));
+        }
+        Ok((tile.cut(&texture, around)?, tile.cut(&mask, around)?))
+    }
+
+    /// The whole texture as a tile.
+    pub fn whole(&self) -> Tile {
+        Tile { x: 0, y: 0, width: self.width, height: self.height }
+    }
+
+    fn check_tile(&self, tile: Tile) -> Result<()> {
+        let fits = |start: usize, side: usize, whole: usize| side > 0 && start < whole && side <= whole - start;
+        if fits(tile.x, tile.width, self.width) && fits(tile.y, tile.height, self.height) {
+            return Ok(());
+        }
+        Err(Error::argument(format!(
+            "the tile of {} x {} texels at {}, {} must be a part of the texture, which has {} x {}",
+            tile.width, tile.height, tile.x, tile.y, self.width, self.height
+        )))
+    }
+}
+
+impl Tile {
+    fn widened(self, by: usize, width: usize, height: usize) -> Self {
+        let (x, y) = (self.x.saturating_sub(by), self.y.saturating_sub(by));
+        let end = |start: usize, side: usize, whole: usize| start.saturating_add(side).saturating_add(by).min(whole);
+        Self { x, y, width: end(self.x, self.width, width) - x, height: end(self.y, self.height, height) - y }
+    }
+
+    /// Its part of an image of the tile `around` it.
+    fn cut(self, image: &Image, around: Self) -> Result<Image> {
+        let mut out = Image::new(self.width, self.height, image.channels)?;
+        let (dx, dy) = (self.x - around.x, self.y - around.y);
+        for (y, row) in out.data.chunks_exact_mut(self.width * image.channels).enumerate() {
+            let start = ((y + dy) * image.width + dx) * image.channels;
+            row.copy_from_slice(&image.data[start..start + row.len()]);
+        }
+        Ok(out)
+    }
+}
+
+impl Layer {
+    fn new(input: &Input, params: &Params, job: Job) -> Result<Self> {
+        let exemplar = Exemplar::new(input, working_side(input, params), job.part(0.0, 0.15))?;
+        let working = &exemplar.working;
+
+        // How the pattern goes on, the size of a patch, and the metadata at that scale.
+        let window = if params.tileable { None } else { Window::find(&exemplar, params)? };
+        let inside = window.as_ref().filter(|w| w.is_shown).map(|w| w.corner);
+        let (continuation, regularity) = match inside {
+            Some(_) => (Continuation::Copy, 0.0),
+            None => {
+                let (found, regularity) = period::find(&exemplar, params.least_regularity, job.part(0.15, 0.25))?;
+                (if params.tileable { found.fitted(params.size())? } else { found }, regularity)
+            }
+        };
+        let block = if params.block > 0 { params.block } else { default_block(&exemplar, continuation) };
+        let reach = continuation
+            .lattice()
+            .map_or(f64::INFINITY, |[a, b]| (a / working.pitch).length().max((b / working.pitch).length()) / 2.0);
+        let cap = reach.min(block as f64).max(1.0);
+        let metadata = metadata::compute(
+            &working.confidence,
+            &working.lit,
+            working.width,
+            working.height,
+            cap,
+            job.part(0.25, 0.3),
+        )?;
+
+        // Which part of the exemplar each part of the texture shows.
+        let canvas = (params.size() / working.pitch).ceil();
+        let canvas = (canvas.x as usize, canvas.y as usize);
+        let layout = match inside {
+            Some(corner) => window::copy(corner, canvas, working.pitch),
+            None => {
+                let guide = Guide { working, metadata: &metadata, metadata_weight: params.metadata_weight };
+                let offset = window.map_or(params.offset * params.scale, |w| -w.corner);
+                patches::place(&guide, continuation, offset, canvas, block, params.seed, job.part(0.3, 0.9))?
+            }
+        };
+
+        // Whole lamps as pieces, the rest as the patches have it.
+        let (instances, by_pixel) = match inside {
+            None if params.whole_lamps => {
+                let rules = Rules { is_lattice: continuation.lattice().is_some(), wraps: params.tileable };
+                let instances = lamps::resolve(&exemplar, &layout, rules, params.seed, job.part(0.9, 1.0))?;
+                (instances, exemplar.whole.iter().zip(&exemplar.cut).map(|(whole, cut)| !whole && !cut).collect())
+            }
+            _ => (Vec::new(), vec![true; exemplar.whole.len()]),
+        };
+        let clipping = Clipping::find(input.unwarped, &exemplar.shown, &exemplar.components, params.clip_level);
+        let mut layer = Self {
+            exemplar,
+            continuation,
+            regularity,
+            metadata,
+            layout,
+            instances,
+            bands: Bands::default(),
+            by_pixel,
+            clipping,
+            even: None,
+            scale: params.scale,
+        };
+        if params.even_lamps {
+            layer.even = Some(recover::mean_colours(&layer, input, job)?);
+        }
+        Ok(layer)
+    }
+
+    /// Area in texels below which a piece of light is a crumb; 0 where no lamp says what is small.
+    fn crumb(&self) -> f64 {
+        let smallest = self.exemplar.lamps().map(|l| l.area as f64).fold(f64::INFINITY, f64::min);
+        if self.instances.is_empty() { 0.0 } else { CRUMB * smallest / self.scale.powi(2) }
+    }
+}
+
+/// Longest side of the exemplar at work: coarser than asked for where the result would have too many working pixels.
+pub(super) fn working_side(input: &Input, params: &Params) -> f64 {
+    let longest = input.unwarped.width.max(input.unwarped.height) as f64;
+    let side = longest.min(params.working_side as f64);
+    let pixels = params.size().element_product() * (side / longest).powi(2);
+    side * (MOST_WORKING_PIXELS / pixels).sqrt().min(1.0)
+}
+
+/// A patch that holds more than one lamp and its neighbours: one and a half times the longer period; without one, a quarter
+/// of the exemplar.
+fn default_block(exemplar: &Exemplar, continuation: Continuation) -> usize {
+    let working = &exemplar.working;
+    let quarter = working.width.min(working.height) as f64 / 4.0;
+    let side = match continuation {
+        Continuation::Lattice([a, b]) => 1.5 * (a / working.pitch).length().max((b / working.pitch).length()),
+        _ => quarter,
+    };
+    side.clamp(16.0, (2.0 * quarter).max(16.0)).round() as usize
+}
+
+impl Params {
+    /// What the texture covers, in unwarped pixels.
+    pub(super) fn size(&self) -> DVec2 {
+        DVec2::new(self.width as f64, self.height as f64) * self.scale
+    }
+}
