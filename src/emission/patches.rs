@@ -52,11 +52,27 @@ impl Guide<'_> {
     }
 }
 
+#[derive(Clone, Copy)]
 struct Rect {
     x: usize,
     y: usize,
     w: usize,
     h: usize,
+}
+
+/// A block: its pixels that show nothing yet, and those that show a pixel of the exemplar.
+struct Block {
+    rect: Rect,
+    empty: Vec<[i32; 2]>,
+    filled: Vec<([i32; 2], u32)>,
+}
+
+/// A shift, how many empty pixels of a block it fills, and its mean squared difference from the known ones.
+#[derive(Clone, Copy)]
+struct Scored {
+    shift: Shift,
+    fills: usize,
+    error: f32,
 }
 
 struct Quilt<'a> {
@@ -75,6 +91,7 @@ struct Quilt<'a> {
     /// The box of the usable pixels, and the corners at which a whole block of them can be taken.
     bounds: [usize; 4],
     admissible: Vec<u32>,
+    usable: AreaSums,
     seed: u64,
 }
 
@@ -93,12 +110,12 @@ pub fn place(
     let (mut w, mut h) = (block.min(bounds[2] - bounds[0]).min(width), block.min(bounds[3] - bounds[1]).min(height));
 
     // Where patches are free, a whole block must be found somewhere: shrink it until there is one.
+    let usable = AreaSums::new(|i| working.usable[i], working.width, working.height)?;
     let mut admissible = Vec::new();
     if continuation.lattice().is_none() {
-        let sums = AreaSums::new(|i| working.usable[i], working.width, working.height)?;
         loop {
             for y in bounds[1]..=bounds[3] - h {
-                let fits = |x: &usize| sums.count(*x, y, w, h) == w * h;
+                let fits = |x: &usize| usable.count(*x, y, w, h) == w * h;
                 admissible.extend((bounds[0]..=bounds[2] - w).filter(fits).map(|x| (y * working.width + x) as u32));
             }
             if !admissible.is_empty() {
@@ -120,6 +137,7 @@ pub fn place(
         offset,
         bounds,
         admissible,
+        usable,
         seed,
     };
     let overlap = [w / 3, h / 3];
@@ -159,18 +177,20 @@ impl Quilt<'_> {
             let known = self.known(rect);
             let position = |i: usize| [(rect.x + i % rect.w) as i32, (rect.y + i / rect.w) as i32];
             let pixels = || known.iter().enumerate().map(|(i, k)| (position(i), *k));
-            let empty: Vec<[i32; 2]> = pixels().filter(|(_, k)| k.is_none()).map(|(p, _)| p).collect();
-            let filled: Vec<([i32; 2], u32)> = pixels().filter_map(|(p, k)| k.map(|k| (p, k))).collect();
-            if empty.is_empty() {
+            let block = Block {
+                rect: *rect,
+                empty: pixels().filter(|(_, k)| k.is_none()).map(|(p, _)| p).collect(),
+                filled: pixels().filter_map(|(p, k)| k.map(|k| (p, k))).collect(),
+            };
+            if block.empty.is_empty() {
                 return Ok(());
             }
-            let candidates = self.candidates(rect);
-            let scored = self.score(&filled, &empty, candidates, job)?;
+            let scored = self.score(&block, &self.candidates(rect), None, job)?;
             let Some(mut chosen) = self.choose(rect, &scored) else { return Ok(()) };
             if !self.admissible.is_empty() {
-                chosen = self.improve(&filled, &empty, chosen, job)?;
+                chosen = self.improve(&block, chosen, job)?;
             }
-            self.paste(rect, &known, chosen, first.then_some(overlap));
+            self.paste(rect, &known, chosen.shift, first.then_some(overlap));
             first = false;
         }
     }
@@ -246,55 +266,70 @@ impl Quilt<'_> {
             .collect()
     }
 
-    /// For each shift: how many empty pixels it would fill, and its mean squared difference from the known ones.
-    fn score(
-        &self,
-        filled: &[([i32; 2], u32)],
-        empty: &[[i32; 2]],
-        shifts: Vec<Shift>,
-        job: Job,
-    ) -> Result<Vec<(Shift, usize, f32)>> {
+    /// How many empty pixels of a block a shift fills; and whether it shows something usable in all of the block.
+    fn fills(&self, block: &Block, shift: &Shift) -> (usize, bool) {
+        let (working, rect) = (self.guide.working, &block.rect);
+        let [x, y] = [rect.x as i32 - shift.working[0], rect.y as i32 - shift.working[1]];
+        let inside = x >= 0 && y >= 0 && x as usize + rect.w <= working.width && y as usize + rect.h <= working.height;
+        if inside && self.usable.count(x as usize, y as usize, rect.w, rect.h) == rect.w * rect.h {
+            return (block.empty.len(), true);
+        }
+        let [dx, dy] = shift.working;
+        let is_usable = |&&[x, y]: &&[i32; 2]| working.index(x - dx, y - dy).is_some_and(|s| working.usable[s]);
+        (block.empty.iter().filter(is_usable).count(), false)
+    }
+
+    /// The shifts that fill `least` or more of the empty pixels, or without it nearly as many as the best does, and how well
+    /// they agree with the known ones.
+    fn score(&self, block: &Block, shifts: &[Shift], least: Option<usize>, job: Job) -> Result<Vec<Scored>> {
         let working = self.guide.working;
-        exec::map(shifts.len(), job, |n| {
-            let [dx, dy] = shifts[n].working;
-            let source = |[x, y]: [i32; 2]| working.index(x - dx, y - dy).filter(|&s| working.usable[s]);
-            let fills = empty.iter().filter(|&&p| source(p).is_some()).count();
+        let fills: Vec<(usize, bool)> = shifts.iter().map(|shift| self.fills(block, shift)).collect();
+        let most = fills.iter().map(|f| f.0).max().unwrap_or(0);
+        let least = least.unwrap_or((ENOUGH_COVERAGE * most as f64).ceil() as usize).max(1);
+        let covering: Vec<usize> = (0..shifts.len()).filter(|&n| fills[n].0 >= least).collect();
+        exec::map(covering.len(), job, |i| {
+            let (shift, (fills, is_whole)) = (shifts[covering[i]], fills[covering[i]]);
+            let [dx, dy] = shift.working;
+            let source = |[x, y]: [i32; 2]| match is_whole {
+                true => Some((y - dy) as usize * working.width + (x - dx) as usize),
+                false => working.index(x - dx, y - dy).filter(|&s| working.usable[s]),
+            };
+            // Sums of a few in single precision: short chains of additions run side by side.
             let (mut sum, mut count) = (0f64, 0u32);
-            for &(p, old) in filled {
-                if let Some(new) = source(p) {
-                    sum += f64::from(self.guide.difference(&self.features[old as usize], &self.features[new]));
-                    count += 1;
+            for some in block.filled.chunks(8) {
+                let mut part = 0f32;
+                for &(at, old) in some {
+                    if let Some(new) = source(at) {
+                        part += self.guide.difference(&self.features[old as usize], &self.features[new]);
+                        count += 1;
+                    }
                 }
+                sum += f64::from(part);
             }
-            (shifts[n], fills, if count > 0 { (sum / f64::from(count)) as f32 } else { 0.0 })
+            let error = if count > 0 { (sum / f64::from(count)) as f32 } else { 0.0 };
+            Scored { shift, fills, error }
         })
     }
 
     /// Draws one of the shifts that are as good as the best.
-    fn choose(&self, rect: &Rect, scored: &[(Shift, usize, f32)]) -> Option<(Shift, usize, f32)> {
-        let most = scored.iter().map(|s| s.1).max().filter(|&most| most > 0)?;
-        let covers = |s: &&(Shift, usize, f32)| s.1 as f64 >= ENOUGH_COVERAGE * most as f64;
-        let least = scored.iter().filter(covers).map(|s| s.2).fold(f32::INFINITY, f32::min);
-        let equal: Vec<_> = scored.iter().filter(covers).filter(|s| s.2 <= least * TOLERANCE.0 + TOLERANCE.1).collect();
-        let pick = Rng::new(self.seed, &[rect.x as u64, rect.y as u64, 1]).below(equal.len());
+    fn choose(&self, rect: &Rect, scored: &[Scored]) -> Option<Scored> {
+        let least = scored.iter().map(|s| s.error).fold(f32::INFINITY, f32::min);
+        let equal: Vec<_> = scored.iter().filter(|s| s.error <= least * TOLERANCE.0 + TOLERANCE.1).collect();
+        let pick = Rng::new(self.seed, &[rect.x as u64, rect.y as u64, 1]).below(equal.len().max(1));
         equal.get(pick).map(|s| **s)
     }
 
     /// Moves a free patch to the best place in its neighbourhood, by ever smaller steps.
-    fn improve(
-        &self,
-        filled: &[([i32; 2], u32)],
-        empty: &[[i32; 2]],
-        start: (Shift, usize, f32),
-        job: Job,
-    ) -> Result<(Shift, usize, f32)> {
+    fn improve(&self, block: &Block, start: Scored, job: Job) -> Result<Scored> {
         let mut best = start;
         for step in [4, 2, 1] {
             let ring = [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)];
-            let near = ring.map(|(dx, dy)| [best.0.working[0] + dx * step, best.0.working[1] + dy * step]);
-            let shifts = near.iter().map(|&w| free_shift(w, self.guide.working.pitch)).collect();
-            for near in self.score(filled, empty, shifts, job)? {
-                if near.1 >= start.1 && near.2 < best.2 {
+            let near = ring.map(|(dx, dy)| {
+                let [x, y] = best.shift.working;
+                free_shift([x + dx * step, y + dy * step], self.guide.working.pitch)
+            });
+            for near in self.score(block, &near, Some(start.fills), job)? {
+                if near.error < best.error {
                     best = near;
                 }
             }
@@ -303,13 +338,7 @@ impl Quilt<'_> {
     }
 
     /// Shows a shift in the empty pixels of a block and, with an overlap, up to the seams in the known ones.
-    fn paste(
-        &mut self,
-        rect: &Rect,
-        known: &[Option<u32>],
-        (shift, ..): (Shift, usize, f32),
-        overlap: Option<[usize; 2]>,
-    ) {
+    fn paste(&mut self, rect: &Rect, known: &[Option<u32>], shift: Shift, overlap: Option<[usize; 2]>) {
         let working = self.guide.working;
         let source = |x: usize, y: usize| {
             working

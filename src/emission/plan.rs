@@ -4,13 +4,14 @@
 //! of a tile; and since a texel depends on nothing but its place, the bits are the same whatever the tiles, their order and
 //! the number of threads.
 
+use super::blend::{self, Style, Weights};
 use super::clipping::Clipping;
 use super::exemplar::Exemplar;
 use super::lamps::{self, Instance, Rules};
 use super::layout::Layout;
 use super::patches::{self, Guide};
 use super::period::{self, Continuation};
-use super::recover::{self, Bands};
+use super::recover::{self, Bands, Source};
 use super::window::{self, Window};
 use super::{Input, Params, luminaires, metadata};
 use crate::error::{Error, Result};
@@ -37,7 +38,9 @@ pub struct Tile {
 pub struct Plan {
     pub width: usize,
     pub height: usize,
-    pub(super) layer: Layer,
+    /// One of each exemplar.
+    pub(super) layers: Vec<Layer>,
+    pub(super) weights: Weights,
     /// Area in texels below which a piece of light is a crumb.
     crumb: f64,
 }
@@ -64,41 +67,61 @@ pub(super) struct Layer {
 }
 
 impl Plan {
-    /// Plans the texture that [`super::run`] makes. Errors as there.
-    pub fn new(input: &Input, params: &Params, job: Job) -> Result<Self> {
+    /// Plans the texture that [`super::blend`] makes. Errors as there.
+    pub fn new(input: &Input, styles: &[Style], params: &Params, job: Job) -> Result<Self> {
         params.check()?;
-        super::check_input(input)?;
-        let mut layer = Layer::new(input, params, job)?;
-        if params.tileable {
-            layer.instances = lamps::wrapped(&layer.instances, params.size());
+        let weights = Weights::new(styles)?;
+        let count = (1 + styles.len()) as f64;
+        let mut layers = Vec::new();
+        for (k, (input, scale)) in exemplars(input, params.scale, styles).enumerate() {
+            super::check_input(input)?;
+            let params = Params { scale, ..params.clone() };
+            params.check()?;
+            layers.push(Layer::new(input, &params, job.part(k as f64 / count, (k + 1) as f64 / count))?);
         }
-        let (width, height) = (params.width, params.height);
-        layer.bands = Bands::new(&layer, width, height);
-        Ok(Self { width, height, crumb: layer.crumb(), layer })
+        blend::draw(&mut layers, &weights, params);
+        for layer in &mut layers {
+            if params.tileable {
+                let size = DVec2::new(params.width as f64, params.height as f64) * layer.scale;
+                layer.instances = lamps::wrapped(&layer.instances, size);
+            }
+            layer.bands = Bands::new(layer, params.width, params.height);
+        }
+        let crumbs = layers.iter().map(Layer::crumb).filter(|c| *c > 0.0);
+        let crumb = crumbs.reduce(f64::min).unwrap_or(0.0);
+        Ok(Self { width: params.width, height: params.height, layers, weights, crumb })
     }
 
     /// The number of lamps that are copied as a whole.
     pub fn lamps(&self) -> usize {
-        self.layer.instances.len()
+        self.layers.iter().map(|layer| layer.instances.len()).sum()
     }
 
-    /// Renders a tile of the texture, and its mask, from the input that the plan was made of.
+    /// Renders a tile of the texture, and its mask, from the exemplars that the plan was made of.
     ///
-    /// Errors: `InvalidArgument` for a tile that is empty or reaches beyond the texture, or an input of another size.
-    pub fn tile(&self, input: &Input, tile: Tile, job: Job) -> Result<(Image, Image)> {
+    /// Errors: `InvalidArgument` for a tile that is empty or reaches beyond the texture, or exemplars of another number or size.
+    pub fn tile(&self, input: &Input, styles: &[Style], tile: Tile, job: Job) -> Result<(Image, Image)> {
         self.check_tile(tile)?;
-        super::check_input(input)?;
-        let size = (input.unwarped.width, input.unwarped.height);
-        if size != (self.layer.exemplar.width, self.layer.exemplar.height) {
-            return Err(Error::argument(format!(
-                "the unwarped image is {} x {}; the plan was made of one of {} x {}",
-                size.0, size.1, self.layer.exemplar.width, self.layer.exemplar.height
-            )));
+        if styles.len() + 1 != self.layers.len() {
+            let (given, planned) = (styles.len() + 1, self.layers.len());
+            return Err(Error::argument(format!("there are {given} exemplars; the plan was made of {planned}")));
+        }
+        let mut sources = Vec::new();
+        for (layer, (input, _)) in self.layers.iter().zip(exemplars(input, 1.0, styles)) {
+            super::check_input(input)?;
+            let (size, planned) = ([input.unwarped.width, input.unwarped.height], &layer.exemplar);
+            if size != [planned.width, planned.height] {
+                return Err(Error::argument(format!(
+                    "the unwarped image is {} x {}; the plan was made of one of {} x {}",
+                    size[0], size[1], planned.width, planned.height
+                )));
+            }
+            sources.push(Source { layer, input });
         }
         // A crumb, and whatever joins a piece to something larger, lies within its reach of the tile.
         let reach = luminaires::reach(self.crumb);
         let around = tile.widened(if self.crumb > 0.0 { reach + 2 } else { 0 }, self.width, self.height);
-        let (mut texture, mut mask) = recover::run(&self.layer, input, around, job)?;
+        let (mut texture, mut mask) = recover::run(self, &sources, around, job)?;
         luminaires::sweep(&mut texture, &mut mask, self.crumb)?;
         if around == tile {
             return Ok((texture, mask));
@@ -219,6 +242,11 @@ impl Layer {
     }
 }
 
+/// All exemplars and their unwarped pixels per texel.
+fn exemplars<'a>(first: &'a Input, scale: f64, styles: &'a [Style]) -> impl Iterator<Item = (&'a Input<'a>, f64)> {
+    std::iter::once((first, scale)).chain(styles.iter().map(|style| (&style.input, style.scale)))
+}
+
 /// Longest side of the exemplar at work: coarser than asked for where the result would have too many working pixels.
 pub(super) fn working_side(input: &Input, params: &Params) -> f64 {
     let longest = input.unwarped.width.max(input.unwarped.height) as f64;
@@ -243,5 +271,10 @@ impl Params {
     /// What the texture covers, in unwarped pixels.
     pub(super) fn size(&self) -> DVec2 {
         DVec2::new(self.width as f64, self.height as f64) * self.scale
+    }
+
+    /// The sides of a texture that repeats, in texels.
+    pub(super) fn repeats(&self) -> Option<DVec2> {
+        self.tileable.then(|| DVec2::new(self.width as f64, self.height as f64))
     }
 }

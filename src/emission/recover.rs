@@ -7,7 +7,7 @@
 use super::Input;
 use super::exemplar::LIT;
 use super::lamps::Instance;
-use super::plan::{Layer, Tile};
+use super::plan::{Layer, Plan, Tile};
 use crate::error::Result;
 use crate::image::Image;
 use crate::job::Job;
@@ -37,12 +37,10 @@ impl Bands {
 }
 
 /// A tile of the texture and its mask.
-pub fn run(layer: &Layer, input: &Input, tile: Tile, job: Job) -> Result<(Image, Image)> {
+pub fn run(plan: &Plan, sources: &[Source], tile: Tile, job: Job) -> Result<(Image, Image)> {
     let Tile { width, height, .. } = tile;
     let mut texture = Image::new(width, height, 3)?;
     let mut mask = Image::new(width, height, 1)?;
-    let source = Source { layer, input };
-    let follows_patches = layer.by_pixel.contains(&true);
     let rows = texture.data.par_chunks_exact_mut(3 * width).zip(mask.data.par_chunks_exact_mut(width)).enumerate();
     rows.try_for_each(|(row, (colours, coverage))| {
         job.check()?;
@@ -54,18 +52,26 @@ pub fn run(layer: &Layer, input: &Input, tile: Tile, job: Job) -> Result<(Image,
                 colours[3 * at..3 * at + 3].iter_mut().zip(colour.to_array()).for_each(|(o, c)| *o += c);
             }
         };
-        for &(i, range) in &layer.bands.0[y / BAND] {
-            let [x0, y0, x1, y1] = range.map(|r| r as usize);
-            if (y0..y1).contains(&y) {
-                let Instance { component, shift } = layer.instances[i as usize];
-                let columns = x0.max(tile.x)..x1.min(tile.x + width);
-                columns.for_each(|x| add(x, source.texel(x, y, shift, |label| label == component as u32 + 1)));
+        for (k, source) in sources.iter().enumerate() {
+            let layer = source.layer;
+            for &(i, range) in &layer.bands.0[y / BAND] {
+                let [x0, y0, x1, y1] = range.map(|r| r as usize);
+                if (y0..y1).contains(&y) {
+                    let Instance { component, shift } = layer.instances[i as usize];
+                    let columns = x0.max(tile.x)..x1.min(tile.x + width);
+                    columns.for_each(|x| add(x, source.texel(x, y, shift, |label| label == component as u32 + 1)));
+                }
             }
-        }
-        if follows_patches {
+            if !layer.by_pixel.contains(&true) {
+                continue;
+            }
             for x in tile.x..tile.x + width {
-                if let Some(shift) = source.shift_at(x, y) {
-                    add(x, source.texel(x, y, shift, |label| label != 0 && layer.by_pixel[label as usize - 1]));
+                let at = (DVec2::new(x as f64, y as f64) + 0.5) / DVec2::new(plan.width as f64, plan.height as f64);
+                let weight = plan.weights.at(k, at);
+                if let Some(shift) = source.shift_at(x, y).filter(|_| weight > 0.0) {
+                    let is_shown = |label: u32| label != 0 && layer.by_pixel[label as usize - 1];
+                    let (colour, share) = source.texel(x, y, shift, is_shown);
+                    add(x, (colour * weight, share));
                 }
             }
         }
@@ -116,9 +122,9 @@ impl Layer {
 
 /// What is shown, and the images it is taken from.
 #[derive(Clone, Copy)]
-struct Source<'a> {
-    layer: &'a Layer,
-    input: &'a Input<'a>,
+pub struct Source<'a> {
+    pub layer: &'a Layer,
+    pub input: &'a Input<'a>,
 }
 
 impl Source<'_> {

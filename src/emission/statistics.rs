@@ -75,6 +75,25 @@ impl Statistics {
         }
     }
 
+    /// Of a mixture of patterns with the given weights. How far apart lamps of different patterns are it does not tell: where
+    /// there are several, the spacing is 0.
+    pub fn mixed(parts: impl Iterator<Item = (Self, f64)>) -> Self {
+        let parts: Vec<(Self, f64)> = parts.collect();
+        if let [(only, _)] = parts[..] {
+            return only;
+        }
+        let sum = |value: &dyn Fn(&Self) -> f64| parts.iter().map(|(part, weight)| weight * value(part)).sum::<f64>();
+        let lit = sum(&|p| p.lit);
+        Self {
+            lit: ratio(lit, sum(&|_| 1.0)),
+            luminance: ratio(sum(&|p| p.lit * p.luminance), lit),
+            // Lamps are as many as their light over their area.
+            area: ratio(sum(&|p| if p.area > 0.0 { p.lit } else { 0.0 }), sum(&|p| ratio(p.lit, p.area))),
+            spacing: 0.0,
+            whole: parts.iter().map(|(part, _)| part.whole).sum(),
+        }
+    }
+
     /// The same where a pixel is this many times as long.
     pub fn scaled(self, scale: f64) -> Self {
         Self { area: self.area * scale * scale, spacing: self.spacing * scale, ..self }
