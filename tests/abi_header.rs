@@ -34,6 +34,7 @@ const GROUPS: &[&str] = &[
     "features",
     "segment",
     "emission",
+    "emission_tiles",
     "render",
     "render_outputs",
     "illuminance",

@@ -18,6 +18,7 @@
 //! textures of any size, in tiles of a [`plan`]; and several exemplars in one ([`mod@blend`]).
 
 mod blend;
+mod centre;
 mod clipping;
 mod components;
 mod correlation;
@@ -81,7 +82,8 @@ pub struct Params {
     pub working_side: usize,
     /// Weight of the metadata channels against colour, in `[0, 1e3]`; 0 is plain quilting.
     pub metadata_weight: f32,
-    /// Where the pattern begins, in texels right of and below the texture's corner, each in `[-1e6, 1e6]`.
+    /// Where the pattern begins, in texels right of and below the texture's corner, each in `[-1e6, 1e6]`. Lights without a
+    /// lattice begin nowhere: of these it shifts lamps of a texture that is tileable, and must be 0 in others.
     pub offset: DVec2,
     /// Correlation of the lights with themselves from which they are taken for regular, in `[0, 1]`: at 0 any repetition is
     /// held to exactly, at 1 none is, and patches go anywhere.
@@ -94,7 +96,11 @@ pub struct Params {
     /// a period over the whole, so that a whole number of periods fits. Needs `whole_lamps`; lights that run out of the
     /// exemplar are no lamps, and meet at the border on a lattice only.
     pub tileable: bool,
-    /// Channel value from which the photo is clipped, in `[0, 1]`; lamps there get the colour of their rims. 0: nothing is.
+    /// A lattice lies evenly between the sides of the texture, shifted by the offset from there: a lamp or the middle between two
+    /// in its middle, so that the border cuts as few lamps as it can.
+    pub centred: bool,
+    /// Channel value from which the photo is clipped, in `[0, 1]`; lamps there get the colour of their rims. 0: nothing is. Below
+    /// the largest 8-bit values, at which a photo itself is clipped: unwarped pixels are means of clipped and other ones.
     pub clip_level: f32,
     pub seed: u64,
 }
@@ -113,6 +119,7 @@ impl Default for Params {
             whole_lamps: true,
             even_lamps: false,
             tileable: false,
+            centred: false,
             clip_level: 0.95,
             seed: 1,
         }

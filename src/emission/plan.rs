@@ -5,6 +5,7 @@
 //! the number of threads.
 
 use super::blend::{self, Style, Weights};
+use super::centre;
 use super::clipping::Clipping;
 use super::exemplar::Exemplar;
 use super::lamps::{self, Instance, Rules};
@@ -101,7 +102,7 @@ impl Plan {
     ///
     /// Errors: `InvalidArgument` for a tile that is empty or reaches beyond the texture, or exemplars of another number or size.
     pub fn tile(&self, input: &Input, styles: &[Style], tile: Tile, job: Job) -> Result<(Image, Image)> {
-        self.check_tile(tile)?;
+        self.check(tile)?;
         if styles.len() + 1 != self.layers.len() {
             let (given, planned) = (styles.len() + 1, self.layers.len());
             return Err(Error::argument(format!("there are {given} exemplars; the plan was made of {planned}")));
@@ -134,7 +135,8 @@ impl Plan {
         Tile { x: 0, y: 0, width: self.width, height: self.height }
     }
 
-    fn check_tile(&self, tile: Tile) -> Result<()> {
+    /// Checks that a tile is a part of the texture.
+    pub fn check(&self, tile: Tile) -> Result<()> {
         let fits = |start: usize, side: usize, whole: usize| side > 0 && start < whole && side <= whole - start;
         if fits(tile.x, tile.width, self.width) && fits(tile.y, tile.height, self.height) {
             return Ok(());
@@ -171,7 +173,8 @@ impl Layer {
         let working = &exemplar.working;
 
         // How the pattern goes on, the size of a patch, and the metadata at that scale.
-        let window = if params.tileable { None } else { Window::find(&exemplar, params)? };
+        let stays = params.tileable || params.centred;
+        let window = if stays { None } else { Window::find(&exemplar, params)? };
         let inside = window.as_ref().filter(|w| w.is_shown).map(|w| w.corner);
         let (continuation, regularity) = match inside {
             Some(_) => (Continuation::Copy, 0.0),
@@ -201,7 +204,9 @@ impl Layer {
             Some(corner) => window::copy(corner, canvas, working.pitch),
             None => {
                 let guide = Guide { working, metadata: &metadata, metadata_weight: params.metadata_weight };
-                let offset = window.map_or(params.offset * params.scale, |w| -w.corner);
+                let centred = if params.centred { centre::shift(&exemplar, continuation, params.size()) } else { None };
+                let offset = params.offset * params.scale + centred.unwrap_or(DVec2::ZERO);
+                let offset = window.map_or(offset, |w| -w.corner);
                 patches::place(&guide, continuation, offset, canvas, block, params.seed, job.part(0.3, 0.9))?
             }
         };
@@ -214,6 +219,10 @@ impl Layer {
                 (instances, exemplar.whole.iter().zip(&exemplar.cut).map(|(whole, cut)| !whole && !cut).collect())
             }
             _ => (Vec::new(), vec![true; exemplar.whole.len()]),
+        };
+        let instances = match continuation {
+            Continuation::Free => shifted(instances, &by_pixel, params)?,
+            _ => instances,
         };
         let clipping = Clipping::find(input.unwarped, &exemplar.shown, &exemplar.components, params.clip_level);
         let mut layer = Self {
@@ -245,6 +254,26 @@ impl Layer {
 /// All exemplars and their unwarped pixels per texel.
 fn exemplars<'a>(first: &'a Input, scale: f64, styles: &'a [Style]) -> impl Iterator<Item = (&'a Input<'a>, f64)> {
     std::iter::once((first, scale)).chain(styles.iter().map(|style| (&style.input, style.scale)))
+}
+
+/// Lamps of free patches, shifted by the offset. They begin nowhere; only where they repeat there is something to shift.
+fn shifted(mut lamps: Vec<Instance>, by_pixel: &[bool], params: &Params) -> Result<Vec<Instance>> {
+    if params.offset == DVec2::ZERO {
+        return Ok(lamps);
+    }
+    if !params.tileable || by_pixel.contains(&true) {
+        return Err(Error::argument(format!(
+            "emission.offset is {}; the lights lie on no lattice that it could shift: set it to 0, or lower \
+             emission.least_regularity",
+            params.offset
+        )));
+    }
+    let size = params.size();
+    let offset = (params.offset * params.scale).rem_euclid(size);
+    for lamp in &mut lamps {
+        lamp.shift += offset;
+    }
+    Ok(lamps)
 }
 
 /// Longest side of the exemplar at work: coarser than asked for where the result would have too many working pixels.

@@ -1,6 +1,7 @@
 //! The stage as a whole: patterns with known statistics, exact copies, and inputs at the edge of sense.
 
 mod blending;
+mod placing;
 mod tiles;
 
 use super::*;
@@ -395,27 +396,6 @@ fn what_has_no_answer_is_an_error_that_says_so() {
 }
 
 #[test]
-fn an_offset_shifts_the_lattice_and_the_copy() {
-    let exemplar = Design::new(200, 180, grid(40.0, 36.0, 14.0, 10.0));
-    let centres = |params: Params| -> Vec<DVec2> {
-        let result = exemplar.run(&params).unwrap();
-        inner(&result.luminaires, params.width, params.height).iter().map(|l| l.centre).collect()
-    };
-    // Of lamps whose period is (40, 36), a shift by (11, 25) is one by (11, -11).
-    for (width, height) in [(400, 400), (120, 100)] {
-        for offset in [DVec2::new(11.0, 25.0), DVec2::new(-29.0, -47.0)] {
-            let params = Params { width, height, ..Params::default() };
-            let (still, moved) = (centres(params.clone()), centres(Params { offset, ..params }));
-            assert!(!still.is_empty() && !moved.is_empty());
-            let phase = |c: &DVec2| (c.rem_euclid(DVec2::new(40.0, 36.0)) * 8.0).round();
-            let all_alike = |list: &[DVec2], expected: DVec2| list.iter().all(|c| phase(c) == phase(&expected));
-            assert!(all_alike(&still, still[0]), "{width}");
-            assert!(all_alike(&moved, still[0] + offset), "{width} {offset}: {} {}", still[0], moved[0]);
-        }
-    }
-}
-
-#[test]
 fn even_lamps_have_one_colour_each_and_keep_their_light() {
     let exemplar = Design::new(200, 180, grid(40.0, 36.0, 14.0, 10.0));
     let params = Params { width: 300, height: 300, ..Params::default() };
@@ -456,51 +436,6 @@ fn clipped_lamps_of_two_colours_keep_them_in_the_texture() {
 }
 
 #[test]
-fn lamps_without_a_place_are_left_out() {
-    let exemplar = Design::new(200, 200, grid(40.0, 40.0, 14.0, 14.0));
-    let result = exemplar.run(&Params { width: 400, height: 400, ..Params::default() }).unwrap();
-    let restricted = |ground: &dyn Fn(usize, usize) -> Ground| {
-        let ground: Vec<Ground> = (0..400 * 400).map(|i| ground(i % 400, i / 400)).collect();
-        let mut emission = result.clone();
-        emission.restrict(&ground, Monitor::default().job()).map(|()| emission)
-    };
-    // A keep-out that touches one lamp takes it out, whole, and nothing else.
-    let lamp = &result.luminaires[result.luminaires.len() / 2];
-    let corner = lamp.outline[0];
-    let touched = restricted(&|x, y| {
-        let near = (x as f64 + 0.5 - corner.x).abs() < 1.0 && (y as f64 + 0.5 - corner.y).abs() < 1.0;
-        if near { Ground::KeepOut } else { Ground::Open }
-    })
-    .unwrap();
-    assert_eq!(touched.luminaires.len(), result.luminaires.len() - 1);
-    assert!(touched.luminaires.iter().all(|l| l.centre != lamp.centre));
-    let lit = |e: &Emission| e.mask.data.iter().sum::<f32>() as f64;
-    assert_eq!(lit(&touched), lit(&result) - lamp.area);
-    assert!((touched.luminaires.iter().map(|l| l.flux_share).sum::<f64>() - 1.0).abs() < 1e-6);
-    // Nothing of it is left, of its rim neither: coarser texels have rims.
-    let coarse = exemplar.run(&Params { width: 150, height: 150, scale: 2.7, ..Params::default() }).unwrap();
-    let lamp_out = &coarse.luminaires[coarse.luminaires.len() / 2];
-    let at = lamp_out.centre.y as usize * 150 + lamp_out.centre.x as usize;
-    let mut without = coarse.clone();
-    let ground: Vec<Ground> = (0..150 * 150).map(|i| if i == at { Ground::KeepOut } else { Ground::Open }).collect();
-    without.restrict(&ground, Monitor::default().job()).unwrap();
-    let near = |i: usize| DVec2::new((i % 150) as f64 + 0.5, (i / 150) as f64 + 0.5).distance(lamp_out.centre) < 7.0;
-    assert!((0..150 * 150).filter(|&i| near(i)).all(|i| without.texture.data[3 * i..3 * i + 3] == [0.0; 3]));
-    assert!(
-        (0..150 * 150)
-            .filter(|&i| !near(i))
-            .all(|i| without.texture.pixel(i % 150, i / 150) == coarse.texture.pixel(i % 150, i / 150))
-    );
-    // What is hidden is cut.
-    let half = restricted(&|x, _| if x < lamp.centre.x as usize { Ground::Hidden } else { Ground::Open }).unwrap();
-    assert!(half.luminaires.iter().any(|l| (l.area - lamp.area / 2.0).abs() < 15.0));
-    assert!(
-        half.texture.data.chunks_exact(3).enumerate().all(|(i, t)| i % 400 >= lamp.centre.x as usize || t == [0.0; 3])
-    );
-    assert_eq!(restricted(&|_, _| Ground::KeepOut).unwrap_err().kind, ErrorKind::Degenerate);
-}
-
-#[test]
 fn an_exemplar_is_measured_in_its_own_pixels() {
     let exemplar = Design::new(200, 180, grid(40.0, 36.0, 14.0, 10.0));
     let of = |exemplar: &Design| measure(&exemplar.input(), &Params::default(), Monitor::default().job()).unwrap();
@@ -512,45 +447,4 @@ fn an_exemplar_is_measured_in_its_own_pixels() {
     assert!(scattered > 24.0 && scattered < 32.0, "{scattered}");
     let alone = of(&Design::new(80, 60, |x, y| (x - 40.0).abs() < 10.0 && (y - 25.0).abs() < 8.0));
     assert_eq!((alone.lamp_length, alone.spacing), (20.0, 0.0));
-}
-
-#[test]
-fn tileable_textures_repeat_without_a_seam() {
-    let lattice = Design::new(300, 280, grid(37.3, 51.7, 11.0, 23.0)).with_corners_cut();
-    let hexagonal = Design::new(320, 300, |x, y| {
-        let (u, v) = ((x - 9.0).rem_euclid(44.0) - 22.0, (y - 5.0).rem_euclid(76.0) - 38.0);
-        u.hypot(v) < 9.0 || (u.abs() - 22.0).hypot(v.abs() - 38.0) < 9.0
-    });
-    let (free, _) = blobs(256, 256, 26.0);
-    for (name, exemplar, width, height, scale) in
-        [("lattice", lattice, 500, 470, 1.0), ("hexagonal", hexagonal, 333, 420, 1.3), ("free", free, 500, 450, 1.0)]
-    {
-        let params = Params { width, height, scale, tileable: true, ..Params::default() };
-        let result = exemplar.run(&params).unwrap();
-        assert_eq!(matches!(result.continuation, Continuation::Free), name == "free");
-        // Lamps of the texture repeated twice each way. Those whose centre lies in the middle, a period wide and high, are
-        // each of them once, and whole.
-        let again = |i: usize| (i / (2 * width) % height) * width + i % (2 * width) % width;
-        let repeated = components::find(2 * width, 2 * height, |i| result.mask.data[again(i)] > 0.5).unwrap();
-        let size = DVec2::new(width as f64, height as f64);
-        let in_middle = |c: &&components::Component| {
-            let from_corner = c.centre - size / 2.0;
-            from_corner.cmpge(DVec2::ZERO).all() && from_corner.cmplt(size).all()
-        };
-        let areas: Vec<f64> = repeated.list.iter().filter(in_middle).map(|c| c.area as f64).collect();
-        let (least, most) = (areas.iter().copied().fold(f64::MAX, f64::min), areas.iter().copied().fold(0.0, f64::max));
-        assert_eq!(areas.iter().sum::<f64>(), result.mask.data.iter().sum::<f32>() as f64, "{name}");
-        match name {
-            // Of radii from 4 to 7, cut by pixels.
-            "free" => assert!(least > 0.9 * 16.0 * std::f64::consts::PI && most < 160.0, "{least} {most}"),
-            _ => assert!(least > 0.85 * most, "{name}: lamps of {least} to {most} texels"),
-        }
-        if let Some([a, b]) = result.continuation.lattice() {
-            let steps = DMat2::from_cols(a, b).inverse() * DVec2::new(width as f64 * scale, 0.0);
-            assert!((steps - steps.round()).length() < 1e-9);
-        }
-    }
-    let exemplar = Design::new(200, 200, grid(40.0, 40.0, 14.0, 14.0));
-    let small = exemplar.run(&Params { width: 9, height: 9, tileable: true, ..Params::default() }).unwrap_err();
-    assert_eq!(small.kind, ErrorKind::Degenerate);
 }

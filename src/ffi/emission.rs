@@ -3,18 +3,19 @@
 //! From the unwarped lights of a photo to an emissive texture of any size that carries their pattern on, and the list of
 //! its luminaires.
 
-use super::context::luxfer_context;
+use super::context::{Context, luxfer_context};
+use super::geometry::numbers;
 use super::guard::{enter, guard};
 use super::handle::{self, Handle, Owned, tag};
 use super::image::{Pixels, luxfer_image};
 use super::job::luxfer_job;
 use super::params::{self, Report, Versioned};
-use super::pointer::{Out, bytes};
+use super::pointer::Out;
 use super::scene::missing;
 use super::stage::{Stage, need};
 use super::status::luxfer_status;
-use crate::emission::{self, Emission};
-use crate::error::{Error, Result};
+use crate::emission::{self, Emission, Style};
+use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::Homography;
 use crate::image::Image;
 use glam::{DMat3, DVec2};
@@ -61,7 +62,8 @@ pub struct luxfer_emission_params {
     pub least_regularity: f32,
     /// 1, the default, shows every lamp as one piece; with 0 seams may cut lamps.
     pub whole_lamps: u32,
-    /// Where a pattern with a lattice begins, in texels right of and below the texture's corner, each in [-1e6, 1e6]; default 0.
+    /// Where the pattern begins, in texels right of and below the texture's corner, each in [-1e6, 1e6]; default 0. Lights without
+    /// a lattice begin nowhere: of these it shifts lamps of a texture that is tileable, and must be 0 in others.
     pub offset: [f64; 2],
     /// Channel value from which the photo is clipped, in [0, 1]; default 0.95. Lamps it shows so get the colour of their rims,
     /// as dark as the clipped channels allow. With 0 nothing is taken for clipped.
@@ -71,8 +73,9 @@ pub struct luxfer_emission_params {
     /// With 1 the texture may be repeated: what leaves it on one side comes in on the other, and a lattice is stretched, by less
     /// than half a period over the whole, to fit. Needs whole_lamps. Default 0.
     pub tileable: u32,
-    /// Must be 0.
-    pub reserved: u32,
+    /// With 1 a lattice lies evenly between the sides of the texture, shifted by offset from there: a lamp or the middle between
+    /// two in its middle, so that the border cuts as few lamps as it can. Default 0.
+    pub centred: u32,
 }
 
 // SAFETY: plain numbers.
@@ -96,7 +99,7 @@ unsafe impl Versioned for luxfer_emission_params {
             clip_level: d.clip_level,
             even_lamps: u32::from(d.even_lamps),
             tileable: u32::from(d.tileable),
-            reserved: 0,
+            centred: u32::from(d.centred),
         }
     }
 }
@@ -115,6 +118,7 @@ impl luxfer_emission_params {
             whole_lamps: params::flag(self.whole_lamps, "whole_lamps")?,
             even_lamps: params::flag(self.even_lamps, "even_lamps")?,
             tileable: params::flag(self.tileable, "tileable")?,
+            centred: params::flag(self.centred, "centred")?,
             clip_level: self.clip_level,
             seed: self.seed,
         })
@@ -188,14 +192,83 @@ unsafe impl Versioned for luxfer_luminaire {
     }
 }
 
+/// An exemplar as the caller has given it.
+#[derive(Clone)]
+pub(super) struct Exemplar {
+    /// The unwarped photo, its light, and where both are valid.
+    pub unwarped: [Arc<Pixels>; 3],
+    pub photo: Option<(Arc<Pixels>, Homography)>,
+}
+
+/// A further exemplar.
+#[derive(Clone)]
+pub(super) struct Further {
+    pub exemplar: Exemplar,
+    pub scale: f64,
+    pub weights: Arc<Pixels>,
+}
+
 #[derive(Clone, Default)]
 pub(super) struct Inputs {
     unwarped: Option<[Arc<Pixels>; 3]>,
     photo: Option<(Arc<Pixels>, Homography)>,
+    pub styles: Vec<Further>,
+}
+
+/// What the stage has made: a texture, or the plan of one and what it was made from.
+#[derive(Default)]
+pub(super) struct Made {
+    pub texture: Option<Arc<Emission>>,
+    pub plan: Option<(emission::Plan, Inputs)>,
+}
+
+impl Exemplar {
+    fn input(&self) -> emission::Input<'_> {
+        let [unwarped, light, valid] = &self.unwarped;
+        emission::Input {
+            unwarped: unwarped.image(),
+            light: light.image(),
+            valid: valid.image(),
+            photo: self.photo.as_ref().map(|(photo, to_photo)| (photo.image(), *to_photo)),
+        }
+    }
+}
+
+impl Further {
+    fn style(&self) -> Style<'_> {
+        Style { input: self.exemplar.input(), scale: self.scale, weights: self.weights.image() }
+    }
+}
+
+impl Inputs {
+    /// Hands the exemplars, as synthesis takes them, to `work`.
+    pub(super) fn with<T>(&self, work: impl FnOnce(&emission::Input, &[Style]) -> Result<T>) -> Result<T> {
+        let unwarped = need(&self.unwarped, "luxfer_emission_set_exemplar")?.clone();
+        let first = Exemplar { unwarped, photo: self.photo.clone() };
+        let styles: Vec<Style> = self.styles.iter().map(Further::style).collect();
+        work(&first.input(), &styles)
+    }
+}
+
+/// The texture of a stage that has made one.
+fn texture(stage: &Stage<Inputs, Made>) -> Result<Arc<Emission>> {
+    stage.output()?.texture.clone().ok_or_else(|| {
+        Error::new(ErrorKind::NotReady, "the stage has planned a texture; luxfer_emission_start makes one as a whole")
+    })
+}
+
+/// A photo and the map into it, or none.
+pub(super) fn photo_of(
+    context: &Arc<Context>,
+    photo: *mut luxfer_image,
+    to_photo: *const f64,
+) -> Result<Option<(Arc<Pixels>, Homography)>> {
+    let Some(photo) = Pixels::optional(context, photo, "photo")? else { return Ok(None) };
+    Ok(Some((photo, Homography(DMat3::from_cols_array(&numbers(to_photo, "to_photo")?).transpose()))))
 }
 
 impl Handle for luxfer_emission {
-    type Object = Stage<Inputs, Emission>;
+    type Object = Stage<Inputs, Made>;
     const TAG: u64 = tag(b"lux.emis");
     const NAME: &'static str = "luxfer_emission";
 }
@@ -222,7 +295,8 @@ pub unsafe extern "C" fn luxfer_emission_create(
 }
 
 /// Sets the exemplar, three images of one size: the unwarped photo (linear RGB), the unwarped confidence of the lights (1
-/// channel, in [0, 1]) and where both are valid (1 channel, 1 or 0). Any thread.
+/// channel, in [0, 1]) and where both are valid (1 channel, 1 or 0). Further ones are added by luxfer_emission_add_style. Any
+/// thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_set_exemplar(
     emission: *mut luxfer_emission,
@@ -253,14 +327,7 @@ pub unsafe extern "C" fn luxfer_emission_set_photo(
     to_photo: *const f64,
 ) -> luxfer_status {
     enter(emission, |stage| {
-        let photo = match Pixels::optional(stage.context(), photo, "photo")? {
-            Some(photo) => {
-                let raw = bytes(to_photo.cast(), 9 * size_of::<f64>(), "to_photo")?;
-                let value = |i: usize| f64::from_ne_bytes(std::array::from_fn(|b| raw[8 * i + b]));
-                Some((photo, Homography(DMat3::from_cols_array(&std::array::from_fn(value)).transpose())))
-            }
-            None => None,
-        };
+        let photo = photo_of(stage.context(), photo, to_photo)?;
         stage.change(|inputs| {
             inputs.photo = photo;
             Ok(())
@@ -268,7 +335,7 @@ pub unsafe extern "C" fn luxfer_emission_set_photo(
     })
 }
 
-/// Starts a job that makes the texture. params may be NULL for the defaults. The caller releases *job. Any thread.
+/// Starts a job that makes the texture as a whole; luxfer_emission_start_plan does without its memory. params may be NULL for the defaults. The caller releases *job. Any thread.
 /// LUXFER_INVALID_OPERATION if the exemplar is missing or a job runs already. The job may end with LUXFER_DEGENERATE if
 /// there are no lights in the exemplar, LUXFER_INVALID_ARGUMENT if sizes differ or a setting is out of range.
 #[unsafe(no_mangle)]
@@ -281,14 +348,8 @@ pub unsafe extern "C" fn luxfer_emission_start(
         let params = params::read(params)?.params()?;
         need(&stage.inputs().unwarped, "luxfer_emission_set_exemplar")?;
         stage.start(job, move |inputs, _, job| {
-            let [unwarped, light, valid] = need(&inputs.unwarped, "luxfer_emission_set_exemplar")?;
-            let input = emission::Input {
-                unwarped: unwarped.image(),
-                light: light.image(),
-                valid: valid.image(),
-                photo: inputs.photo.as_ref().map(|(photo, to_photo)| (photo.image(), *to_photo)),
-            };
-            emission::run(&input, &params, job)
+            let made = inputs.with(|input, styles| emission::blend(input, styles, &params, job))?;
+            Ok(Made { texture: Some(Arc::new(made)), plan: None })
         })
     })
 }
@@ -310,7 +371,7 @@ pub unsafe extern "C" fn luxfer_emission_get_image(
             LUXFER_EMISSION_METADATA => |e| &e.metadata,
             _ => return Err(Error::argument(format!("which is {which}; it must be a LUXFER_EMISSION_ value"))),
         };
-        out.set(handle::give(Pixels::part(stage.context(), stage.output()?, pick)));
+        out.set(handle::give(Pixels::part(stage.context(), texture(stage)?, pick)));
         Ok(())
     })
 }
@@ -324,7 +385,7 @@ pub unsafe extern "C" fn luxfer_emission_get_report(
 ) -> luxfer_status {
     enter(emission, |stage| {
         let out = Report::new(report)?;
-        let output = stage.output()?;
+        let output = texture(stage)?;
         out.set(luxfer_emission_report {
             luminaires: u32::try_from(output.luminaires.len()).unwrap_or(u32::MAX),
             error: output.error,
@@ -345,7 +406,7 @@ pub unsafe extern "C" fn luxfer_emission_get_luminaire(
 ) -> luxfer_status {
     enter(emission, |stage| {
         let out = Report::new(luminaire)?;
-        let output = stage.output()?;
+        let output = texture(stage)?;
         let count = output.luminaires.len();
         let lamp = output.luminaires.get(index as usize).ok_or_else(|| missing("luminaire", index, count))?;
         out.set(luxfer_luminaire {
@@ -374,7 +435,7 @@ pub unsafe extern "C" fn luxfer_emission_get_corner(
 ) -> luxfer_status {
     enter(emission, |stage| {
         let (out_x, out_y) = (Out::new(x, "x")?, Out::new(y, "y")?);
-        let output = stage.output()?;
+        let output = texture(stage)?;
         let count = output.luminaires.len();
         let lamp = output.luminaires.get(index as usize).ok_or_else(|| missing("luminaire", index, count))?;
         let point = lamp.outline.get(corner as usize).ok_or_else(|| missing("corner", corner, lamp.outline.len()))?;

@@ -14,7 +14,7 @@ use super::image::{Pixels, luxfer_image};
 use super::job::luxfer_job;
 use super::params::{self, Versioned};
 use super::pattern::luxfer_pattern_params;
-use super::pointer::{Out, text};
+use super::pointer::{Out, bytes, text};
 use super::rectify::{luxfer_rectify, luxfer_rectify_params};
 use super::relight::luxfer_relight_params;
 use super::render::luxfer_render_params;
@@ -163,6 +163,7 @@ pub(super) struct Inputs {
     texture: Option<Arc<Pixels>>,
     scene: Option<Arc<SceneObject>>,
     surface: String,
+    triangles: Vec<(usize, usize)>,
     zones: Vec<DVec4>,
     camera: Option<Camera>,
 }
@@ -186,6 +187,7 @@ impl Inputs {
             texture: self.texture.as_ref().map(|texture| texture.shared()).transpose()?,
             scene: self.scene.as_ref().map(|scene| scene.snapshot()),
             surface: self.surface.clone(),
+            triangles: self.triangles.clone(),
             zones: self.zones.clone(),
             camera: self.camera.clone(),
         })
@@ -265,7 +267,9 @@ pub unsafe extern "C" fn luxfer_transfer_set_depth(
 }
 
 /// Sets the scene to light, and the name (UTF-8) of the object or material of its surface that receives the lights. The
-/// scene itself is never changed; each start takes it as it is then. Any thread.
+/// scene itself is never changed; each start takes it as it is then. Of all the triangles of that name the plane is taken that
+/// faces most of the room: its parts, as between the beams of a ceiling, share one pattern that goes on from part to part. What
+/// lies in other planes is left as it is; another transfer lights it, with a pattern of its own. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_set_scene(
     transfer: *mut luxfer_transfer,
@@ -278,6 +282,29 @@ pub unsafe extern "C" fn luxfer_transfer_set_scene(
         stage.change(|inputs| {
             inputs.scene = Some(scene);
             inputs.surface = surface;
+            inputs.triangles = Vec::new();
+            Ok(())
+        })
+    })
+}
+
+/// Sets the triangles of the scene, mesh and triangle of each, that receive the lights instead of those of a name; of these too
+/// the plane is taken that faces most of the room. They replace those set before, and luxfer_transfer_set_scene takes them away;
+/// triangles may be NULL if count is 0: none, the name counts again. Any thread.
+/// A run ends with LUXFER_INVALID_ARGUMENT if the scene does not have them.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_transfer_set_triangles(
+    transfer: *mut luxfer_transfer,
+    triangles: *const u32,
+    count: usize,
+) -> luxfer_status {
+    enter(transfer, |stage| {
+        let size = count.saturating_mul(2 * size_of::<u32>());
+        let raw = if count == 0 { &[] } else { bytes(triangles.cast(), size, "triangles")? };
+        let index = |raw: &[u8]| u32::from_ne_bytes([raw[0], raw[1], raw[2], raw[3]]) as usize;
+        let triangles = raw.chunks_exact(8).map(|pair| (index(&pair[..4]), index(&pair[4..]))).collect();
+        stage.change(|inputs| {
+            inputs.triangles = triangles;
             Ok(())
         })
     })

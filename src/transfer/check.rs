@@ -2,7 +2,8 @@
 
 use super::{Params, Stage, Transfer};
 use crate::error::{Error, ErrorKind, Result, check_range};
-use crate::scene::surface;
+use crate::scene::Scene;
+use crate::scene::surface::{self, Surface};
 use glam::DVec4;
 
 impl Transfer {
@@ -31,10 +32,17 @@ impl Transfer {
     /// Checks that the scene has the surface, where the run is to light it.
     pub(super) fn check_surface(&self, from: Stage, to: Stage) -> Result<()> {
         match &self.input.scene {
-            Some(scene) if (from..=to).contains(&Stage::Emission) => {
-                surface::find(scene, &self.input.surface).map(drop)
-            }
+            Some(scene) if (from..=to).contains(&Stage::Emission) => self.find_surface(scene).map(drop),
             _ => Ok(()),
+        }
+    }
+
+    /// The plane of the scene that receives the lights. Parts of a ceiling that lie in one plane, as between beams, are one surface
+    /// and share one pattern, whichever objects they belong to; what lies in other planes is left as it is.
+    pub(super) fn find_surface(&self, scene: &Scene) -> Result<Surface> {
+        match self.input.triangles[..] {
+            [] => surface::find(scene, &self.input.surface),
+            ref triangles => surface::from_triangles(scene, triangles),
         }
     }
 

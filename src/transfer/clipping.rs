@@ -7,7 +7,8 @@
 
 use glam::{BVec3, DVec3, Vec3};
 
-/// From where on a channel counts as clipped: the two largest values of eight bits, decoded, are.
+/// From where on a channel of the photo itself counts as clipped: the two largest values of eight bits, decoded, are. Those of
+/// an unwarped photo, whose pixels are means of several, are so already below (`emission::Params::clip_level`).
 const CLIPPED: f32 = 0.987;
 /// Share of the pixels that must be whole in two channels for their line to be known.
 const LEAST_WHOLE: f64 = 0.02;

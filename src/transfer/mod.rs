@@ -84,6 +84,8 @@ pub struct Input {
     pub scene: Option<Arc<Scene>>,
     /// Name of the object or material of the scene that receives the lights.
     pub surface: String,
+    /// (mesh, triangle) of those that receive the lights instead, if there are any.
+    pub triangles: Vec<(usize, usize)>,
     /// Rectangles of the surface without lamps: `(u0, v0, u1, v1)` in metres from its corner along its axes.
     pub zones: Vec<DVec4>,
     /// Whence the result is rendered; the scene's first camera if absent, and if it has none one is chosen.

@@ -62,7 +62,7 @@ impl Transfer {
 
     pub(super) fn synthesise(&mut self, job: Job) -> Result<()> {
         let scene = need(&self.input.scene, "set the scene")?;
-        let found = surface::find(scene, &self.input.surface)?;
+        let found = self.find_surface(scene)?;
         let pattern = &self.params.pattern;
         let surface = if pattern.rotation == 0.0 { found.clone() } else { found.turned(scene, pattern.rotation) };
         let mut emission = match &self.input.texture {

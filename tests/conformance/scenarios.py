@@ -176,6 +176,10 @@ def emission() -> Scenario:
     s.call("emission_get_report", stage, struct("emission_report", "size"))
     s.call("emission_get_luminaire", stage, 0, struct("luminaire", "size"))
     s.call("emission_get_corner", stage, 0, 0, ROOM, ROOM)
+    s.call("emission_clear_styles", stage)
+    s.call("emission_add_style", stage, unwarped, light, valid, unwarped, array("double", 1, 0, 0, 0, 1, 0, 0, 0, 1), 1.0, s.image(2, 2, 1, 0.5))
+    s.run("emission_start_plan", stage, struct("emission_params", width=48, height=40))
+    s.make("emission_render_tile", stage, 16, 8, 20, 30)
     return s
 
 
@@ -296,6 +300,7 @@ def transfer() -> Scenario:
     s.call("transfer_clear_strokes", stage)
     s.call("transfer_add_strokes_image", stage, strokes)
     s.call("transfer_set_zones", stage, array("double", 0, 0, 0.01, 0.01), 1)
+    s.call("transfer_set_triangles", stage, array("uint32_t", 1, 0, 1, 1), 2)
     settings = struct(
         "transfer_params", max_texels=64, target=1, pattern=struct("pattern_params", scale=3),
         render=struct("render_params", width=16, height=12, samples=4), relight=struct("relight_params", paths=2048),

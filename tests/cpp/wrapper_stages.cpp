@@ -90,6 +90,19 @@ void lighting_transfer(const Context &context) {
     CHECK(made.luminaires > 0 && emission.luminaire(0).corners > 2);
     const std::array<double, 2> corner = emission.corner(0, 1);
     CHECK(corner[0] >= 0 && corner[0] <= 96 && corner[1] >= 0 && corner[1] <= 64);
+    const Image whole = emission.image(LUXFER_EMISSION_TEXTURE);
+
+    // A style without weight changes nothing, and a tile is a part of the whole.
+    const Image unwarped = rectify.image(LUXFER_RECTIFY_UNWARPED);
+    const Image light = rectify.warp(lights.image(LUXFER_SEGMENT_CONFIDENCE));
+    const float nothing[] = {0};
+    const Image nowhere = Image::create(context, {nothing, 1, 1, 1});
+    emission.add_style(unwarped, light, rectify.image(LUXFER_RECTIFY_VALID), 1, nowhere);
+    emission.clear_styles();
+    emission.add_style(unwarped, light, rectify.image(LUXFER_RECTIFY_VALID), photo, view.to_photo, 2, nowhere);
+    emission.start_plan(texture).wait();
+    const Image tile = emission.render_tile(40, 10, 30, 20);
+    CHECK(has_size(tile, 30, 20, 4));
 
     // The same as one transfer, the last stages on those results; a texture of the caller's in place of one it would make.
     const auto transfer = copied(luxfer::Transfer::create(context));
@@ -101,7 +114,7 @@ void lighting_transfer(const Context &context) {
     transfer.add_strokes("light 2 1 1 20 20");
     const float points[] = {10, 10, 30, 10};
     transfer.add_stroke(LUXFER_PHASE_PLANE, points, 2, true);
-    transfer.set_texture(emission.image(LUXFER_EMISSION_TEXTURE));
+    transfer.set_texture(whole);
     transfer.use(rectify);
     transfer.use(features);
     transfer.use(LUXFER_PHASE_PLANE, plane);

@@ -80,6 +80,37 @@ class Transfer(Case):
         self.assertEqual(outline.shape, (lamps[0].corners, 2))
         self.assertTrue(((outline >= 0) & (outline <= (128, 96))).all())
 
+    def test_tiles_and_styles(self):
+        def exemplar(lamp):
+            image = np.zeros((80, 80, 3), np.float32)
+            for y in range(4, 80, 16):
+                for x in range(4, 80, 16):
+                    image[y : y + lamp, x : x + lamp] = 0.8
+            return image, image[..., 0].copy(), np.ones((80, 80), np.float32)
+
+        emission = luxfer.Emission(context(), *exemplar(4))
+        whole = emission.run(width=150, height=130).image().numpy()
+        mask = emission.image("mask").numpy()
+        emission.start_plan(width=150, height=130).wait()
+        with self.assertRaises(luxfer.NotReady):
+            emission.image("texture")
+        for x, y, width, height in ((100, 90, 50, 40), (0, 0, 7, 130), (149, 129, 1, 1)):
+            tile = emission.tile(x, y, width, height).numpy()
+            np.testing.assert_array_equal(tile[..., :3], whole[y : y + height, x : x + width])
+            np.testing.assert_array_equal(tile[..., 3:], mask[y : y + height, x : x + width])
+        with self.assertRaises(luxfer.InvalidArgument):
+            emission.tile(100, 90, 51, 40)
+
+        # Left the first, right the second.
+        weights = np.repeat(np.array([[0, 0, 1, 1]], np.float32), 4, axis=0)
+        emission.add_style(*exemplar(8), weights)
+        emission.run(width=320, height=160)
+        large = [lamp.area > 40 for lamp in emission.luminaires if 16 < lamp.centre[0] < 120]
+        self.assertFalse(any(large))
+        self.assertTrue(all(lamp.area > 20 for lamp in emission.luminaires if 200 < lamp.centre[0] < 300))
+        emission.clear_styles()
+        np.testing.assert_array_equal(emission.run(width=150, height=130).image().numpy(), whole)
+
     def test_strokes_by_hand_and_as_text(self):
         photo = np.zeros((40, 60, 3), np.float32)
         photo[:20] = (0.8, 0.2, 0.2)

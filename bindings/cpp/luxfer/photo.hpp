@@ -119,6 +119,28 @@ public:
     }
     Result<> clear_photo() const { return call(luxfer_emission_set_photo, nullptr, nullptr); }
 
+    /// A further exemplar, of scale unwarped pixels per texel, whose lights take the place of the first's as weights say.
+    Result<> add_style(const Image &unwarped, const Image &light, const Image &valid, double scale, const Image &weights) const {
+        return call(luxfer_emission_add_style, unwarped.get(), light.get(), valid.get(), nullptr, nullptr, scale,
+                    weights.get());
+    }
+    /// The same with a photo, as of set_photo.
+    Result<> add_style(const Image &unwarped, const Image &light, const Image &valid, const Image &photo,
+                       Numbers<9> to_photo, double scale, const Image &weights) const {
+        return call(luxfer_emission_add_style, unwarped.get(), light.get(), valid.get(), photo.get(), to_photo.data(),
+                    scale, weights.get());
+    }
+    Result<> clear_styles() const { return call(luxfer_emission_clear_styles); }
+
+    /// Plans a texture of which render_tile makes any part.
+    Result<Job> start_plan(const luxfer_emission_params &params = EmissionParams()) const {
+        return make<Job>(luxfer_emission_start_plan, &params);
+    }
+    /// RGB, and 1 on lamps.
+    Result<Image> render_tile(std::uint32_t x, std::uint32_t y, std::uint32_t width, std::uint32_t height) const {
+        return make<Image>(luxfer_emission_render_tile, x, y, width, height);
+    }
+
     Result<Job> start(const luxfer_emission_params &params = EmissionParams()) const {
         return make<Job>(luxfer_emission_start, &params);
     }

@@ -55,6 +55,11 @@ public:
         return call(luxfer_transfer_set_zones, zones.data(), zones.size() / 4);
     }
 
+    /// Mesh and triangle of each that receives the lights, instead of those of a name; none: the name counts again.
+    Result<> set_triangles(Span<const std::uint32_t> triangles) const {
+        return call(luxfer_transfer_set_triangles, triangles.data(), triangles.size() / 2);
+    }
+
     // Results of the caller's in the place of its own.
 
     Result<> use(const Rectify &rectify) const { return call(luxfer_transfer_use_rectify, rectify.get()); }

@@ -62,6 +62,38 @@ class Emission(StageBase):
         matrix = _matrix(to_photo, "to_photo", 9)
         return self._call("set_photo", image_of(self._context, photo), _arrays.pointer(matrix, ctypes.c_double))
 
+    def add_style(
+        self,
+        unwarped: ImageLike,
+        light: ImageLike,
+        valid: ImageLike,
+        weights: ImageLike,
+        *,
+        scale: float = 1.0,
+        photo: ImageLike | None = None,
+        to_photo: ArrayLike | None = None,
+    ) -> None:
+        """A further exemplar, of scale unwarped pixels per texel: every lamp is taken from it with the probability that weights,
+        stretched over the texture, has there."""
+        images = [image_of(self._context, image) for image in (unwarped, light, valid)]
+        if (photo is None) != (to_photo is None):
+            raise TypeError("a photo needs to_photo, the map from unwarped to photo pixels")
+        matrix = None if to_photo is None else _arrays.pointer(_matrix(to_photo, "to_photo", 9), ctypes.c_double)
+        source = None if photo is None else image_of(self._context, photo)
+        self._call("add_style", *images, source, matrix, scale, image_of(self._context, weights))
+
+    def clear_styles(self) -> None:
+        """Takes all exemplars that were added away."""
+        self._call("clear_styles")
+
+    def start_plan(self, **params: Unpack[EmissionParams]) -> Job[Emission]:
+        """Starts to plan a texture, of which tile() then renders any part."""
+        return self._job("start_plan", _params.fill(_abi.luxfer_emission_params, params, []))
+
+    def tile(self, x: int, y: int, width: int, height: int) -> Image:
+        """A part of the planned texture: RGB, and 1 on lamps."""
+        return self._get_image("render_tile", x, y, width, height)
+
     def start(self, **params: Unpack[EmissionParams]) -> Job[Emission]:
         """Starts the work."""
         return self._job("start", _params.fill(_abi.luxfer_emission_params, params, []))

@@ -97,6 +97,12 @@ class Transfer(StageBase):
         values = np.ascontiguousarray(zones, np.float64).reshape(-1, 4)
         self._call("set_zones", values.ctypes.data_as(ctypes.POINTER(ctypes.c_double)), len(values))
 
+    def set_triangles(self, triangles: ArrayLike) -> None:
+        """Mesh and triangle (n, 2) of those that receive the lights, instead of those of a name; none: the name counts
+        again."""
+        values = np.ascontiguousarray(triangles, np.uint32).reshape(-1, 2)
+        self._call("set_triangles", values.ctypes.data_as(ctypes.POINTER(ctypes.c_uint32)), len(values))
+
     # -- results of the caller's own
 
     def use_rectify(self, rectify: Rectify) -> None:
