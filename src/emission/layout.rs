@@ -2,6 +2,10 @@
 
 use super::exemplar::Working;
 use glam::DVec2;
+use std::collections::BTreeMap;
+
+/// Parts of an unwarped pixel by which shifts are told apart.
+const SUBPIXELS: f64 = 1e6;
 
 /// The label of a pixel that no patch shows.
 pub const NONE: u32 = u32::MAX;
@@ -49,6 +53,44 @@ impl Layout {
         self.ends.push(self.runs.len());
     }
 
+    /// The same again and again over `width` × `height` pixels: every `across`, along one axis, in unwarped pixels. A shift that
+    /// comes from two sides keeps one label.
+    pub fn repeated(&self, (width, height): (usize, usize), across: DVec2, pitch: DVec2) -> Self {
+        let mut out = Self::new(width, height);
+        let mut labels: BTreeMap<[i64; 2], u32> = BTreeMap::new();
+        let mut relabel = |out: &mut Self, label: u32, times: usize| {
+            let Some(shift) = self.shifts.get(label as usize) else { return NONE };
+            let exact = shift.exact + across * times as f64;
+            let key = (exact * SUBPIXELS).round().to_array().map(|c| c as i64);
+            *labels.entry(key).or_insert_with(|| {
+                let working = (exact / pitch).round();
+                out.shifts.push(Shift { working: [working.x as i32, working.y as i32], exact });
+                out.shifts.len() as u32 - 1
+            })
+        };
+        let period = across.abs() / pitch;
+        // Which repetition a pixel is in, and the pixel there.
+        let place = |at: usize, period: f64, side: usize| {
+            let times = if period > 0.0 { (at as f64 / period + 1e-9) as usize } else { 0 };
+            (times, (at - (times as f64 * period).round().min(at as f64) as usize).min(side - 1))
+        };
+        let mut row = vec![NONE; width];
+        for y in 0..height {
+            let (down, v) = place(y, period.y, self.height);
+            let source: Vec<u32> = self.labels(v).collect();
+            let mut last = (usize::MAX, NONE, NONE);
+            for (x, out_label) in row.iter_mut().enumerate() {
+                let (right, u) = place(x, period.x, self.width);
+                if (right, source[u]) != (last.0, last.1) {
+                    last = (right, source[u], relabel(&mut out, source[u], down + right));
+                }
+                *out_label = last.2;
+            }
+            out.push(&row);
+        }
+        out
+    }
+
     /// The runs of a row, from left to right: end (exclusive) and label.
     pub fn row(&self, y: usize) -> &[(u32, u32)] {
         let start = y.checked_sub(1).map_or(0, |above| self.ends[above]);
@@ -91,13 +133,20 @@ mod tests {
             .map(|_| (0..width).map(|_| if rng.next_f64() < 0.3 { NONE } else { rng.below(3) as u32 }).collect())
             .collect();
         let mut layout = Layout::new(width, height);
-        layout.shifts = (0..3).map(|i| Shift { working: [i, 0], exact: DVec2::ZERO }).collect();
+        layout.shifts = (0..3).map(|i| Shift { working: [i, 0], exact: DVec2::X * 2.0 * f64::from(i) }).collect();
         rows.iter().for_each(|row| layout.push(row));
         for (y, row) in rows.iter().enumerate() {
             assert_eq!(&layout.labels(y).collect::<Vec<_>>(), row);
             for (x, &label) in row.iter().enumerate() {
                 assert_eq!(layout.shift(x, y), layout.shifts.get(label as usize));
             }
+        }
+        // Every 7 pixels to the right, each of two unwarped ones: the shift grows by as much.
+        let part = Layout { width: 7, ..layout.clone() };
+        let again = part.repeated((30, height), DVec2::X * 14.0, DVec2::splat(2.0));
+        for (x, y) in [(0, 0), (6, 3), (7, 3), (29, 11)] {
+            let once = layout.shift(x % 7, y).map(|s| [s.working[0] + 7 * (x / 7) as i32, s.working[1]]);
+            assert_eq!(again.shift(x, y).map(|s| s.working), once, "{x} {y}");
         }
         assert_eq!(Layout::single(5, 2, layout.shifts[1]).shift(4, 1), Some(&layout.shifts[1]));
     }

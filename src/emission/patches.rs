@@ -204,8 +204,8 @@ impl Quilt<'_> {
         (0..rect.w * rect.h).map(|i| pixel(i).map(|s| s as u32)).collect()
     }
 
-    /// The shifts worth trying: those of the neighbours, which continue what is there, and those the pattern allows.
-    fn candidates(&self, rect: &Rect) -> Vec<Shift> {
+    /// The shifts of what lies around a block.
+    fn neighbours(&self, rect: &Rect) -> Vec<Shift> {
         let mut shifts: Vec<Shift> = Vec::new();
         let mut neighbour = |x: usize, y: usize| {
             if let Some(&shift) = self.layout.shifts.get(self.label(x, y) as usize)
@@ -219,6 +219,12 @@ impl Quilt<'_> {
             neighbour(x, y);
             neighbour(x.saturating_sub(1), y.saturating_sub(1));
         }
+        shifts
+    }
+
+    /// The shifts worth trying: those of the neighbours, which continue what is there, and those the pattern allows.
+    fn candidates(&self, rect: &Rect) -> Vec<Shift> {
+        let mut shifts = self.neighbours(rect);
         let pitch = self.guide.working.pitch;
         match self.continuation.lattice() {
             Some(basis) => shifts.extend(self.lattice_shifts(rect, basis)),
@@ -311,10 +317,21 @@ impl Quilt<'_> {
         })
     }
 
-    /// Draws one of the shifts that are as good as the best.
+    /// Draws one of the shifts that are as good as the best. A row of lamps begins as the exemplar does, and goes on with it as far
+    /// as it goes.
     fn choose(&self, rect: &Rect, scored: &[Scored]) -> Option<Scored> {
+        if matches!(self.continuation, Continuation::Row(_)) && self.layout.shifts.is_empty() {
+            let length = |s: &&Scored| (s.shift.exact - self.offset).length();
+            return scored.iter().min_by(|a, b| length(a).total_cmp(&length(b))).copied();
+        }
         let least = scored.iter().map(|s| s.error).fold(f32::INFINITY, f32::min);
         let equal: Vec<_> = scored.iter().filter(|s| s.error <= least * TOLERANCE.0 + TOLERANCE.1).collect();
+        if matches!(self.continuation, Continuation::Row(_)) {
+            let around = self.neighbours(rect);
+            if let Some(same) = equal.iter().find(|s| around.contains(&s.shift)) {
+                return Some(**same);
+            }
+        }
         let pick = Rng::new(self.seed, &[rect.x as u64, rect.y as u64, 1]).below(equal.len().max(1));
         equal.get(pick).map(|s| **s)
     }

@@ -207,7 +207,22 @@ impl Layer {
                 let centred = if params.centred { centre::shift(&exemplar, continuation, params.size()) } else { None };
                 let offset = params.offset * params.scale + centred.unwrap_or(DVec2::ZERO);
                 let offset = window.map_or(offset, |w| -w.corner);
-                patches::place(&guide, continuation, offset, canvas, block, params.seed, job.part(0.3, 0.9))?
+                // One row is made, and repeated beside itself: that is all that the exemplar tells.
+                let row = match continuation {
+                    Continuation::Row([_, across]) => {
+                        let period = across.abs() / working.pitch;
+                        let side =
+                            |period: f64, all: usize| if period > 0.0 { all.min(period.ceil() as usize) } else { all };
+                        Some((across, (side(period.x, canvas.0), side(period.y, canvas.1))))
+                    }
+                    _ => None,
+                };
+                let size = row.map_or(canvas, |r| r.1);
+                let made = patches::place(&guide, continuation, offset, size, block, params.seed, job.part(0.3, 0.9))?;
+                match row {
+                    Some((across, size)) if size != canvas => made.repeated(canvas, across.abs(), working.pitch),
+                    _ => made,
+                }
             }
         };
 
