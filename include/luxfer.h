@@ -1705,7 +1705,8 @@ typedef struct luxfer_emission_params {
     /** 1, the default, shows every lamp as one piece; with 0 seams may cut lamps. */
     uint32_t whole_lamps;
     /**
-     * Where a pattern with a lattice begins, in texels right of and below the texture's corner, each in [-1e6, 1e6]; default 0.
+     * Where the pattern begins, in texels right of and below the texture's corner, each in [-1e6, 1e6]; default 0. Lights without
+     * a lattice begin nowhere: of these it shifts lamps of a texture that is tileable, and must be 0 in others.
      */
     double offset[2];
     /**
@@ -1720,8 +1721,11 @@ typedef struct luxfer_emission_params {
      * than half a period over the whole, to fit. Needs whole_lamps. Default 0.
      */
     uint32_t tileable;
-    /** Must be 0. */
-    uint32_t reserved;
+    /**
+     * With 1 a lattice lies evenly between the sides of the texture, shifted by offset from there: a lamp or the middle between
+     * two in its middle, so that the border cuts as few lamps as it can. Default 0.
+     */
+    uint32_t centred;
 } luxfer_emission_params;
 
 /** An image of the emission: a LUXFER_EMISSION_ value. */
@@ -1791,7 +1795,8 @@ luxfer_status luxfer_emission_create(luxfer_context *context, luxfer_emission **
 
 /**
  * Sets the exemplar, three images of one size: the unwarped photo (linear RGB), the unwarped confidence of the lights (1
- * channel, in [0, 1]) and where both are valid (1 channel, 1 or 0). Any thread.
+ * channel, in [0, 1]) and where both are valid (1 channel, 1 or 0). Further ones are added by luxfer_emission_add_style. Any
+ * thread.
  */
 luxfer_status luxfer_emission_set_exemplar(luxfer_emission *emission,
                                            luxfer_image *unwarped,
@@ -1807,7 +1812,7 @@ luxfer_status luxfer_emission_set_photo(luxfer_emission *emission,
                                         const double *to_photo);
 
 /**
- * Starts a job that makes the texture. params may be NULL for the defaults. The caller releases *job. Any thread.
+ * Starts a job that makes the texture as a whole; luxfer_emission_start_plan does without its memory. params may be NULL for the defaults. The caller releases *job. Any thread.
  * LUXFER_INVALID_OPERATION if the exemplar is missing or a job runs already. The job may end with LUXFER_DEGENERATE if
  * there are no lights in the exemplar, LUXFER_INVALID_ARGUMENT if sizes differ or a setting is out of range.
  */
@@ -1853,6 +1858,57 @@ luxfer_status luxfer_emission_retain(luxfer_emission *emission);
 
 /** Gives a reference back; a job that runs goes on. Any thread. */
 luxfer_status luxfer_emission_release(luxfer_emission *emission);
+
+/* ====================================================================================================================
+ * Styles and tiles
+ *
+ * Several exemplars in one texture, and textures that are too large to be made as a whole: luxfer_emission_start_plan decides
+ * where every lamp goes, and luxfer_emission_render_tile renders any part. Beside the exemplars a plan holds about 32 bytes per
+ * lamp and the outlines of the patches, 30 MiB or so for a texture of 16384 x 16384; no texel of it.
+ * ==================================================================================================================== */
+
+/**
+ * Adds an exemplar, whose lights take the place of the first one's as its weights say. unwarped, light and valid are as for
+ * luxfer_emission_set_exemplar; photo, which may be NULL, and to_photo as for luxfer_emission_set_photo. scale is its unwarped
+ * pixels per texel, in [1e-3, 1e3]. weights has 1 channel and values in [0, 1], and is stretched over the texture; where several
+ * exemplars are added their weights are images of one size and add up to 1 at most. What they leave is the first exemplar's.
+ *
+ * No lamp is a mixture: each is taken from an exemplar with the probability of its weight there, so that light per area blends
+ * linearly. Lattices keep their own period and phase. Any thread.
+ */
+luxfer_status luxfer_emission_add_style(luxfer_emission *emission,
+                                        luxfer_image *unwarped,
+                                        luxfer_image *light,
+                                        luxfer_image *valid,
+                                        luxfer_image *photo,
+                                        const double *to_photo,
+                                        double scale,
+                                        luxfer_image *weights);
+
+/** Takes all exemplars that were added away; the first stays. Any thread. */
+luxfer_status luxfer_emission_clear_styles(luxfer_emission *emission);
+
+/**
+ * Starts a job that plans the texture, in the place of luxfer_emission_start, whose results go. params and what the call and
+ * the job return are the same. The caller releases *job. Any thread.
+ */
+luxfer_status luxfer_emission_start_plan(luxfer_emission *emission,
+                                         const luxfer_emission_params *params,
+                                         luxfer_job **job);
+
+/**
+ * Renders the part of a planned texture that begins x texels right of and y below its corner: 4 channels, linear RGB, and 1 on
+ * lamps, else 0. The bits are those of the texture and mask that luxfer_emission_start makes, whatever the tiles and their
+ * order. Takes up to a second for each megapixel. The caller releases *tile. Any thread, several at once.
+ * LUXFER_NOT_READY before a job of luxfer_emission_start_plan has succeeded; LUXFER_INVALID_ARGUMENT for a part that is empty or
+ * reaches beyond the texture; LUXFER_OUT_OF_MEMORY beyond the memory budget.
+ */
+luxfer_status luxfer_emission_render_tile(luxfer_emission *emission,
+                                          uint32_t x,
+                                          uint32_t y,
+                                          uint32_t width,
+                                          uint32_t height,
+                                          luxfer_image **tile);
 
 /* ====================================================================================================================
  * Rendering
@@ -3292,11 +3348,23 @@ luxfer_status luxfer_transfer_set_depth(luxfer_transfer *transfer,
 
 /**
  * Sets the scene to light, and the name (UTF-8) of the object or material of its surface that receives the lights. The
- * scene itself is never changed; each start takes it as it is then. Any thread.
+ * scene itself is never changed; each start takes it as it is then. Of all the triangles of that name the plane is taken that
+ * faces most of the room: its parts, as between the beams of a ceiling, share one pattern that goes on from part to part. What
+ * lies in other planes is left as it is; another transfer lights it, with a pattern of its own. Any thread.
  */
 luxfer_status luxfer_transfer_set_scene(luxfer_transfer *transfer,
                                         luxfer_scene *scene,
                                         const char *surface);
+
+/**
+ * Sets the triangles of the scene, mesh and triangle of each, that receive the lights instead of those of a name; of these too
+ * the plane is taken that faces most of the room. They replace those set before, and luxfer_transfer_set_scene takes them away;
+ * triangles may be NULL if count is 0: none, the name counts again. Any thread.
+ * A run ends with LUXFER_INVALID_ARGUMENT if the scene does not have them.
+ */
+luxfer_status luxfer_transfer_set_triangles(luxfer_transfer *transfer,
+                                            const uint32_t *triangles,
+                                            size_t count);
 
 /**
  * Sets an emissive texture, linear RGB relative to the photo's white, that the stage EMISSION stretches over the surface

@@ -355,7 +355,7 @@ layouts! {
     luxfer_rectify_report: struct_size segments vanishing_points vanishing_errors vanishing_support focal_source
         focal principal axes is_unwarped reserved to_photo corners corner_errors pixel_size aspect_confidence;
     luxfer_emission_params: struct_size width height block scale working_side metadata_weight seed least_regularity
-        whole_lamps offset clip_level even_lamps tileable reserved;
+        whole_lamps offset clip_level even_lamps tileable centred;
     luxfer_emission_report: struct_size luminaires error regularity;
     luxfer_luminaire: struct_size corners centre size orientation area flux_share colour reserved;
     luxfer_requirements: struct_size scattering lights textures bounces brightest_material albedo

@@ -9,7 +9,7 @@
 //! 4. [`patches`]: quilting over colour and metadata with minimum-error [`seam`]s, held to the lattice.
 //! 5. [`lamps`]: every lamp that patches show becomes one piece again; no seam cuts it.
 //! 6. [`recover`]: full detail from the photo. 7. [`luminaires`]: the lamps as a list. 8. [`statistics`]: how far the
-//!    texture's are from the exemplar's.
+//!    texture's are from the exemplar's; and by [`pairs`] of lamps.
 //!
 //! A texture that fits inside the exemplar is a part of it, copied.
 //!
@@ -29,6 +29,7 @@ mod layout;
 mod luminaires;
 mod measure;
 mod metadata;
+pub mod pairs;
 mod patches;
 mod period;
 mod plan;

@@ -166,6 +166,41 @@ mod tests {
     }
 
     #[test]
+    fn parts_of_a_ceiling_between_beams_share_one_pattern() {
+        // Two slabs of one material, 2.5 m wide each, with a beam of 1 m between them; the beam's underside is lower.
+        let slab = |name: &str, x: f32, width: f32, y: f32, material: usize| Mesh {
+            name: name.into(),
+            material,
+            positions: [[0., 0.], [1., 0.], [1., 1.], [0., 1.]]
+                .map(|[u, v]| Vec3::new(x + u * width, y, v * 4.0))
+                .into(),
+            triangles: vec![[0, 1, 2], [0, 2, 3]],
+            ..Mesh::default()
+        };
+        let paint = |name: &str| crate::scene::Material { name: name.into(), ..crate::scene::Material::default() };
+        let scene = Scene {
+            meshes: vec![
+                slab("Left", 0.0, 2.5, 3.0, 0),
+                slab("Right", 3.5, 2.5, 3.0, 0),
+                slab("Beam", 2.5, 1.0, 2.7, 1),
+                slab("Floor", 0.0, 6.0, 0.0, 1),
+            ],
+            materials: vec![paint("Plaster"), paint("Concrete")],
+            ..Scene::default()
+        };
+        let by_name = surface::find(&scene, "Plaster").unwrap();
+        // By triangles, the beam's among them: that is another plane, and left out.
+        let listed: Vec<(usize, usize)> = (0..3).flat_map(|mesh| [(mesh, 0), (mesh, 1)]).collect();
+        assert_eq!(surface::from_triangles(&scene, &listed).unwrap(), by_name);
+        assert_eq!(by_name.triangles, [(0, 0), (0, 1), (1, 0), (1, 1)]);
+        // One rectangle, so one pattern, over both; where the beam is nothing is seen.
+        assert!((by_name.size.element_product() - 24.0).abs() < 1e-3, "{}", by_name.size);
+        let size = UVec2::new(600, 400);
+        let ground = of(&scene, (&by_name, &by_name), -1.0, &[], size, Monitor::default().job()).unwrap().unwrap();
+        assert!((share(&ground, Ground::Hidden) - 1.0 / 6.0).abs() < 0.01);
+    }
+
+    #[test]
     fn a_whole_rectangle_without_wishes_needs_nothing() {
         let (mut scene, _) = l_shaped();
         scene.meshes[0].positions[3] = Vec3::new(6.0, 3.0, 3.0);

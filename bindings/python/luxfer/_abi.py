@@ -626,7 +626,7 @@ class luxfer_emission_params(Structure):
         ("clip_level", c_float),
         ("even_lamps", c_uint32),
         ("tileable", c_uint32),
-        ("reserved", c_uint32),
+        ("centred", c_uint32),
     ]
 
 
@@ -1297,6 +1297,10 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_emission_get_corner": (c_int32, [("emission", POINTER(luxfer_emission)), ("index", c_uint32), ("corner", c_uint32), ("x", POINTER(c_double)), ("y", POINTER(c_double))]),
     "luxfer_emission_retain": (c_int32, [("emission", POINTER(luxfer_emission))]),
     "luxfer_emission_release": (c_int32, [("emission", POINTER(luxfer_emission))]),
+    "luxfer_emission_add_style": (c_int32, [("emission", POINTER(luxfer_emission)), ("unwarped", POINTER(luxfer_image)), ("light", POINTER(luxfer_image)), ("valid", POINTER(luxfer_image)), ("photo", POINTER(luxfer_image)), ("to_photo", POINTER(c_double)), ("scale", c_double), ("weights", POINTER(luxfer_image))]),
+    "luxfer_emission_clear_styles": (c_int32, [("emission", POINTER(luxfer_emission))]),
+    "luxfer_emission_start_plan": (c_int32, [("emission", POINTER(luxfer_emission)), ("params", POINTER(luxfer_emission_params)), ("job", POINTER(POINTER(luxfer_job)))]),
+    "luxfer_emission_render_tile": (c_int32, [("emission", POINTER(luxfer_emission)), ("x", c_uint32), ("y", c_uint32), ("width", c_uint32), ("height", c_uint32), ("tile", POINTER(POINTER(luxfer_image)))]),
     "luxfer_render_params_init": (c_int32, [("params", POINTER(luxfer_render_params)), ("size", c_size_t)]),
     "luxfer_render_create": (c_int32, [("context", POINTER(luxfer_context)), ("render", POINTER(POINTER(luxfer_render)))]),
     "luxfer_render_set_scene": (c_int32, [("render", POINTER(luxfer_render)), ("scene", POINTER(luxfer_scene))]),
@@ -1381,6 +1385,7 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_transfer_set_photo": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("photo", POINTER(luxfer_image))]),
     "luxfer_transfer_set_depth": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("depth", POINTER(luxfer_image)), ("kind", c_int32)]),
     "luxfer_transfer_set_scene": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("scene", POINTER(luxfer_scene)), ("surface", c_char_p)]),
+    "luxfer_transfer_set_triangles": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("triangles", POINTER(c_uint32)), ("count", c_size_t)]),
     "luxfer_transfer_set_texture": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("texture", POINTER(luxfer_image))]),
     "luxfer_transfer_set_camera": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("camera", POINTER(luxfer_camera_params))]),
     "luxfer_transfer_add_stroke": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("phase", c_int32), ("points", POINTER(c_float)), ("point_count", c_size_t), ("radius", c_float), ("positive", c_int32)]),

@@ -1078,8 +1078,9 @@ class EmissionParams(TypedDict, total=False):
     whole_lamps: int
     """1, the default, shows every lamp as one piece; with 0 seams may cut lamps."""
     offset: Sequence[float]
-    """Where a pattern with a lattice begins, in texels right of and below the texture's corner, each in [-1e6,
-    1e6]; default 0."""
+    """Where the pattern begins, in texels right of and below the texture's corner, each in [-1e6, 1e6]; default
+    0. Lights without a lattice begin nowhere: of these it shifts lamps of a texture that is tileable, and must
+    be 0 in others."""
     clip_level: float
     """Channel value from which the photo is clipped, in [0, 1]; default 0.95. Lamps it shows so get the colour
     of their rims, as dark as the clipped channels allow. With 0 nothing is taken for clipped."""
@@ -1088,6 +1089,9 @@ class EmissionParams(TypedDict, total=False):
     tileable: int
     """With 1 the texture may be repeated: what leaves it on one side comes in on the other, and a lattice is
     stretched, by less than half a period over the whole, to fit. Needs whole_lamps. Default 0."""
+    centred: int
+    """With 1 a lattice lies evenly between the sides of the texture, shifted by offset from there: a lamp or
+    the middle between two in its middle, so that the border cuts as few lamps as it can. Default 0."""
 
 
 @dataclass(frozen=True)

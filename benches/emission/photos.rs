@@ -1,0 +1,235 @@
+//! Patterns from photos: a ceiling photographed in perspective and noise, the photos of real rooms, and the glass ceiling.
+
+use crate::harness::{Table, absent, figure};
+use crate::{DESIGNS, Exemplar, Score, save};
+use glam::{DMat3, DVec2};
+use luxfer::emission::pairs::{self, Points};
+use luxfer::emission::{self, Emission, Input, Luminaire, Params};
+use luxfer::geometry::Homography;
+use luxfer::image::io::{self, Encoding};
+use luxfer::image::{Image, colour};
+use luxfer::job::Monitor;
+use luxfer::rectify;
+use luxfer::rng::Rng;
+use luxfer::segment::strokes;
+use luxfer::transfer::{self, Stage, Transfer};
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// Side of the plane that the photo shows, in unwarped pixels.
+const PLANE: usize = 480;
+/// Standard deviation of the noise of a pixel, relative to white.
+const NOISE: [f32; 3] = [0.0, 0.05, 0.15];
+
+/// Every design, photographed from aside, unwarped and continued.
+pub fn perspective() {
+    let mut table = Table::new(["design", "noise %", "worst statistic %", "phase %", "pairs %", "lamps broken"]);
+    let mut all = Score::default();
+    for design in &DESIGNS {
+        for noise in NOISE {
+            // The far side of the plane is half as large as the near one.
+            let rows = [[1.25, 0.42, 20.0], [0.0, 1.2, 10.0], [0.0, 0.0012, 1.0]];
+            let to_photo = DMat3::from_cols_array_2d(&rows).transpose();
+            let from_photo = to_photo.inverse();
+            let photo = Image::from_fn(640, 384, |x, y| {
+                const SAMPLES: usize = 4;
+                let lit = (0..SAMPLES * SAMPLES).filter(|i| {
+                    let step = DVec2::new((i % SAMPLES) as f64 + 0.5, (i / SAMPLES) as f64 + 0.5) / SAMPLES as f64;
+                    let p = from_photo * (DVec2::new(x as f64, y as f64) + step).extend(1.0);
+                    design.is_lit(p.truncate() / p.z)
+                });
+                let share = lit.count() as f32 / (SAMPLES * SAMPLES) as f32;
+                std::array::from_fn::<f32, 3, _>(|c| {
+                    let mut rng = Rng::new(31, &[x as u64, y as u64, c as u64]);
+                    // Four uniform numbers are nearly normal, with a variance of a third.
+                    let normal = (0..4).map(|_| rng.next_f32() - 0.5).sum::<f32>() * 3f32.sqrt();
+                    (0.1 + [0.8, 0.7, 0.6][c] * share + noise * normal).max(0.0)
+                })
+            });
+            let photo = photo.expect("a photo");
+            // Light is what is brighter than halfway, as a segmentation would say of pixels and their neighbours.
+            let smooth = luxfer::image::pyramid::blur(&photo, 0.9, Monitor::default().job()).expect("a blur");
+            let sure = Image::from_fn(640, 384, |x, y| [((smooth.rgb(x, y).x - 0.3) / 0.4).clamp(0.0, 1.0)]);
+            let result = continued(&photo, &sure.expect("a mask"), &Homography(to_photo));
+            let score = Score::of(&result, design);
+            all = all.worse(score);
+            table.row([
+                design.name.to_string(),
+                format!("{:.0}", 100.0 * noise),
+                format!("{:.1}", 100.0 * score.worst),
+                format!("{:.2}", 100.0 * score.phase),
+                format!("{:.1}", 100.0 * score.pairs),
+                score.broken.to_string(),
+            ]);
+            if noise == NOISE[2] {
+                save(&photo, &format!("emission_{}_photographed", design.name.replace([' ', '%'], "_")));
+                save(&result.texture, &format!("emission_{}_from_photo", design.name.replace([' ', '%'], "_")));
+            }
+        }
+    }
+    table.print("800 x 720 from photos of 640 x 384 in perspective and noise, unwarped to 480 x 480");
+    figure("emission.perspective.worst_stat", 100.0 * all.worst, "%");
+    figure("emission.perspective.lattice_rms", 100.0 * all.phase, "% of the period");
+    figure("emission.perspective.cut_lamps", all.broken as f64, "lamps");
+}
+
+fn continued(photo: &Image, light: &Image, to_photo: &Homography) -> Emission {
+    let warp = |image: &Image| rectify::warp(image, to_photo, PLANE, PLANE, Monitor::default().job()).expect("a plane");
+    let mut white = Image::new(photo.width, photo.height, 1).expect("a mask");
+    white.data.fill(1.0);
+    let exemplar = Exemplar { unwarped: warp(photo), light: warp(light), valid: warp(&white) };
+    let input = Input { photo: Some((photo, *to_photo)), ..exemplar.input() };
+    let params = Params { width: 800, height: 720, ..Params::default() };
+    emission::run(&input, &params, Monitor::default().job()).expect("a texture")
+}
+
+fn data() -> PathBuf {
+    std::env::var_os("LUXFER_TEST_DATA")
+        .map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared/data"), PathBuf::from)
+}
+
+/// Real photos, by the strokes that the tests use, unwarped and continued to twice their size.
+pub fn real() {
+    let root = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/strokes");
+    let mut names: Vec<String> = std::fs::read_dir(&root)
+        .into_iter()
+        .flatten()
+        .filter_map(|entry| Some(entry.ok()?.path().file_stem()?.to_str()?.to_string()))
+        .filter(|name| data().join(format!("photos/{name}.jpg")).exists())
+        .collect();
+    names.sort();
+    let mut table = table_of_real();
+    for name in &names {
+        match unwarped(&root, name) {
+            Ok((exemplar, photo, to_photo)) => {
+                let input = Input { photo: Some((&photo, to_photo)), ..exemplar.input() };
+                row(&mut table, name, &input);
+            }
+            Err(reason) => println!("# {name}: {reason}"),
+        }
+    }
+    table.print("Real photos, unwarped and continued to twice their size");
+}
+
+/// The exemplar that a transfer unwarps from a photo of the data; the photo and the map into it.
+fn unwarped(root: &std::path::Path, name: &str) -> Result<(Exemplar, Image, Homography), String> {
+    let text = |e: luxfer::error::Error| e.message;
+    let photo = io::load(&data().join(format!("photos/{name}.jpg")), Encoding::Srgb).map_err(text)?;
+    let drawn = std::fs::read_to_string(root.join(format!("{name}.txt"))).map_err(|e| e.to_string())?;
+    let strokes = strokes::parse(&drawn, photo.width, photo.height).map_err(text)?;
+    let input = transfer::Input { photo: Some(Arc::new(photo)), strokes, ..transfer::Input::default() };
+    let mut transfer = Transfer { input, ..Transfer::default() };
+    transfer.params.unwarp.max_side = 512;
+    transfer.run(Stage::View, Stage::Unwarp, Monitor::default().job(), |_| {}).map_err(text)?;
+    let results = &transfer.results;
+    let (Some(lights), Some(plane)) = (&results.lights, &results.unwarped) else { return Err("no plane".into()) };
+    let (width, height) = (plane.image.width, plane.image.height);
+    let job = Monitor::default();
+    let light = rectify::warp(&lights.confidence, &plane.to_photo, width, height, job.job()).map_err(text)?;
+    let photo = transfer.input.photo.as_deref().cloned().unwrap_or_default();
+    let exemplar = Exemplar { unwarped: plane.image.clone(), light, valid: plane.valid.clone() };
+    Ok((exemplar, photo, plane.to_photo))
+}
+
+/// Ceilings seen straight from below, whose lamps are known.
+pub fn ceilings() {
+    let mut table = table_of_real();
+    for name in ["library", "alma"] {
+        let Some(exemplar) = ceiling(name) else {
+            absent(&format!("emission.{name}.cut_lamps"), "the data is missing");
+            continue;
+        };
+        let result = row(&mut table, name, &exemplar.input());
+        save(&exemplar.unwarped, &format!("emission_{name}_exemplar"));
+        save(&result.texture, &format!("emission_{name}"));
+        let own = whole_areas(&exemplar.run(&Params {
+            width: exemplar.light.width,
+            height: exemplar.light.height,
+            ..Params::default()
+        }));
+        let (least, most) = (own.iter().fold(f64::MAX, |a, b| a.min(*b)), own.iter().fold(0.0f64, |a, b| a.max(*b)));
+        let broken = whole_areas(&result).into_iter().filter(|a| *a < 0.7 * least || *a > 1.3 * most).count();
+        figure(&format!("emission.{name}.cut_lamps"), broken as f64, "lamps");
+        figure(&format!("emission.{name}.worst_stat"), 100.0 * result.error, "%");
+    }
+    table.print("Ceilings seen straight from below, continued to twice their size");
+}
+
+fn ceiling(name: &str) -> Option<Exemplar> {
+    let folder = data().join("photo_truth/ceiling_ortho");
+    let unwarped = io::load(&folder.join(format!("{name}.jpg")), Encoding::Srgb).ok()?;
+    let text = std::fs::read_to_string(folder.join(format!("{name}.json"))).ok()?;
+    let truth: serde_json::Value = serde_json::from_str(&text).ok()?;
+    let number = |v: &serde_json::Value| v.as_f64().unwrap_or(f64::NAN);
+    let (u0, v1, scale) = (number(&truth["u_range"][0]), number(&truth["v_range"][1]), number(&truth["px_per_unit"]));
+    let lamps: Vec<[f64; 4]> = (truth["lights"]["items"].as_array()?.iter())
+        .map(|l| [number(&l["u0"]) - u0, number(&l["u1"]) - u0, v1 - number(&l["v1"]), v1 - number(&l["v0"])])
+        .map(|corners| corners.map(|c| c * scale))
+        .collect();
+    let is_lit = |x: f64, y: f64| lamps.iter().any(|&[x0, x1, y0, y1]| x0 <= x && x < x1 && y0 <= y && y < y1);
+    let (width, height) = (unwarped.width, unwarped.height);
+    let light = Image::from_fn(width, height, |x, y| [f32::from(is_lit(x as f64 + 0.5, y as f64 + 0.5))]).ok()?;
+    let valid = Image::from_fn(width, height, |_, _| [1.0]).ok()?;
+    Some(Exemplar { unwarped, light, valid })
+}
+
+fn table_of_real() -> Table {
+    Table::new([
+        "photo",
+        "continuation",
+        "regularity",
+        "lamps",
+        "lit %",
+        "area",
+        "spacing",
+        "pairs %",
+        "stated error %",
+    ])
+}
+
+/// Continues an exemplar to twice its size, and holds it against it.
+fn row(table: &mut Table, name: &str, input: &Input) -> Emission {
+    let (width, height) = (2 * input.light.width, 2 * input.light.height);
+    let params = Params { width, height, ..Params::default() };
+    let result = emission::run(input, &params, Monitor::default().job()).expect("a texture");
+    let own = emission::run(
+        input,
+        &Params { width: width / 2, height: height / 2, whole_lamps: true, ..params },
+        Monitor::default().job(),
+    )
+    .expect("a texture");
+    let [before, after] = result.statistics;
+    let pair = |a: f64, b: f64, digits: usize| format!("{a:.digits$} → {b:.digits$}");
+    table.row([
+        name.to_string(),
+        format!("{:?}", result.continuation).split('(').next().unwrap_or("").to_string(),
+        format!("{:.2}", result.regularity),
+        result.luminaires.len().to_string(),
+        pair(100.0 * before.lit, 100.0 * after.lit, 2),
+        pair(before.area, after.area, 0),
+        pair(before.spacing, after.spacing, 0),
+        pair_distance(&own, &result).map_or("-".into(), |d| format!("{:.0}", 100.0 * d)),
+        format!("{:.1}", 100.0 * result.error),
+    ]);
+    save(&result.texture, &format!("emission_real_{name}"));
+    result
+}
+
+/// How differently far apart the lamps of two textures are.
+pub fn pair_distance(of: &Emission, from: &Emission) -> Option<f64> {
+    let centres = |e: &Emission| whole(e).iter().map(|l| l.centre).collect::<Vec<DVec2>>();
+    let size = |e: &Emission| DVec2::new(e.mask.width as f64, e.mask.height as f64);
+    let (a, b) = (centres(of), centres(from));
+    pairs::distance(&Points { at: &a, size: size(of) }, &Points { at: &b, size: size(from) })
+}
+
+/// Lamps that the border does not touch.
+pub fn whole(result: &Emission) -> Vec<&Luminaire> {
+    let size = DVec2::new(result.mask.width as f64, result.mask.height as f64);
+    let inside = |l: &&Luminaire| l.outline.iter().all(|p| p.min_element() > 0.0 && (size - *p).min_element() > 0.0);
+    result.luminaires.iter().filter(inside).collect()
+}
+
+fn whole_areas(result: &Emission) -> Vec<f64> {
+    whole(result).iter().map(|l| l.area).collect()
+}

@@ -1,0 +1,75 @@
+//! Textures too large to be made as a whole: time and memory over their size, and whether tiles have the bits of the whole.
+
+use crate::harness::{Clock, Table, figure, time};
+use crate::{DESIGNS, Exemplar};
+use luxfer::emission::{Params, Plan, Tile};
+use luxfer::job::Monitor;
+
+const SIDES: [usize; 4] = [2048, 4096, 8192, 16_384];
+const TILE: usize = 1024;
+
+pub fn tiles() {
+    let exemplar = DESIGNS[1].exemplar(512);
+    let mut table = Table::new(["side", "plan s", "tiles s", "ns per texel", "lamps", "peak MiB", "texels off"]);
+    for side in SIDES {
+        let params = Params { width: side, height: side, ..Params::default() };
+        // What the whole has in memory is no part of what tiles need.
+        let whole = (side <= 4096).then(|| exemplar.run(&params));
+        let before = reset_peak();
+        let (planning, plan) = time(Clock::Wall, || plan(&exemplar, &params));
+        let (rendering, off) = time(Clock::Wall, || {
+            let places = (0..side / TILE).flat_map(|y| (0..side / TILE).map(move |x| (x * TILE, y * TILE)));
+            places.map(|(x, y)| differing(&exemplar, &plan, (x, y), whole.as_ref().map(|w| &w.texture))).sum::<usize>()
+        });
+        let peak = peak_mib() - before;
+        let seconds = planning + rendering;
+        table.row([
+            side.to_string(),
+            format!("{planning:.2}"),
+            format!("{rendering:.2}"),
+            format!("{:.0}", 1e9 * seconds / (side * side) as f64),
+            plan.lamps().to_string(),
+            format!("{peak:.0}"),
+            whole.map_or("-".into(), |_| off.to_string()),
+        ]);
+        if side == 16_384 {
+            figure("emission.16k.seconds", seconds, "s");
+            figure("emission.16k.peak", peak, "MiB");
+        }
+    }
+    table.print("In tiles of 1024 x 1024, from 512 x 512; the texture of 16384 x 16384 itself has 3072 MiB");
+}
+
+fn plan(exemplar: &Exemplar, params: &Params) -> Plan {
+    Plan::new(&exemplar.input(), &[], params, Monitor::default().job()).expect("a plan")
+}
+
+/// Renders a tile; the number of its values that are not those of the whole.
+fn differing(exemplar: &Exemplar, plan: &Plan, (x, y): (usize, usize), whole: Option<&luxfer::image::Image>) -> usize {
+    let tile = Tile { x, y, width: TILE, height: TILE };
+    let (texture, _) = plan.tile(&exemplar.input(), &[], tile, Monitor::default().job()).expect("a tile");
+    let Some(whole) = whole else { return 0 };
+    let rows = texture.data.chunks_exact(3 * TILE).enumerate();
+    rows.map(|(row, made)| {
+        let start = 3 * ((y + row) * whole.width + x);
+        made.iter().zip(&whole.data[start..]).filter(|(a, b)| a.to_bits() != b.to_bits()).count()
+    })
+    .sum()
+}
+
+/// Has the peak of memory begin again; what is in use now, in MiB.
+fn reset_peak() -> f64 {
+    // Where the system does not allow it the peak is that of all that went before, which is no less.
+    let _ = std::fs::write("/proc/self/clear_refs", "5");
+    status_mib("VmRSS:")
+}
+
+fn peak_mib() -> f64 {
+    status_mib("VmHWM:")
+}
+
+fn status_mib(key: &str) -> f64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|l| l.strip_prefix(key)).unwrap_or("0 kB");
+    line.trim().split(' ').next().and_then(|kib| kib.parse::<f64>().ok()).unwrap_or(f64::NAN) / 1024.0
+}
