@@ -92,13 +92,13 @@ class Transfer(Case):
         whole = emission.run(width=150, height=130).image().numpy()
         mask = emission.image("mask").numpy()
         emission.start_plan(width=150, height=130).wait()
-        with self.assertRaises(luxfer.NotReady):
+        with self.assertRaises(luxfer.errors.NotReady):
             emission.image("texture")
         for x, y, width, height in ((100, 90, 50, 40), (0, 0, 7, 130), (149, 129, 1, 1)):
             tile = emission.tile(x, y, width, height).numpy()
             np.testing.assert_array_equal(tile[..., :3], whole[y : y + height, x : x + width])
             np.testing.assert_array_equal(tile[..., 3:], mask[y : y + height, x : x + width])
-        with self.assertRaises(luxfer.InvalidArgument):
+        with self.assertRaises(luxfer.errors.InvalidArgument):
             emission.tile(100, 90, 51, 40)
 
         # Left the first, right the second.
