@@ -165,6 +165,11 @@ impl Exemplar {
     }
 }
 
+/// Of a lamp of a synthetic exemplar, its noise included.
+fn luminance() -> f64 {
+    f64::from(luxfer::image::colour::luminance(glam::Vec3::new(0.95, 0.85, 0.75)))
+}
+
 /// A texture against the design it continues.
 #[derive(Clone, Copy, Default)]
 struct Score {
@@ -179,29 +184,21 @@ struct Score {
 }
 
 impl Score {
-    fn of(result: &Emission, design: &Design) -> Self {
+    /// Of lamps whose luminance the exemplar shows as `luminance`.
+    fn of(result: &Emission, design: &Design, luminance: f64) -> Self {
+        let size = DVec2::new(result.mask.width as f64, result.mask.height as f64);
         let lamps = photos::whole(result);
         let centres: Vec<DVec2> = lamps.iter().map(|l| l.centre).collect();
         let seen = result.statistics[1];
         let cell = design.periods[0].perp_dot(design.periods[1]).abs() / design.filled;
         let per_area = seen.lit / seen.area * cell;
-        let brightness =
-            seen.luminance / f64::from(luxfer::image::colour::luminance(glam::Vec3::new(0.95, 0.85, 0.75)));
+        let brightness = seen.luminance / luminance;
         let ratios = [per_area, seen.area / design.areas[0], seen.lit * brightness * cell / design.areas[0]];
         let is_broken = |l: &&&Luminaire| l.area < 0.7 * design.areas[1] || l.area > 1.3 * design.areas[2];
         Self {
             worst: ratios.iter().map(|r| (r - 1.0).abs()).fold(0.0, f64::max),
             phase: statistics::phase(&centres, design.periods),
-            pairs: {
-                let size = DVec2::new(result.mask.width as f64, result.mask.height as f64);
-                // Of the window that shows whole lamps only.
-                let (low, high) = centres.iter().fold((size, DVec2::ZERO), |(l, h), c| (l.min(*c), h.max(*c)));
-                let cell = design.periods[0].perp_dot(design.periods[1]).abs().sqrt();
-                let inner: Vec<DVec2> = centres.iter().map(|c| *c - low + cell / 2.0).collect();
-                let truth = design.places(size);
-                let (of, from) = (Points { at: &truth, size }, Points { at: &inner, size: high - low + cell });
-                pairs::distance(&of, &from).unwrap_or(2.0)
-            },
+            pairs: pair_distance(&centres, size, design),
             broken: lamps.iter().filter(is_broken).count(),
         }
     }
@@ -214,6 +211,17 @@ impl Score {
             broken: self.broken + other.broken,
         }
     }
+}
+
+/// Share of the pairs of lamps that are at other distances than those of the design, in the part of the texture that shows all
+/// lamps whose centres lie in it.
+fn pair_distance(centres: &[DVec2], size: DVec2, design: &Design) -> f64 {
+    let margin = design.areas[2].sqrt();
+    let inner = size - 2.0 * margin;
+    let is_inside = |p: &DVec2| p.cmpge(DVec2::ZERO).all() && p.cmplt(inner).all();
+    let made: Vec<DVec2> = centres.iter().map(|c| *c - margin).filter(is_inside).collect();
+    let truth = design.places(inner);
+    pairs::distance(&Points { at: &truth, size: inner }, &Points { at: &made, size: inner }).unwrap_or(1.0)
 }
 
 /// Every design by three methods, over all sizes of patches.
@@ -232,7 +240,7 @@ fn patterns() {
             let (mut worst, mut stated) = (Score::default(), 0.0f64);
             for block in BLOCKS {
                 let result = exemplar.run(&Params { width: 800, height: 720, block, ..params.clone() });
-                worst = worst.worse(Score::of(&result, design));
+                worst = worst.worse(Score::of(&result, design, luminance()));
                 stated = stated.max(result.error);
                 if block == 100 {
                     save(&result.texture, &format!("emission_{}_{}", design.name, method).replace([' ', '%'], "_"));
@@ -300,7 +308,7 @@ fn knobs() {
                     ..Params::default()
                 };
                 let (seconds, result) = time(Clock::Wall, || exemplar.run(&params));
-                let score = Score::of(&result, design);
+                let score = Score::of(&result, design, luminance());
                 table.row([
                     working_side.to_string(),
                     block.to_string(),
@@ -353,7 +361,7 @@ fn peer(pool: &Pool) -> Result<(), String> {
     let rival = emission::given(&lamps, Monitor::default().job()).map_err(|e| e.to_string())?;
     let mut table = Table::new(["program", "seconds", "worst statistic %", "phase %", "pairs %", "lamps broken"]);
     for (name, seconds, result) in [("luxfer", ours, &result), ("texture-synthesis", theirs, &rival)] {
-        let score = Score::of(result, design);
+        let score = Score::of(result, design, luminance());
         table.row([
             name.to_string(),
             format!("{seconds:.2}"),

@@ -51,7 +51,7 @@ pub fn perspective() {
             let smooth = luxfer::image::pyramid::blur(&photo, 0.9, Monitor::default().job()).expect("a blur");
             let sure = Image::from_fn(640, 384, |x, y| [((smooth.rgb(x, y).x - 0.3) / 0.4).clamp(0.0, 1.0)]);
             let result = continued(&photo, &sure.expect("a mask"), &Homography(to_photo));
-            let score = Score::of(&result, design);
+            let score = Score::of(&result, design, result.statistics[0].luminance);
             all = all.worse(score);
             table.row([
                 design.name.to_string(),

@@ -2,7 +2,6 @@
 
 use super::statistics::nearest_distances;
 use glam::DVec2;
-use std::f64::consts::TAU;
 
 /// Distances that are looked at, and the width of the kernel, in mean distances to the nearest other.
 const REACH: f64 = 2.5;
@@ -16,8 +15,8 @@ pub struct Points<'a> {
     pub size: DVec2,
 }
 
-/// Share of the pairs of one pattern that another has at other distances: 0 where both have as many at each, 2 where they have
-/// none in common. `None` where one has less than two points.
+/// Share of the pairs of near points that one pattern has at other distances than another: 0 where both have the same share at
+/// each, 1 where they have no distance in common. `None` where one has no two points near each other.
 ///
 /// Pairs are counted by what part of the window shows them (translation correction, Ohser 1983), and spread over distances by a
 /// kernel (Stoyan and Stoyan 1994), whose width the first pattern sets.
@@ -28,15 +27,14 @@ pub fn distance(of: &Points, from: &Points) -> Option<f64> {
         return None;
     }
     let (a, b) = (pairs(of, spacing), pairs(from, spacing));
-    let all: f64 = a.iter().sum();
-    let off: f64 = a.iter().zip(&b).map(|(a, b)| (a - b).abs()).sum();
-    (all > 0.0).then(|| off / all)
+    let (all_a, all_b): (f64, f64) = (a.iter().sum(), b.iter().sum());
+    let off: f64 = a.iter().zip(&b).map(|(a, b)| (a / all_a - b / all_b).abs()).sum();
+    (all_a > 0.0 && all_b > 0.0).then_some(off / 2.0)
 }
 
-/// How many others lie around a point at each step of distance, per density: `g(r) 2πr`.
+/// How many pairs there are at each step of distance, to a factor: `g(r) r`.
 fn pairs(points: &Points, spacing: f64) -> [f64; STEPS] {
     let (reach, width) = (REACH * spacing, KERNEL * spacing);
-    let density = points.at.len() as f64 / points.size.element_product();
     let mut order: Vec<DVec2> = points.at.to_vec();
     order.sort_by(|p, q| p.x.total_cmp(&q.x));
     let mut sums = [0.0; STEPS];
@@ -48,10 +46,10 @@ fn pairs(points: &Points, spacing: f64) -> [f64; STEPS] {
                 continue;
             }
             for (step, sum) in sums.iter_mut().enumerate() {
-                // Epanechnikov's kernel; each pair counts from both ends.
+                // Epanechnikov's kernel.
                 let r = (step as f64 + 0.5) / STEPS as f64 * reach;
                 let t = (r - apart.length()) / width;
-                *sum += 2.0 * 0.75 * (1.0 - t * t).max(0.0) / (width * density * density * shown) / TAU;
+                *sum += (1.0 - t * t).max(0.0) / shown;
             }
         }
     }
@@ -79,8 +77,8 @@ mod tests {
         let plain = grid(DVec2::splat(20.0), 0.0, 1);
         assert_eq!(between(&plain, &plain), 0.0);
         assert!(between(&plain, &grid(DVec2::splat(3.0), 0.0, 1)) < 1e-9);
-        assert!(between(&plain, &grid(DVec2::splat(20.0), 4.0, 2)) < 0.25);
-        assert!(between(&plain, &scattered) > 0.7);
+        assert!(between(&plain, &grid(DVec2::splat(20.0), 4.0, 2)) < 0.15);
+        assert!(between(&plain, &scattered) > 0.35);
         // A part of the same grid: the window is corrected for.
         let part: Vec<DVec2> = plain.iter().copied().filter(|p| p.x < 400.0 && p.y < 400.0).collect();
         let part = Points { at: &part, size: DVec2::splat(400.0) };
