@@ -10,18 +10,17 @@ const TILE: usize = 1024;
 
 pub fn tiles() {
     let exemplar = DESIGNS[1].exemplar(512);
-    let mut table = Table::new(["side", "plan s", "tiles s", "ns per texel", "lamps", "peak MiB", "texels off"]);
+    let mut table = Table::new(["side", "plan s", "tiles s", "ns per texel", "lamps", "peak MiB", "values off"]);
     for side in SIDES {
         let params = Params { width: side, height: side, ..Params::default() };
-        // What the whole has in memory is no part of what tiles need.
         let whole = (side <= 4096).then(|| exemplar.run(&params));
-        let before = reset_peak();
+        reset_peak();
         let (planning, plan) = time(Clock::Wall, || plan(&exemplar, &params));
         let (rendering, off) = time(Clock::Wall, || {
             let places = (0..side / TILE).flat_map(|y| (0..side / TILE).map(move |x| (x * TILE, y * TILE)));
             places.map(|(x, y)| differing(&exemplar, &plan, (x, y), whole.as_ref().map(|w| &w.texture))).sum::<usize>()
         });
-        let peak = peak_mib() - before;
+        let peak = peak_mib();
         let seconds = planning + rendering;
         table.row([
             side.to_string(),
@@ -57,19 +56,15 @@ fn differing(exemplar: &Exemplar, plan: &Plan, (x, y): (usize, usize), whole: Op
     .sum()
 }
 
-/// Has the peak of memory begin again; what is in use now, in MiB.
-fn reset_peak() -> f64 {
+/// Has the peak of memory begin again with what is in use now.
+fn reset_peak() {
     // Where the system does not allow it the peak is that of all that went before, which is no less.
     let _ = std::fs::write("/proc/self/clear_refs", "5");
-    status_mib("VmRSS:")
 }
 
+/// The most memory the process had since, all that it holds besides included, in MiB.
 fn peak_mib() -> f64 {
-    status_mib("VmHWM:")
-}
-
-fn status_mib(key: &str) -> f64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let line = status.lines().find_map(|l| l.strip_prefix(key)).unwrap_or("0 kB");
+    let line = status.lines().find_map(|l| l.strip_prefix("VmHWM:")).unwrap_or("");
     line.trim().split(' ').next().and_then(|kib| kib.parse::<f64>().ok()).unwrap_or(f64::NAN) / 1024.0
 }

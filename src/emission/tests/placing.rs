@@ -154,3 +154,27 @@ fn tileable_textures_repeat_without_a_seam() {
     let small = exemplar.run(&Params { width: 9, height: 9, tileable: true, ..Params::default() }).unwrap_err();
     assert_eq!(small.kind, ErrorKind::Degenerate);
 }
+
+#[test]
+fn a_row_goes_on_as_the_exemplar_does_and_again_beside_itself() {
+    // Seven panes in a column, of which the first and the last are short, as in a skylight with its walls.
+    let exemplar = Design::new(100, 480, |x, y| {
+        let pane = ((y - 60.0) / 50.0).floor();
+        let along = (y - 60.0).rem_euclid(50.0);
+        let short = pane == 0.0 || pane == 6.0;
+        (30.0..70.0).contains(&x) && (0.0..7.0).contains(&pane) && along < if short { 20.0 } else { 36.0 }
+    });
+    let result = exemplar.run(&Params { width: 250, height: 960, ..Params::default() }).unwrap();
+    let Continuation::Row([period, across]) = result.continuation else { panic!("{:?}", result.continuation) };
+    assert!((period - DVec2::Y * 50.0).length() < 0.5 && across == DVec2::X * 100.0, "{period} {across}");
+    for (i, &m) in result.mask.data.iter().enumerate().filter(|(i, _)| i % 250 >= 100) {
+        assert_eq!(m, result.mask.data[i - 100]);
+    }
+    // It begins as the exemplar, with all seven, and no pane is cut.
+    let first: Vec<f64> = (result.luminaires.iter())
+        .filter(|l| l.centre.x < 100.0 && l.centre.y < 480.0)
+        .map(|l| (l.area / 40.0).round())
+        .collect();
+    assert_eq!(first[..7], [20.0, 36.0, 36.0, 36.0, 36.0, 36.0, 20.0]);
+    assert!(inner(&result.luminaires, 250, 960).iter().all(|l| [800.0, 1440.0].contains(&l.area)));
+}
