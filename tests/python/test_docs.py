@@ -31,17 +31,33 @@ class Documentation(Case):
         self.assertGreater(attempted, 40)
 
     def test_readme_examples(self):
-        blocks = re.findall(r"```python\n(.*?)```", (PACKAGE / "README.md").read_text(), re.S)
-        self.assertGreater(len(blocks), 4)
+        self.assertGreater(self.run_blocks(PACKAGE / "README.md"), 4)
+        self.assertEqual({p.name for p in self.folder.iterdir()}, {"lit.png", "lit.glb", "layers.exr"})
+
+    def test_the_example_of_the_projects_readme(self):
+        photo, strokes = demo()
+        photo.save(self.folder / "photo.png")
+        strokes.save(self.folder / "strokes.png")
+        luxfer.Scene.demo(context(), "target-room").export(self.folder / "scene.glb")
+        smaller = {"photo.jpg": "photo.png", "640": "64", "360": "36"}
+        self.assertEqual(self.run_blocks(PACKAGE.parent.parent / "README.md", smaller), 1)
+        self.assertEqual(luxfer.Image.load(context(), self.folder / "lit.png").size[:2], (64, 36))
+
+    def run_blocks(self, page, instead=()):
+        """Runs the Python of a page in the test's folder, with some words in place of others; returns the number of blocks."""
+        blocks = re.findall(r"```python\n(.*?)```", page.read_text(), re.S)
         names: dict = {"print": lambda *_: None}
         before = os.getcwd()
         os.chdir(self.folder)
         try:
             for block in blocks:
+                for word in instead:
+                    self.assertIn(word, block)
+                    block = block.replace(word, instead[word])
                 exec(block, names)
         finally:
             os.chdir(before)
-        self.assertEqual({p.name for p in self.folder.iterdir()}, {"lit.png", "lit.glb", "layers.exr"})
+        return len(blocks)
 
     def test_names_of_enumerations_are_right(self):
         """Where a parameter is an enumeration its docstring names members by what they are called, and images all of them."""
