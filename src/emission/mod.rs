@@ -16,6 +16,7 @@
 //! Beyond the paper: the lattice, and lamps as pieces; image quilting alone lets regular patterns drift and cuts lamps; the
 //! colour of lamps that the photo shows clipped ([`clipping`]); lamps kept off where they have no place ([`ground`]);
 //! textures of any size, in tiles of a [`plan`]; and several exemplars in one ([`mod@blend`]).
+//! Not modelled: lamps that are a mixture of two exemplars', and a pattern that bends from one plane into another.
 
 mod blend;
 mod centre;
@@ -243,31 +244,31 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Emission> {
 /// The same with lights of further exemplars where their weights say so. What it tells beside the texture, its lamps and its
 /// statistics is of the first. Errors: as for [`run`]; weights that are not in `[0, 1]`, or add up to more.
 pub fn blend(input: &Input, styles: &[Style], params: &Params, job: Job) -> Result<Emission> {
-    let plan = Plan::new(input, styles, params, job.part(0.0, 0.85))?;
+    let mut plan = Plan::new(input, styles, params, job.part(0.0, 0.85))?;
     let (texture, mask) = plan.tile(input, styles, plan.whole(), job.part(0.85, 0.94))?;
     let components = luminaires::components(&mask)?;
     let luminaires = luminaires::find(&texture, &components, job.part(0.95, 1.0))?;
 
-    let Layer { exemplar, continuation, regularity, metadata, layout, .. } = &plan.layers[0];
-    let periods = if styles.is_empty() { continuation.periods() } else { [None; 2] };
     let inputs = std::iter::once(input).chain(styles.iter().map(|style| &style.input));
     let parts = plan.layers.iter().zip(inputs).enumerate().map(|(k, (layer, input))| {
         let own = layer.exemplar.statistics(input.unwarped, layer.continuation.periods());
         (own.scaled(1.0 / layer.scale), plan.weights.mean(k))
     });
-    let statistics =
-        [Statistics::mixed(parts), statistics_of(&texture, &components, periods.map(|p| p.map(|p| p / params.scale)))];
+    let expected = Statistics::mixed(parts);
+    let Layer { exemplar, continuation, regularity, metadata, layout, .. } = plan.layers.swap_remove(0);
+    let periods = if styles.is_empty() { continuation.periods() } else { [None; 2] };
+    let statistics = [expected, statistics_of(&texture, &components, periods.map(|p| p.map(|p| p / params.scale)))];
     let error = statistics[1].difference(&statistics[0]);
-    let shown = shown_metadata(layout, exemplar, metadata)?;
+    let shown = shown_metadata(&layout, &exemplar, &metadata)?;
     job.report(1.0);
     Ok(Emission {
         texture,
         mask,
-        exemplar_metadata: metadata.clone(),
+        exemplar_metadata: metadata,
         metadata: shown,
         luminaires,
-        continuation: *continuation,
-        regularity: *regularity,
+        continuation,
+        regularity,
         statistics,
         error,
     })

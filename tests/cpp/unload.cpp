@@ -2,8 +2,10 @@
 // would call into code that is gone. The first argument is the library.
 #include <luxfer.h>
 
+#include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <thread>
 
 #include <dlfcn.h>
 
@@ -14,6 +16,17 @@ std::size_t threads_of_this_process() {
     for ([[maybe_unused]] const auto &thread : std::filesystem::directory_iterator("/proc/self/task"))
         ++count;
     return count;
+}
+
+// Whether this thread is the only one within a second: a thread that was joined has run all its code, but the kernel takes a
+// moment to strike it off the list.
+bool is_alone() {
+    for (int tries = 0; threads_of_this_process() != 1; ++tries) {
+        if (tries == 1000)
+            return false;
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    return true;
 }
 
 template <class Function>
@@ -48,7 +61,7 @@ int main(int, char **arguments) {
             std::fprintf(stderr, "round %d: the library could not be used\n", round);
             return 1;
         }
-        if (threads_of_this_process() != 1) {
+        if (!is_alone()) {
             std::fprintf(stderr, "round %d: %zu threads are left\n", round, threads_of_this_process());
             return 1;
         }
