@@ -42,10 +42,10 @@ impl Problem<'_> {
     pub fn solve(&self) -> Result<Vec<f64>> {
         let (m, lambda) = (self.right.len(), self.pull);
         let size = self.right.iter().map(|b| b.abs()).fold(0.0, f64::max);
-        let scale = size.max(norm(&self.gradient(lambda, &vec![0.0; m])));
         let mut z = vec![0.0; m];
+        let mut gradient = self.gradient(lambda, &z);
+        let scale = size.max(norm(&gradient));
         for _ in 0..STEPS {
-            let gradient = self.gradient(lambda, &z);
             if norm(&gradient) <= ROUNDING * scale {
                 return Ok(self.clipped(&z));
             }
@@ -57,9 +57,10 @@ impl Problem<'_> {
             if t > 1.0 - ROUNDING && self.states(&z) == states {
                 return Ok(self.clipped(&z));
             }
+            gradient = self.gradient(lambda, &z);
         }
         // At a bound to rounding an unknown may flicker.
-        if norm(&self.gradient(lambda, &z)) <= FLICKER * scale {
+        if norm(&gradient) <= FLICKER * scale {
             return Ok(self.clipped(&z));
         }
         Err(Error::new(ErrorKind::Internal, "the powers of the groups did not settle"))

@@ -16,7 +16,7 @@ pub use emitter::{Emitter, mean_channel};
 use super::facet::Facet;
 use super::light::Bounds;
 use crate::error::Result;
-use crate::image::try_vec;
+use crate::image::{no_memory, try_vec, try_with_capacity};
 use crate::scene::Scene;
 use glam::Vec2;
 use polygon::uniform_in_triangle;
@@ -119,6 +119,9 @@ impl Emitters {
                 texture.map_or(Vec::new(), |t| tiling.lit_tiles(index as u32, emitter, t, row))
             })
             .collect();
+        let count: usize = lit.iter().map(Vec::len).sum();
+        self.tiles = try_with_capacity(count)?;
+        bounds.try_reserve_exact(count).map_err(|_| no_memory::<Bounds>(count))?;
         for (&(index, _, first, _), tiles) in work.iter().zip(lit) {
             let emitter = &self.emitters[index];
             for LitTile { tile, column, outline } in tiles {
