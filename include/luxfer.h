@@ -1812,7 +1812,8 @@ luxfer_status luxfer_emission_set_photo(luxfer_emission *emission,
                                         const double *to_photo);
 
 /**
- * Starts a job that makes the texture as a whole; luxfer_emission_start_plan does without its memory. params may be NULL for the defaults. The caller releases *job. Any thread.
+ * Starts a job that makes the texture as a whole; luxfer_emission_start_plan does without its memory. params may be NULL for
+ * the defaults. The caller releases *job. Any thread.
  * LUXFER_INVALID_OPERATION if the exemplar is missing or a job runs already. The job may end with LUXFER_DEGENERATE if
  * there are no lights in the exemplar, LUXFER_INVALID_ARGUMENT if sizes differ or a setting is out of range.
  */
@@ -1863,8 +1864,8 @@ luxfer_status luxfer_emission_release(luxfer_emission *emission);
  * Styles and tiles
  *
  * Several exemplars in one texture, and textures that are too large to be made as a whole: luxfer_emission_start_plan decides
- * where every lamp goes, and luxfer_emission_render_tile renders any part. Beside the exemplars a plan holds about 32 bytes per
- * lamp and the outlines of the patches, 30 MiB or so for a texture of 16384 x 16384; no texel of it.
+ * where every lamp goes, and luxfer_emission_render_tile renders any part. Beside the exemplars a plan holds a place for each
+ * lamp and the outlines of the patches, but no texel.
  * ==================================================================================================================== */
 
 /**

@@ -257,6 +257,18 @@ fn texture(stage: &Stage<Inputs, Made>) -> Result<Arc<Emission>> {
     })
 }
 
+/// The images of an exemplar: the unwarped photo, its light, and where both are valid.
+pub(super) fn unwarped_of(
+    context: &Arc<Context>,
+    [unwarped, light, valid]: [*mut luxfer_image; 3],
+) -> Result<[Arc<Pixels>; 3]> {
+    Ok([
+        handle::borrow_in(context, unwarped, "unwarped")?,
+        handle::borrow_in(context, light, "light")?,
+        handle::borrow_in(context, valid, "valid")?,
+    ])
+}
+
 /// A photo and the map into it, or none.
 pub(super) fn photo_of(
     context: &Arc<Context>,
@@ -305,12 +317,7 @@ pub unsafe extern "C" fn luxfer_emission_set_exemplar(
     valid: *mut luxfer_image,
 ) -> luxfer_status {
     enter(emission, |stage| {
-        let context = stage.context();
-        let exemplar = [
-            handle::borrow_in(context, unwarped, "unwarped")?,
-            handle::borrow_in(context, light, "light")?,
-            handle::borrow_in(context, valid, "valid")?,
-        ];
+        let exemplar = unwarped_of(stage.context(), [unwarped, light, valid])?;
         stage.change(|inputs| {
             inputs.unwarped = Some(exemplar);
             Ok(())
@@ -335,7 +342,8 @@ pub unsafe extern "C" fn luxfer_emission_set_photo(
     })
 }
 
-/// Starts a job that makes the texture as a whole; luxfer_emission_start_plan does without its memory. params may be NULL for the defaults. The caller releases *job. Any thread.
+/// Starts a job that makes the texture as a whole; luxfer_emission_start_plan does without its memory. params may be NULL for
+/// the defaults. The caller releases *job. Any thread.
 /// LUXFER_INVALID_OPERATION if the exemplar is missing or a job runs already. The job may end with LUXFER_DEGENERATE if
 /// there are no lights in the exemplar, LUXFER_INVALID_ARGUMENT if sizes differ or a setting is out of range.
 #[unsafe(no_mangle)]

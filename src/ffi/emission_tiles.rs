@@ -1,10 +1,10 @@
 //! Styles and tiles
 //!
 //! Several exemplars in one texture, and textures that are too large to be made as a whole: luxfer_emission_start_plan decides
-//! where every lamp goes, and luxfer_emission_render_tile renders any part. Beside the exemplars a plan holds about 32 bytes per
-//! lamp and the outlines of the patches, 30 MiB or so for a texture of 16384 x 16384; no texel of it.
+//! where every lamp goes, and luxfer_emission_render_tile renders any part. Beside the exemplars a plan holds a place for each
+//! lamp and the outlines of the patches, but no texel.
 
-use super::emission::{Exemplar, Further, Made, luxfer_emission, luxfer_emission_params, photo_of};
+use super::emission::{Exemplar, Further, Made, luxfer_emission, luxfer_emission_params, photo_of, unwarped_of};
 use super::guard::enter;
 use super::handle::{self, Owned};
 use super::image::{Pixels, luxfer_image};
@@ -37,11 +37,7 @@ pub unsafe extern "C" fn luxfer_emission_add_style(
 ) -> luxfer_status {
     enter(emission, |stage| {
         let context = stage.context();
-        let unwarped = [
-            handle::borrow_in(context, unwarped, "unwarped")?,
-            handle::borrow_in(context, light, "light")?,
-            handle::borrow_in(context, valid, "valid")?,
-        ];
+        let unwarped = unwarped_of(context, [unwarped, light, valid])?;
         let exemplar = Exemplar { unwarped, photo: photo_of(context, photo, to_photo)? };
         let weights = handle::borrow_in(context, weights, "weights")?;
         stage.change(|inputs| {
