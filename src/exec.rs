@@ -74,6 +74,16 @@ pub fn for_rows<T: Send>(
     })
 }
 
+/// Calls `work(first, items)` for every run of `length` items, the last of which may be shorter, in parallel, checking for a
+/// cancel request at each; `first` is the number of the run's first item.
+pub fn for_runs<T: Send>(data: &mut [T], length: usize, job: Job, work: impl Fn(usize, &mut [T]) + Sync) -> Result<()> {
+    data.par_chunks_mut(length.max(1)).enumerate().try_for_each(|(run, items)| {
+        job.check()?;
+        work(run * length, items);
+        Ok(())
+    })
+}
+
 /// The same for the rows of three images at once, of `row_len` items each.
 pub fn for_rows_of_three<T: Send>(
     images: [&mut [T]; 3],

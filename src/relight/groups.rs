@@ -88,7 +88,7 @@ pub struct GroupSolution {
 pub fn solve_groups(responses: &Responses, goals: &[Goal], params: &GroupParams, job: Job) -> Result<GroupSolution> {
     check(responses, goals, params)?;
     let system = System { responses, goals, params };
-    let everything = system.means();
+    let everything = system.means(job)?;
     if everything.rows.iter().flatten().all(|r| *r == DVec3::ZERO) {
         return Err(Error::new(
             ErrorKind::Unreachable,
@@ -100,32 +100,53 @@ pub fn solve_groups(responses: &Responses, goals: &[Goal], params: &GroupParams,
     let without = |b| system.solve(&system.means_without(&everything, b));
     let rest = exec::map(BATCHES, job, without)?.into_iter().collect::<Result<Vec<_>>>()?;
 
-    let mut half_width = jackknife(&rest)?;
+    let mut half_width = whole.jackknife(&rest, job)?.colours();
+    let whole = whole.colours();
     let scale = if params.levels.is_empty() { whole.clone() } else { system.stepped(&everything, &whole) };
     for (width, (scale, whole)) in half_width.iter_mut().zip(scale.iter().zip(&whole)) {
         *width += (*scale - *whole).abs();
     }
-    let outcomes: Vec<Outcome> = (0..goals.len()).map(|goal| system.outcome(goal, &scale)).collect();
+    let outcomes = (0..goals.len()).map(|goal| system.outcome(goal, &scale, job)).collect::<Result<Vec<_>>>()?;
     let unreachable = system.explain(&outcomes, &scale);
     Ok(GroupSolution { scale, half_width, outcomes, unreachable })
 }
 
-/// Half-widths of 95 % intervals of the powers, from those without each batch: [`super::estimate::pseudo_values`] of all
-/// groups at once, which spread `n - 1` times as far as the answers that they come from.
-fn jackknife(without: &[Vec<DVec3>]) -> Result<Vec<DVec3>> {
-    let n = BATCHES as f64;
-    let groups = without.first().map_or(0, Vec::len);
-    let mut means = try_vec(groups, DVec3::ZERO)?;
-    for powers in without {
-        means.iter_mut().zip(powers).for_each(|(mean, power)| *mean += power / n);
+/// Groups that are worked on at once, of as many as there may be.
+const RUN: usize = 1024;
+
+/// The power of each group: one list for all channels, or one for each of the three.
+struct Powers(Vec<Vec<f64>>);
+
+impl Powers {
+    fn colours(&self) -> Vec<DVec3> {
+        match self.0.as_slice() {
+            [r, g, b] => r.iter().zip(g).zip(b).map(|((r, g), b)| DVec3::new(*r, *g, *b)).collect(),
+            lists => lists.iter().flatten().map(|x| DVec3::splat(*x)).collect(),
+        }
     }
-    let mut squares = try_vec(groups, DVec3::ZERO)?;
-    for powers in without {
-        let deviations = powers.iter().zip(&means).map(|(power, mean)| power - mean);
-        squares.iter_mut().zip(deviations).for_each(|(square, off)| *square += off * off);
+
+    /// Half-widths of 95 % intervals, from the powers without each batch: [`super::estimate::pseudo_values`] of all groups
+    /// at once, which spread `n - 1` times as far as the answers that they come from.
+    fn jackknife(&self, without: &[Self], job: Job) -> Result<Self> {
+        let n = BATCHES as f64;
+        let width = |list: usize| {
+            let mut widths = try_vec(self.0[list].len(), 0.0)?;
+            exec::for_runs(&mut widths, RUN, job, |first, widths| {
+                let answers = || without.iter().map(|powers| &powers.0[list][first..]);
+                let mut means = [0.0; RUN];
+                for answer in answers() {
+                    means.iter_mut().zip(answer).for_each(|(mean, power)| *mean += power / n);
+                }
+                for answer in answers() {
+                    let off = answer.iter().zip(&means).map(|(power, mean)| power - mean);
+                    widths.iter_mut().zip(off).for_each(|(sum, off)| *sum += off * off);
+                }
+                widths.iter_mut().for_each(|square| *square = STUDENT_T * (*square * (n - 1.0) / n).sqrt());
+            })?;
+            Ok(widths)
+        };
+        (0..self.0.len()).map(width).collect::<Result<_>>().map(Self)
     }
-    let width = |square: DVec3| square.map(|s| STUDENT_T * (s * (n - 1.0) / n).sqrt());
-    Ok(squares.into_iter().map(width).collect())
 }
 
 fn check(responses: &Responses, goals: &[Goal], params: &GroupParams) -> Result<()> {
@@ -201,19 +222,24 @@ struct Measured {
 
 impl System<'_> {
     /// Of all batches.
-    fn means(&self) -> Measured {
+    fn means(&self, job: Job) -> Result<Measured> {
         let n = BATCHES as f64;
         let mean = |goal: usize| {
-            let mut sums = vec![DVec3::ZERO; self.responses.lamps()];
-            for b in 0..BATCHES {
-                sums.iter_mut().zip(self.responses.batch(goal, b)).for_each(|(s, r)| *s += *r);
-            }
-            sums.iter_mut().for_each(|s| *s /= n);
-            sums
+            let mut means = try_vec(self.responses.lamps(), DVec3::ZERO)?;
+            exec::for_runs(&mut means, RUN, job, |first, means| {
+                for b in 0..BATCHES {
+                    means.iter_mut().zip(&self.responses.batch(goal, b)[first..]).for_each(|(s, r)| *s += *r);
+                }
+                means.iter_mut().for_each(|s| *s /= n);
+            })?;
+            Ok(means)
         };
         let background = |goal| (0..BATCHES).map(|b| self.responses.background_of_batch(goal, b)).sum::<DVec3>() / n;
         let goals = 0..self.goals.len();
-        Measured { rows: goals.clone().map(mean).collect(), background: goals.map(background).collect() }
+        Ok(Measured {
+            rows: goals.clone().map(mean).collect::<Result<_>>()?,
+            background: goals.map(background).collect(),
+        })
     }
 
     /// Of all batches but one.
@@ -233,7 +259,7 @@ impl System<'_> {
         }
     }
 
-    fn solve(&self, measured: &Measured) -> Result<Vec<DVec3>> {
+    fn solve(&self, measured: &Measured) -> Result<Powers> {
         let upper = self.upper();
         self.by_channels(|channels| self.equations(measured, channels).solve(&upper, self.params.evenness))
     }
@@ -249,7 +275,7 @@ impl System<'_> {
             Ok(Terms { matrix, right, senses }.round(&x, &levels, &upper))
         };
         // Rounding cannot fail.
-        self.by_channels(round).unwrap_or_else(|_| whole.to_vec())
+        self.by_channels(round).map_or_else(|_| whole.to_vec(), |powers| powers.colours())
     }
 
     /// Largest power of each group.
@@ -258,14 +284,12 @@ impl System<'_> {
     }
 
     /// What a solution for some channels says of all.
-    fn by_channels(&self, solve: impl Fn(&[usize]) -> Result<Vec<f64>>) -> Result<Vec<DVec3>> {
-        match self.params.colour {
-            Colour::Kept => Ok(solve(&[0, 1, 2])?.into_iter().map(DVec3::splat).collect()),
-            Colour::Free => {
-                let (r, g, b) = (solve(&[0])?, solve(&[1])?, solve(&[2])?);
-                Ok((0..r.len()).map(|i| DVec3::new(r[i], g[i], b[i])).collect())
-            }
-        }
+    fn by_channels(&self, solve: impl Fn(&[usize]) -> Result<Vec<f64>>) -> Result<Powers> {
+        let channels: &[&[usize]] = match self.params.colour {
+            Colour::Kept => &[&[0, 1, 2]],
+            Colour::Free => &[&[0], &[1], &[2]],
+        };
+        channels.iter().map(|channels| solve(channels)).collect::<Result<_>>().map(Powers)
     }
 
     /// All goals in some channels.
@@ -290,13 +314,11 @@ impl System<'_> {
         equations
     }
 
-    fn outcome(&self, goal: usize, scale: &[DVec3]) -> Outcome {
-        let light: Vec<DVec3> = (0..BATCHES)
-            .map(|b| {
-                let lamps = self.responses.batch(goal, b).iter().zip(scale).map(|(r, x)| r * x).sum::<DVec3>();
-                lamps + self.responses.background_of_batch(goal, b)
-            })
-            .collect();
+    fn outcome(&self, goal: usize, scale: &[DVec3], job: Job) -> Result<Outcome> {
+        let light = exec::map(BATCHES, job, |b| {
+            let lamps = self.responses.batch(goal, b).iter().zip(scale).map(|(r, x)| r * x).sum::<DVec3>();
+            lamps + self.responses.background_of_batch(goal, b)
+        })?;
         let light = |b: usize| light[b];
         let all = Estimate::of(light);
         let goal_of = &self.goals[goal];
@@ -318,7 +340,7 @@ impl System<'_> {
             Aspect::Colour => std::array::from_fn(|c| judge(DVec3::AXES[c], goal_of.sense[c])),
             Aspect::Luminance => [judge(LUMINANCE, goal_of.sense[0]); 3],
         };
-        Outcome { achieved: all.mean, half_width: all.half_width(), reach }
+        Ok(Outcome { achieved: all.mean, half_width: all.half_width(), reach })
     }
 
     /// The reason why goals are missed.

@@ -5,10 +5,10 @@ use super::estimate::{BATCHES, STUDENT_T, mean, standard_error};
 use super::lamps::Lamps;
 use super::sided::Sense;
 use super::target::Sampler;
-use super::transport::{Batches, Stop};
+use super::transport::{Batches, Means, Stop};
 use super::{Params, Place, Quantity};
 use crate::error::{Error, Result};
-use crate::image::try_with_capacity;
+use crate::image::try_vec;
 use crate::job::Job;
 use crate::render::World;
 use glam::{DVec3, Vec3};
@@ -80,8 +80,8 @@ pub struct Responses {
 
 #[derive(Clone, Debug)]
 struct PerGoal {
-    /// Mean radiance under each lamp: `lamps` of one batch after those of another.
-    lamps: Vec<DVec3>,
+    /// Of each batch the mean radiance under each lamp.
+    batches: Vec<Vec<DVec3>>,
     background: Vec<DVec3>,
 }
 
@@ -132,7 +132,7 @@ pub fn lamp_responses(
             Some(more) => growth = more,
             None => {
                 job.report(1.0);
-                let goals = batches.iter().map(|b| PerGoal::new(b, lamps.count())).collect::<Result<_>>()?;
+                let goals = batches.into_iter().map(|b| PerGoal::new(b.into_means())).collect();
                 return Ok(Responses { lamps: lamps.count(), goals, paths });
             }
         }
@@ -146,10 +146,9 @@ fn error_of_all(batches: &Batches) -> f64 {
 }
 
 impl PerGoal {
-    fn new(batches: &Batches, lamps: usize) -> Result<Self> {
-        let mut all = try_with_capacity(lamps * BATCHES)?;
-        (0..BATCHES).for_each(|batch| all.extend(batches.mean_of_bins(batch)));
-        Ok(Self { lamps: all, background: (0..BATCHES).map(|batch| batches.mean_of_others(batch)).collect() })
+    fn new(means: Vec<Means>) -> Self {
+        let background = means.iter().map(|m| m.others).collect();
+        Self { batches: means.into_iter().map(|m| m.bins).collect(), background }
     }
 }
 
@@ -180,7 +179,7 @@ impl Responses {
 
     /// What one batch says of each lamp.
     pub(super) fn batch(&self, goal: usize, batch: usize) -> &[DVec3] {
-        &self.goals[goal].lamps[batch * self.lamps..][..self.lamps]
+        &self.goals[goal].batches[batch]
     }
 
     pub(super) fn background_of_batch(&self, goal: usize, batch: usize) -> DVec3 {
@@ -201,15 +200,16 @@ impl Responses {
         if let Some(group) = group_of.iter().find(|g| **g as usize >= groups) {
             return Err(Error::argument(format!("a lamp is in group {group}; there are {groups}")));
         }
-        let gather = |per: &PerGoal| {
-            let mut sums = vec![DVec3::ZERO; groups * BATCHES];
-            for (batch, lamps) in per.lamps.chunks_exact(self.lamps).enumerate() {
-                for (lamp, light) in lamps.iter().enumerate() {
-                    sums[batch * groups + group_of[lamp] as usize] += *light;
-                }
-            }
-            PerGoal { lamps: sums, background: per.background.clone() }
+        let gather_batch = |lamps: &Vec<DVec3>| {
+            let mut sums = try_vec(groups, DVec3::ZERO)?;
+            lamps.iter().zip(group_of).for_each(|(light, group)| sums[*group as usize] += *light);
+            Ok(sums)
         };
-        Ok(Self { lamps: groups, goals: self.goals.iter().map(gather).collect(), paths: self.paths })
+        let gather = |per: &PerGoal| {
+            let batches = per.batches.iter().map(gather_batch).collect::<Result<_>>()?;
+            Ok(PerGoal { batches, background: per.background.clone() })
+        };
+        let goals = self.goals.iter().map(gather).collect::<Result<_>>()?;
+        Ok(Self { lamps: groups, goals, paths: self.paths })
     }
 }

@@ -101,10 +101,13 @@ impl Problem<'_> {
 
     /// The answer if just these terms count, on either side.
     fn with(&self, counting: &[bool], pull: f64) -> Result<Vec<f64>> {
-        let rows = || (0..self.right.len()).filter(|&i| counting[i]);
+        let Self { matrix, right, preferred, upper, .. } = *self;
+        if counting.iter().all(|counts| *counts) {
+            return bounded::Problem { matrix, right, pull, preferred, upper }.solve();
+        }
+        let rows = || (0..right.len()).filter(|&i| counting[i]);
         let matrix: Vec<f64> = rows().flat_map(|i| self.row(i).iter().copied()).collect();
-        let right: Vec<f64> = rows().map(|i| self.right[i]).collect();
-        let (preferred, upper) = (self.preferred, self.upper);
+        let right: Vec<f64> = rows().map(|i| right[i]).collect();
         bounded::Problem { matrix: &matrix, right: &right, pull, preferred, upper }.solve()
     }
 

@@ -11,6 +11,7 @@ use crate::job::Job;
 use crate::render::World;
 use crate::rng::{Rng, hash};
 use glam::DVec3;
+use rayon::prelude::*;
 use std::time::Instant;
 
 /// Paths of a batch in the first round.
@@ -145,23 +146,25 @@ impl<'a> Batches<'a> {
         batch.bins.iter().map(|sum| sum / f64::from(batch.count.max(1)))
     }
 
-    /// Mean per path of a batch of what all other lights bring.
-    pub fn mean_of_others(&self, batch: usize) -> DVec3 {
-        self.batches[batch].others / f64::from(self.batches[batch].count.max(1))
-    }
-
     /// Mean per path of what each bin and all other lights bring, of each batch.
     pub fn means(&self) -> Vec<Means> {
-        let mean = |batch: &Batch| {
-            let n = f64::from(batch.count.max(1));
-            let pairs = Pairs { own: batch.pairs.own / (n / 2.0), cross: batch.pairs.cross / (n / 2.0) };
-            Means { bins: batch.bins.iter().map(|sum| sum / n).collect(), others: batch.others / n, pairs }
-        };
-        self.batches.iter().map(mean).collect()
+        self.batches.iter().cloned().map(Batch::into_means).collect()
+    }
+
+    /// The same when no more paths are to follow.
+    pub fn into_means(self) -> Vec<Means> {
+        self.batches.into_par_iter().map(Batch::into_means).collect()
     }
 }
 
 impl Batch {
+    fn into_means(self) -> Means {
+        let Self { mut bins, others, pairs: Pairs { own, cross }, count } = self;
+        let n = f64::from(count.max(1));
+        bins.iter_mut().for_each(|sum| *sum /= n);
+        Means { bins, others: others / n, pairs: Pairs { own: own / (n / 2.0), cross: cross / (n / 2.0) } }
+    }
+
     fn extend(
         &mut self,
         world: &World,

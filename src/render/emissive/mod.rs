@@ -21,7 +21,7 @@ use crate::scene::Scene;
 use glam::Vec2;
 use polygon::uniform_in_triangle;
 use rayon::prelude::*;
-use tiles::{LitTile, Tile, Tiling};
+use tiles::{Tile, Tiling};
 
 /// No piece, no tiling.
 const NONE: u32 = u32::MAX;
@@ -92,7 +92,7 @@ impl Emitters {
             if intensity > 0.0 && intensity.is_finite() {
                 self.divisions[index] = Division::Even(self.even.len() as u32);
                 self.even.push(Even { emitter: index as u32, intensity });
-                bounds.push(Bounds::of_surface(&emitter.corners, emitter.normal, emitter.double_sided, intensity));
+                bounds.push(Bounds::of_surface(emitter.corners, emitter.normal, emitter.double_sided, intensity));
             }
         }
     }
@@ -100,36 +100,46 @@ impl Emitters {
     /// A piece for every tile that emits.
     fn add_tiled(&mut self, scene: &Scene, bounds: &mut Vec<Bounds>) -> Result<()> {
         // Rows of tiles are the units of work; those of an emitter follow each other.
-        let mut work = Vec::new();
+        let mut rows = Vec::new();
         let mut count = 0;
         for (index, division) in self.divisions.iter_mut().enumerate() {
-            if let Division::Tiled { tiling, first } = division {
+            if let Division::Tiled { tiling, first } = division
+                && let Some(texture) = self.emitters[index].texture
+            {
                 *first = count;
                 let tiling = &self.tilings[*tiling as usize];
-                work.extend((0..tiling.rows).map(|row| (index, row, count + row * tiling.columns, tiling)));
+                rows.extend((0..tiling.rows).map(|row| (index, &scene.textures[texture], tiling, row)));
                 count += tiling.rows * tiling.columns;
             }
         }
         self.piece_of_tile = try_vec(count, NONE)?;
-        let lit: Vec<Vec<LitTile>> = work
+        let columns: Vec<Vec<usize>> = rows
             .par_iter()
-            .map(|&(index, row, _, tiling)| {
-                let emitter = &self.emitters[index];
-                let texture = emitter.texture.map(|t| &scene.textures[t]);
-                texture.map_or(Vec::new(), |t| tiling.lit_tiles(index as u32, emitter, t, row))
+            .map(|&(_, texture, tiling, row)| {
+                (0..tiling.columns).filter(|&column| tiling.may_emit(texture, [column, row])).collect()
             })
             .collect();
-        let count: usize = lit.iter().map(Vec::len).sum();
-        self.tiles = try_with_capacity(count)?;
-        bounds.try_reserve_exact(count).map_err(|_| no_memory::<Bounds>(count))?;
-        for (&(index, _, first, _), tiles) in work.iter().zip(lit) {
-            let emitter = &self.emitters[index];
-            for LitTile { tile, column, outline } in tiles {
-                self.piece_of_tile[first + column] = (self.even.len() + self.tiles.len()) as u32;
-                bounds.push(Bounds::of_surface(&outline, emitter.normal, emitter.double_sided, tile.intensity));
-                self.tiles.push(tile);
+        let mut work = try_with_capacity(columns.iter().map(Vec::len).sum())?;
+        for (&(index, texture, tiling, row), columns) in rows.iter().zip(&columns) {
+            work.extend(columns.iter().map(|&column| (index, texture, tiling, [column, row])));
+        }
+        let (mut tiles, mut light) = (try_with_capacity(work.len())?, try_with_capacity(work.len())?);
+        work.par_iter()
+            .map(|&(index, texture, tiling, place)| tiling.tile(index as u32, &self.emitters[index], texture, place))
+            .unzip_into_vecs(&mut tiles, &mut light);
+
+        // Of some only texels beside the triangle shine.
+        tiles.retain(|tile| tile.intensity > 0.0);
+        light.retain(|bounds| bounds.intensity > 0.0);
+        for (tile, piece) in tiles.iter().zip(self.even.len() as u32..) {
+            if let Division::Tiled { tiling, first } = self.divisions[tile.emitter as usize] {
+                let columns = self.tilings[tiling as usize].columns;
+                self.piece_of_tile[first + tile.row as usize * columns + tile.column as usize] = piece;
             }
         }
+        self.tiles = tiles;
+        bounds.try_reserve_exact(light.len()).map_err(|_| no_memory::<Bounds>(light.len()))?;
+        bounds.append(&mut light);
         Ok(())
     }
 

@@ -5,8 +5,9 @@
 
 use super::emitter::Emitter;
 use super::polygon::{Overlap, Polygon, Rectangle};
+use crate::render::light::Bounds;
 use crate::scene::Texture;
-use glam::{DMat2, DVec2, Vec2, Vec3};
+use glam::{DMat2, DVec2, Vec2};
 
 /// Texels along the side of a tile.
 pub const SIDE: usize = 8;
@@ -36,19 +37,12 @@ pub struct Tile {
     pub emitter: u32,
     /// Emission times area, mean of the channels: luminous intensity (cd) head-on.
     pub intensity: f32,
-    column: u32,
-    row: u32,
+    pub column: u32,
+    pub row: u32,
     /// Whether the triangle covers all of it.
     whole: bool,
     /// Share of the tile's light that comes from its texels up to and including each, row by row.
     shares: [f32; SIDE * SIDE],
-}
-
-/// A tile with its column, and with corners of a part of the triangle's plane that holds all of the tile's light.
-pub struct LitTile {
-    pub tile: Tile,
-    pub column: usize,
-    pub outline: Vec<Vec3>,
 }
 
 impl Tiling {
@@ -87,37 +81,37 @@ impl Tiling {
         tile(texel.y, self.start[1], self.rows) * self.columns + tile(texel.x, self.start[0], self.columns)
     }
 
-    /// The tiles of a row that emit.
-    pub fn lit_tiles(&self, index: u32, emitter: &Emitter, texture: &Texture, row: usize) -> Vec<LitTile> {
-        let doubled = (self.triangle[1] - self.triangle[0]).perp_dot(self.triangle[2] - self.triangle[0]).abs();
-        let scale = 2.0 * f64::from(emitter.area) / doubled;
-        let tile = |column| self.tile(emitter, texture, column, row, scale);
-        let with_index = |lit: LitTile| LitTile { tile: Tile { emitter: index, ..lit.tile }, ..lit };
-        (0..self.columns).filter_map(tile).map(with_index).collect()
+    /// Whether the triangle covers some of a tile that may emit: most lie between the lamps, and are seen to be dark at a
+    /// glance.
+    pub fn may_emit(&self, texture: &Texture, [column, row]: [usize; 2]) -> bool {
+        let first = self.first_texel(column, row);
+        rectangle(first, SIDE as f64).overlap(&self.triangle) != Overlap::None
+            && !self.within(first).is_some_and(|texel| texture.is_black(texel, SIDE))
     }
 
-    /// `scale` is the area in m² of a texel.
-    fn tile(&self, emitter: &Emitter, texture: &Texture, column: usize, row: usize, scale: f64) -> Option<LitTile> {
-        let first = self.first_texel(column, row);
-        let overlap = rectangle(first, SIDE as f64).overlap(&self.triangle);
-        if overlap == Overlap::None {
-            return None;
-        }
-        // Most tiles lie between the lamps: they are seen to be dark at a glance.
+    /// The texture's texel that a tile starts with, if all of the tile lies within the texture.
+    fn within(&self, first: DVec2) -> Option<[usize; 2]> {
         let last = first + (SIDE - 1) as f64;
         let within = first.min_element() >= 0.0 && last.x < f64::from(self.size.x) && last.y < f64::from(self.size.y);
-        let [x, y] = [first.x as usize, first.y as usize];
-        if within && texture.is_black([x, y], SIDE) {
-            return None;
-        }
+        within.then_some([first.x as usize, first.y as usize])
+    }
+
+    /// A tile of the emitter number `index` and the bounds of its light; of no intensity if it turns out to be dark.
+    pub fn tile(&self, index: u32, emitter: &Emitter, texture: &Texture, [column, row]: [usize; 2]) -> (Tile, Bounds) {
+        let first = self.first_texel(column, row);
+        let overlap = rectangle(first, SIDE as f64).overlap(&self.triangle);
+        let within = self.within(first);
+        // Area in m² of a texel.
+        let doubled = (self.triangle[1] - self.triangle[0]).perp_dot(self.triangle[2] - self.triangle[0]).abs();
+        let scale = 2.0 * f64::from(emitter.area) / doubled;
         let mut sums = [0.0f64; SIDE * SIDE];
         let mut sum = 0.0;
         let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
         for (i, running) in sums.iter_mut().enumerate() {
             let texel = first + DVec2::new((i % SIDE) as f64, (i / SIDE) as f64);
             let colour = match within {
-                true => texture.texel(x + i % SIDE, y + i / SIDE),
-                false => texture.continued(texel.as_vec2()),
+                Some([x, y]) => texture.texel(x + i % SIDE, y + i / SIDE),
+                None => texture.continued(texel.as_vec2()),
             };
             let emission = emitter.emission_of_texel(colour);
             if emission > 0.0 {
@@ -129,16 +123,14 @@ impl Tiling {
             }
             *running = sum;
         }
-        let intensity = sum as f32;
-        if !(intensity > 0.0 && intensity.is_finite()) {
-            return None;
-        }
+        let intensity = if (sum as f32).is_finite() { sum as f32 } else { 0.0 };
+        // What holds all of the tile's light.
         let lit = Polygon::clipped(&self.triangle, &Rectangle { low, high });
-        let outline = lit.corners().iter().map(|&p| emitter.point(self.barycentric(p))).collect();
+        let corners = lit.corners().iter().map(|&p| emitter.point(self.barycentric(p)));
+        let bounds = Bounds::of_surface(corners, emitter.normal, emitter.double_sided, intensity);
         let shares = sums.map(|s| (s / sum) as f32);
         let whole = overlap == Overlap::Whole;
-        let tile = Tile { emitter: 0, intensity, column: column as u32, row: row as u32, whole, shares };
-        Some(LitTile { tile, column, outline })
+        (Tile { emitter: index, intensity, column: column as u32, row: row as u32, whole, shares }, bounds)
     }
 
     /// Area of the triangle's part of a rectangle, in texels.

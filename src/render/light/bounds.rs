@@ -35,9 +35,11 @@ const ALL_AROUND: f32 = PI + FRAC_PI_2;
 
 impl Bounds {
     /// A flat surface with some of its points, which enclose it.
-    pub fn of_surface(points: &[Vec3], normal: Vec3, two_sided: bool, intensity: f32) -> Self {
-        let low = points.iter().fold(Vec3::INFINITY, |a, &p| a.min(p));
-        let high = points.iter().fold(Vec3::NEG_INFINITY, |a, &p| a.max(p));
+    pub fn of_surface(points: impl IntoIterator<Item = Vec3>, normal: Vec3, two_sided: bool, intensity: f32) -> Self {
+        let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+        for point in points {
+            (low, high) = (low.min(point), high.max(point));
+        }
         Self { low, high, axis: normal, reach: FRAC_PI_2, two_sided, intensity }
     }
 

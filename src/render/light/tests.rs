@@ -37,7 +37,7 @@ fn lights(count: usize, offset: Vec3, rng: &mut Rng) -> Vec<(Bounds, [Vec3; 3])>
                 let corners = [place, place + direction(rng) * size, place + direction(rng) * size];
                 let [a, b, c] = corners.map(|p| p.as_dvec3());
                 let normal = (b - a).cross(c - a).normalize().as_vec3();
-                (Bounds::of_surface(&corners, normal, kind > 5, intensity), corners)
+                (Bounds::of_surface(corners, normal, kind > 5, intensity), corners)
             }
         }
     };
@@ -211,7 +211,7 @@ fn near_lamps_are_preferred_to_far_ones_and_those_behind_are_left_out() {
     // A ceiling of 40 × 40 lamps, 3 m above.
     let lamp = |i: usize| {
         let corner = Vec3::new((i % 40) as f32, 3.0, (i / 40) as f32);
-        Bounds::of_surface(&[corner, corner + Vec3::new(0.1, 0.0, 0.1)], Vec3::NEG_Y, false, 1.0)
+        Bounds::of_surface([corner, corner + Vec3::new(0.1, 0.0, 0.1)], Vec3::NEG_Y, false, 1.0)
     };
     let bounds: Vec<Bounds> = (0..1600).map(lamp).collect();
     let tree = LightTree::build(&bounds).unwrap();

@@ -9,14 +9,13 @@ use super::bounds::{Bounds, BoundsLanes, LANES, Receiver};
 use crate::error::Result;
 use crate::image::{try_collect, try_vec};
 use glam::{Vec3, Vec3A};
-use rayon::prelude::*;
 
 /// Bins in which a split is looked for along each axis.
 const BINS: usize = 12;
 /// Splits deeper than this halve the number of lights, whatever the heuristic says.
-const MAX_HEURISTIC_DEPTH: u32 = 16;
+const MAX_HEURISTIC_DEPTH: u32 = 48;
 /// Clusters smaller than this are split on one thread.
-const PARALLEL_FROM: usize = 2048;
+const PARALLEL_FROM: usize = 1024;
 /// No node above, no child.
 const NONE: u32 = u32::MAX;
 /// Marks children that are lights.
@@ -50,10 +49,14 @@ struct Item {
     light: u32,
 }
 
-/// The tree as it grows.
-enum Branch {
-    Light(u32, Bounds),
-    Cluster(Vec<Branch>, Bounds),
+/// A cluster of several lights, divided in two. In the list of all clusters it stands at the number of its second part's
+/// first light, which is that of no other cluster.
+#[derive(Clone, Copy, Default)]
+struct Halved {
+    /// What there is to gain by dividing it.
+    cost: f32,
+    /// Where the two parts stand in the list; of a part that is a light its number, marked.
+    parts: [u32; 2],
 }
 
 impl LightTree {
@@ -72,33 +75,44 @@ impl LightTree {
             light,
         };
         let mut items = try_collect(lights.iter().zip(0..).map(item))?;
+        let mut halved = try_vec(lights.len(), Halved::default())?;
+        let root = halve(&mut items, &mut halved, 0, 0);
         tree.places = try_vec(lights.len(), NONE)?;
-        let whole = Bounds::union(lights);
-        let root = Branch::Cluster(grow(&mut items, 0), whole);
         // Intensities relative to their sum and distances to the scene's size keep importances far from overflow.
+        let whole = Bounds::union(lights);
         tree.nearest = (whole.radius() * 1e-9).powi(2).max(1e-30);
-        tree.add(&root, NONE, 1.0 / whole.intensity.max(f32::MIN_POSITIVE));
+        tree.add(&items, &halved, root, NONE, 1.0 / whole.intensity.max(f32::MIN_POSITIVE));
         Ok(tree)
     }
 
-    /// Lays a cluster out, each node before the nodes under it.
-    fn add(&mut self, branch: &Branch, parent: u32, scale: f32) -> u32 {
-        match branch {
-            Branch::Light(light, _) => {
-                self.places[*light as usize] = parent;
-                LIGHT | light
-            }
-            Branch::Cluster(branches, _) => {
-                let index = self.nodes.len() as u32;
-                let bounds = branches.iter().map(|(Branch::Light(_, b) | Branch::Cluster(_, b))| *b);
-                self.nodes.push(Node { bounds: BoundsLanes::new(bounds, scale), children: [NONE; LANES], parent });
-                for (lane, branch) in branches.iter().enumerate() {
-                    self.nodes[index as usize].children[lane] =
-                        self.add(branch, index * LANES as u32 + lane as u32, scale);
-                }
-                index
-            }
+    /// Lays a cluster out, each node before the nodes under it. Returns what it is as a child, and its bounds.
+    fn add(&mut self, items: &[Item], halved: &[Halved], cluster: u32, place: u32, scale: f32) -> (u32, Bounds) {
+        if cluster & LIGHT != 0 {
+            let item = &items[(cluster & !LIGHT) as usize];
+            self.places[item.light as usize] = place;
+            return (LIGHT | item.light, item.bounds);
         }
+        // The parts with the most to gain are divided until there are eight, or each is a light.
+        let mut parts = vec![cluster];
+        while parts.len() < LANES {
+            let divisible = (0..parts.len()).filter(|&i| parts[i] & LIGHT == 0);
+            let cost = |i: usize| halved[parts[i] as usize].cost;
+            let Some(most) = divisible.max_by(|&a, &b| cost(a).total_cmp(&cost(b))) else { break };
+            let two = halved[parts[most] as usize].parts;
+            parts.splice(most..=most, two);
+        }
+        let index = self.nodes.len();
+        let mut children = [NONE; LANES];
+        self.nodes.push(Node { bounds: BoundsLanes::new([], scale), children, parent: place });
+        let mut bounds = Vec::with_capacity(LANES);
+        for (lane, part) in parts.into_iter().enumerate() {
+            let (child, of_child) = self.add(items, halved, part, (index * LANES + lane) as u32, scale);
+            children[lane] = child;
+            bounds.push(of_child);
+        }
+        let node = &mut self.nodes[index];
+        (node.children, node.bounds) = (children, BoundsLanes::new(bounds.iter().copied(), scale));
+        (index as u32, Bounds::union(&bounds))
     }
 
     /// A light by its importance, the probability of the choice, and where within its share `u` fell, in `[0, 1)`.
@@ -160,36 +174,22 @@ impl LightTree {
     }
 }
 
-/// The parts of a cluster, split until there are eight or each is a light.
-fn grow(items: &mut [Item], depth: u32) -> Vec<Branch> {
-    fn with_cost(part: &mut [Item]) -> (f32, &mut [Item]) {
-        (Extent::of_all(part).cost(), part)
+/// Divides a cluster down to its lights, in parallel, and returns where it stands in the list, of which `halved` are the
+/// places from its `first` light on.
+fn halve(items: &mut [Item], halved: &mut [Halved], first: usize, depth: u32) -> u32 {
+    if items.len() == 1 {
+        return LIGHT | first as u32;
     }
-    let mut parts: Vec<(f32, &mut [Item])> = vec![with_cost(items)];
-    while parts.len() < LANES {
-        // Next, the part with the most to gain.
-        let divisible = (0..parts.len()).filter(|&i| parts[i].1.len() > 1);
-        let Some(most) = divisible.max_by(|&a, &b| parts[a].0.total_cmp(&parts[b].0)) else { break };
-        let part = parts.remove(most).1;
-        let at = if depth < MAX_HEURISTIC_DEPTH { split(part) } else { part.len() / 2 };
-        let (left, right) = part.split_at_mut(at);
-        parts.insert(most, with_cost(right));
-        parts.insert(most, with_cost(left));
-    }
-    let branch = |(_, part): (f32, &mut [Item])| match part {
-        [item] => Branch::Light(item.light, item.bounds),
-        _ => {
-            let branches = grow(part, depth + 1);
-            let bounds: Vec<Bounds> = branches.iter().map(|(Branch::Light(_, b) | Branch::Cluster(_, b))| *b).collect();
-            Branch::Cluster(branches, Bounds::union(&bounds))
-        }
-    };
-    let count: usize = parts.iter().map(|p| p.1.len()).sum();
-    if count < PARALLEL_FROM {
-        parts.into_iter().map(branch).collect()
-    } else {
-        parts.into_par_iter().map(branch).collect()
-    }
+    let extent = Extent::of_all(items);
+    let at = if depth < MAX_HEURISTIC_DEPTH { split(items) } else { items.len() / 2 };
+    let in_parallel = items.len() >= PARALLEL_FROM;
+    let (left, right) = items.split_at_mut(at);
+    let (halved_left, halved_right) = halved.split_at_mut(at);
+    let mut halve_left = || halve(left, halved_left, first, depth + 1);
+    let mut halve_right = || halve(right, halved_right, first + at, depth + 1);
+    let parts = if in_parallel { rayon::join(halve_left, halve_right) } else { (halve_left(), halve_right()) };
+    halved_right[0] = Halved { cost: extent.cost(), parts: parts.into() };
+    (first + at) as u32
 }
 
 /// What the heuristic knows of a cluster.
@@ -246,11 +246,18 @@ impl Extent {
 fn split(items: &mut [Item]) -> usize {
     let low = items.iter().fold(Vec3A::INFINITY, |a, i| a.min(i.centre));
     let high = items.iter().fold(Vec3A::NEG_INFINITY, |a, i| a.max(i.centre));
+    let binning = [0, 1, 2].map(|axis| Binning::new(low[axis], high[axis]));
+    let mut bins = [[Extent::NOTHING; BINS]; 3];
+    // Lamps of a ceiling do not differ in height.
+    let axes = (0..3).filter(|&axis| binning[axis].scale > 0.0);
+    for item in items.iter() {
+        for axis in axes.clone() {
+            bins[axis][binning[axis].bin(item.centre[axis])].merge(&item.extent);
+        }
+    }
     let mut best = (f32::INFINITY, 0, 0);
-    for axis in 0..3 {
-        let Some(bin_of) = binning(low[axis], high[axis]) else { continue };
-        let mut bins = [Extent::NOTHING; BINS];
-        items.iter().for_each(|item| bins[bin_of(item.centre[axis])].merge(&item.extent));
+    for axis in axes {
+        let bins = &bins[axis];
         // Costs of what lies above each bin, then of both sides.
         let mut above = [0.0; BINS];
         let mut extent = Extent::NOTHING;
@@ -268,18 +275,27 @@ fn split(items: &mut [Item]) -> usize {
         }
     }
     let (cost, axis, bin) = best;
-    if cost < f32::INFINITY
-        && let Some(bin_of) = binning(low[axis], high[axis])
-    {
-        return partition(items, |item| bin_of(item.centre[axis]) < bin);
+    if cost < f32::INFINITY {
+        return partition(items, |item| binning[axis].bin(item.centre[axis]) < bin);
     }
     items.len() / 2
 }
 
-/// The bin of a coordinate between two ends; none if they are the same.
-fn binning(low: f32, high: f32) -> Option<impl Fn(f32) -> usize> {
-    let scale = BINS as f32 / (high - low);
-    (scale > 0.0 && scale.is_finite()).then_some(move |x: f32| (((x - low) * scale) as usize).min(BINS - 1))
+/// The bins of coordinates between two ends; one alone if they are the same.
+struct Binning {
+    low: f32,
+    scale: f32,
+}
+
+impl Binning {
+    fn new(low: f32, high: f32) -> Self {
+        let scale = BINS as f32 / (high - low);
+        Self { low, scale: if scale.is_finite() { scale } else { 0.0 } }
+    }
+
+    fn bin(&self, x: f32) -> usize {
+        (((x - self.low) * self.scale) as usize).min(BINS - 1)
+    }
 }
 
 /// Moves the items that belong first to the front and returns how many they are.
