@@ -1,6 +1,6 @@
 //! Textures too large to be made as a whole: time and memory over their size, and whether tiles have the bits of the whole.
 
-use crate::harness::{Clock, Table, figure, time};
+use crate::harness::{Clock, Table, absent, figure, forget_peak_memory, peak_memory, time};
 use crate::{DESIGNS, Exemplar};
 use luxfer::emission::{Params, Plan, Tile};
 use luxfer::job::Monitor;
@@ -14,13 +14,14 @@ pub fn tiles() {
     for side in SIDES {
         let params = Params { width: side, height: side, ..Params::default() };
         let whole = (side <= 4096).then(|| exemplar.run(&params));
-        reset_peak();
+        forget_peak_memory();
         let (planning, plan) = time(Clock::Wall, || plan(&exemplar, &params));
         let (rendering, off) = time(Clock::Wall, || {
             let places = (0..side / TILE).flat_map(|y| (0..side / TILE).map(move |x| (x * TILE, y * TILE)));
             places.map(|(x, y)| differing(&exemplar, &plan, (x, y), whole.as_ref().map(|w| &w.texture))).sum::<usize>()
         });
-        let peak = peak_mib();
+        // All that the process holds besides included: the exemplar, and below 8192 the whole to compare with.
+        let peak = peak_memory().map(|bytes| bytes as f64 / 1048576.0).filter(|mib| *mib > 0.0);
         let seconds = planning + rendering;
         table.row([
             side.to_string(),
@@ -28,12 +29,15 @@ pub fn tiles() {
             format!("{rendering:.2}"),
             format!("{:.0}", 1e9 * seconds / (side * side) as f64),
             plan.lamps().to_string(),
-            format!("{peak:.0}"),
+            peak.map_or("-".into(), |mib| format!("{mib:.0}")),
             whole.map_or("-".into(), |_| off.to_string()),
         ]);
         if side == 16_384 {
             figure("emission.16k.seconds", seconds, "s");
-            figure("emission.16k.peak", peak, "MiB");
+            match peak {
+                Some(mib) => figure("emission.16k.peak", mib, "MiB"),
+                None => absent("emission.16k.peak", "the system does not tell the peak of memory"),
+            }
         }
     }
     table.print("In tiles of 1024 x 1024, from 512 x 512; the texture of 16384 x 16384 itself has 3072 MiB");
@@ -54,17 +58,4 @@ fn differing(exemplar: &Exemplar, plan: &Plan, (x, y): (usize, usize), whole: Op
         made.iter().zip(&whole.data[start..]).filter(|(a, b)| a.to_bits() != b.to_bits()).count()
     })
     .sum()
-}
-
-/// Has the peak of memory begin again with what is in use now.
-fn reset_peak() {
-    // Where the system does not allow it the peak is that of all that went before, which is no less.
-    let _ = std::fs::write("/proc/self/clear_refs", "5");
-}
-
-/// The most memory the process had since, all that it holds besides included, in MiB.
-fn peak_mib() -> f64 {
-    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let line = status.lines().find_map(|l| l.strip_prefix("VmHWM:")).unwrap_or("");
-    line.trim().split(' ').next().and_then(|kib| kib.parse::<f64>().ok()).unwrap_or(f64::NAN) / 1024.0
 }

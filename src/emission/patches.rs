@@ -14,6 +14,7 @@ use crate::exec;
 use crate::image::{Image, try_vec};
 use crate::job::Job;
 use crate::rng::{self, Rng};
+use crate::simd::widest;
 use glam::{DMat2, DVec2};
 use std::collections::BTreeMap;
 
@@ -26,6 +27,11 @@ const TOLERANCE: (f32, f32) = (1.1, 1e-6);
 const ENOUGH_COVERAGE: f64 = 0.95;
 /// Added to the cost of a seam on a lamp: more than any path around it.
 const LAMP_COST: f32 = 1e4;
+/// Pixels compared by one thread before another is worth waking.
+const TASK: usize = 1 << 16;
+
+/// What is compared of a pixel: channels scaled by the roots of their weights, so that squares add up as they are.
+type Feature = [f32; 8];
 
 /// Colour and metadata of the exemplar, and their weights.
 pub struct Guide<'a> {
@@ -35,20 +41,43 @@ pub struct Guide<'a> {
 }
 
 impl Guide<'_> {
-    fn features(&self) -> Vec<[f32; 6]> {
+    fn features(&self) -> Vec<Feature> {
+        let (colour, metadata) = self.scales();
         let pixels = self.working.colour.data.chunks_exact(3).zip(self.metadata.data.chunks_exact(3));
-        pixels.map(|(c, m)| [c[0], c[1], c[2], m[0], m[1], m[2]]).collect()
+        pixels
+            .map(|(c, m)| {
+                let (c, m) = ([c[0], c[1], c[2]].map(|v| v * colour), [m[0], m[1], m[2]].map(|v| v * metadata));
+                [c[0], c[1], c[2], m[0], m[1], m[2], 0.0, 0.0]
+            })
+            .collect()
     }
 
-    /// Squared difference of two pixels. Distances wrap: one cap to the left of a lamp is as far as one cap to its right.
-    fn difference(&self, a: &[f32; 6], b: &[f32; 6]) -> f32 {
-        let square = |c: usize| (a[c] - b[c]) * (a[c] - b[c]);
-        let wrapped = |c: usize| {
-            let d = (a[c] - b[c]).abs();
-            let d = d.min(2.0 - d);
-            d * d
-        };
-        (square(0) + square(1) + square(2)) / 3.0 + self.metadata_weight * (square(3) + wrapped(4) + wrapped(5))
+    /// Of colours and of metadata.
+    fn scales(&self) -> (f32, f32) {
+        ((1.0f32 / 3.0).sqrt(), self.metadata_weight.sqrt())
+    }
+
+    /// After which difference each channel is the same again. Distances wrap: one cap to the left of a lamp is as far as one cap
+    /// to its right.
+    fn turns(&self) -> Feature {
+        let turn = 2.0 * self.scales().1;
+        let none = f32::INFINITY;
+        [none, none, none, none, turn, turn, none, none]
+    }
+}
+
+widest! {
+    /// Sum over two rows of pixels of the squared differences of their channels, which come again after `turns`.
+    fn squares(a: &[Feature], b: &[Feature], turns: &Feature) -> f32 {
+        let mut sums = [0f32; 8];
+        for (a, b) in a.iter().zip(b) {
+            for c in 0..8 {
+                let apart = (a[c] - b[c]).abs();
+                let apart = apart.min(turns[c] - apart);
+                sums[c] += apart * apart;
+            }
+        }
+        (sums[0] + sums[1] + sums[2]) + (sums[3] + sums[4] + sums[5])
     }
 }
 
@@ -60,11 +89,26 @@ struct Rect {
     h: usize,
 }
 
-/// A block: its pixels that show nothing yet, and those that show a pixel of the exemplar.
+/// Pixels of a row of a block, and where in the exemplar the first of them is taken from, one after the other.
+#[derive(Clone, Copy)]
+struct Run {
+    x: usize,
+    y: usize,
+    length: usize,
+    source: usize,
+}
+
+/// A block: its pixels that show nothing yet, and those that show pixels of the exemplar.
 struct Block {
     rect: Rect,
-    empty: Vec<[i32; 2]>,
-    filled: Vec<([i32; 2], u32)>,
+    /// The pixel of the exemplar that each shows, row by row; or [`NONE`].
+    known: Vec<u32>,
+    empty: Vec<Run>,
+    filled: Vec<Run>,
+}
+
+fn count(runs: &[Run]) -> usize {
+    runs.iter().map(|r| r.length).sum()
 }
 
 /// A shift, how many empty pixels of a block it fills, and its mean squared difference from the known ones.
@@ -77,7 +121,8 @@ struct Scored {
 
 struct Quilt<'a> {
     guide: &'a Guide<'a>,
-    features: Vec<[f32; 6]>,
+    features: Vec<Feature>,
+    turns: Feature,
     /// The rows that no block reaches any more, and all shifts.
     layout: Layout,
     /// The labels of the rows from `first` on that blocks still reach.
@@ -128,6 +173,7 @@ pub fn place(
     let mut quilt = Quilt {
         guide,
         features: guide.features(),
+        turns: guide.turns(),
         layout: Layout::new(width, height),
         first: 0,
         // A row of blocks, and the row of pixels above it.
@@ -174,34 +220,48 @@ impl Quilt<'_> {
     fn fill(&mut self, rect: &Rect, overlap: [usize; 2], job: Job) -> Result<()> {
         let mut first = true;
         loop {
-            let known = self.known(rect);
-            let position = |i: usize| [(rect.x + i % rect.w) as i32, (rect.y + i / rect.w) as i32];
-            let pixels = || known.iter().enumerate().map(|(i, k)| (position(i), *k));
-            let block = Block {
-                rect: *rect,
-                empty: pixels().filter(|(_, k)| k.is_none()).map(|(p, _)| p).collect(),
-                filled: pixels().filter_map(|(p, k)| k.map(|k| (p, k))).collect(),
-            };
+            let block = self.block(rect);
             if block.empty.is_empty() {
                 return Ok(());
             }
-            let scored = self.score(&block, &self.candidates(rect), None, job)?;
+            let scored = self.score(&block, &self.candidates(rect), None, f32::INFINITY, job)?;
             let Some(mut chosen) = self.choose(rect, &scored) else { return Ok(()) };
             if !self.admissible.is_empty() {
                 chosen = self.improve(&block, chosen, job)?;
             }
-            self.paste(rect, &known, chosen.shift, first.then_some(overlap));
+            self.paste(&block, chosen.shift, first.then_some(overlap));
             first = false;
         }
     }
 
-    /// The exemplar pixel each pixel of a block already shows.
-    fn known(&self, rect: &Rect) -> Vec<Option<u32>> {
-        let pixel = |i: usize| {
-            let (x, y) = (rect.x + i % rect.w, rect.y + i / rect.w);
-            self.layout.source(x, y, self.label(x, y), self.guide.working)
-        };
-        (0..rect.w * rect.h).map(|i| pixel(i).map(|s| s as u32)).collect()
+    /// What the pixels of a block show already.
+    fn block(&self, rect: &Rect) -> Block {
+        let mut block =
+            Block { rect: *rect, known: Vec::with_capacity(rect.w * rect.h), empty: Vec::new(), filled: Vec::new() };
+        for y in rect.y..rect.y + rect.h {
+            let mut last: Option<Run> = None;
+            for x in rect.x..rect.x + rect.w {
+                let label = self.label(x, y);
+                let source = self.layout.source(x, y, label, self.guide.working).map_or(NONE, |s| s as u32);
+                block.known.push(source);
+                // Does it go on with what is to the left?
+                let source = source as usize;
+                last = match last {
+                    Some(run) if source == NONE as usize && run.source == source => {
+                        Some(Run { length: run.length + 1, ..run })
+                    }
+                    Some(run) if source != NONE as usize && run.source + run.length == source => {
+                        Some(Run { length: run.length + 1, ..run })
+                    }
+                    _ => {
+                        last.into_iter().for_each(|run| block.add(run));
+                        Some(Run { x, y, length: 1, source })
+                    }
+                };
+            }
+            last.into_iter().for_each(|run| block.add(run));
+        }
+        block
     }
 
     /// The shifts of what lies around a block.
@@ -272,49 +332,114 @@ impl Quilt<'_> {
             .collect()
     }
 
-    /// How many empty pixels of a block a shift fills; and whether it shows something usable in all of the block.
-    fn fills(&self, block: &Block, shift: &Shift) -> (usize, bool) {
-        let (working, rect) = (self.guide.working, &block.rect);
-        let [x, y] = [rect.x as i32 - shift.working[0], rect.y as i32 - shift.working[1]];
-        let inside = x >= 0 && y >= 0 && x as usize + rect.w <= working.width && y as usize + rect.h <= working.height;
-        if inside && self.usable.count(x as usize, y as usize, rect.w, rect.h) == rect.w * rect.h {
-            return (block.empty.len(), true);
-        }
-        let [dx, dy] = shift.working;
-        let is_usable = |&&[x, y]: &&[i32; 2]| working.index(x - dx, y - dy).is_some_and(|s| working.usable[s]);
-        (block.empty.iter().filter(is_usable).count(), false)
+    /// The part of a run that a shift takes from within the exemplar: how many of its pixels come before, how many there are,
+    /// and the place of the first in the exemplar.
+    fn shown(&self, run: &Run, shift: &Shift) -> Option<(usize, usize, [usize; 2])> {
+        let working = self.guide.working;
+        let (x, y) = (run.x as i64 - i64::from(shift.working[0]), run.y as i64 - i64::from(shift.working[1]));
+        let skipped = (-x).max(0);
+        let length = (run.length as i64).min(working.width as i64 - x) - skipped;
+        let inside = length > 0 && y >= 0 && y < working.height as i64;
+        inside.then(|| (skipped as usize, length as usize, [(x + skipped) as usize, y as usize]))
+    }
+
+    /// How many empty pixels of a block each shift fills: exactly for those that fill nearly as many as the best does, else no more
+    /// than stated.
+    fn fills(&self, block: &Block, shifts: &[Shift]) -> Vec<usize> {
+        let Rect { x, y, w, h } = block.rect;
+        let empty = count(&block.empty);
+        let usable_of = |runs: &[Run], shift: &Shift| -> usize {
+            runs.iter()
+                .filter_map(|run| self.shown(run, shift))
+                .map(|(_, length, [x, y])| self.usable.count(x, y, length, 1))
+                .sum()
+        };
+        // All of the block at once: the most that a shift can fill.
+        let most_of = |shift: &Shift| {
+            let working = self.guide.working;
+            let side = |at: usize, by: i32, length: usize, side: usize| {
+                let start = at as i64 - i64::from(by);
+                let (low, high) = (start.max(0), (start + length as i64).min(side as i64));
+                (low as usize, (high - low).max(0) as usize)
+            };
+            let (u, columns) = side(x, shift.working[0], w, working.width);
+            let (v, rows) = side(y, shift.working[1], h, working.height);
+            if columns * rows == 0 { 0 } else { self.usable.count(u, v, columns, rows) }
+        };
+        let bounds: Vec<usize> = shifts.iter().map(most_of).collect();
+        let mut most = if bounds.contains(&(w * h)) { empty } else { 0 };
+        let exact = |(shift, bound): (&Shift, usize)| {
+            if bound == w * h {
+                return empty;
+            }
+            if (bound as f64) < ENOUGH_COVERAGE * most as f64 {
+                return 0;
+            }
+            let fills = usable_of(&block.empty, shift);
+            most = most.max(fills);
+            fills
+        };
+        shifts.iter().zip(bounds).map(exact).collect()
     }
 
     /// The shifts that fill `least` or more of the empty pixels, or without it nearly as many as the best does, and how well
-    /// they agree with the known ones.
-    fn score(&self, block: &Block, shifts: &[Shift], least: Option<usize>, job: Job) -> Result<Vec<Scored>> {
-        let working = self.guide.working;
-        let fills: Vec<(usize, bool)> = shifts.iter().map(|shift| self.fills(block, shift)).collect();
-        let most = fills.iter().map(|f| f.0).max().unwrap_or(0);
+    /// they agree with the known ones. The error of those that are no match for the best, or for one of error `limit`, is infinite.
+    fn score(
+        &self,
+        block: &Block,
+        shifts: &[Shift],
+        least: Option<usize>,
+        limit: f32,
+        job: Job,
+    ) -> Result<Vec<Scored>> {
+        let fills = self.fills(block, shifts);
+        let most = fills.iter().copied().max().unwrap_or(0);
         let least = least.unwrap_or((ENOUGH_COVERAGE * most as f64).ceil() as usize).max(1);
-        let covering: Vec<usize> = (0..shifts.len()).filter(|&n| fills[n].0 >= least).collect();
-        exec::map(covering.len(), job, |i| {
-            let (shift, (fills, is_whole)) = (shifts[covering[i]], fills[covering[i]]);
-            let [dx, dy] = shift.working;
-            let source = |[x, y]: [i32; 2]| match is_whole {
-                true => Some((y - dy) as usize * working.width + (x - dx) as usize),
-                false => working.index(x - dx, y - dy).filter(|&s| working.usable[s]),
+        let covering: Vec<usize> = (0..shifts.len()).filter(|&n| fills[n] >= least).collect();
+        let filled = count(&block.filled);
+        let some = (TASK / filled.max(1)).max(1);
+        let scored = exec::map(covering.len().div_ceil(some), job, |task| {
+            let mut limit = limit;
+            let shifts = covering[task * some..].iter().take(some).map(|&n| {
+                let error = self.error(block, &shifts[n], filled, equally_good(limit));
+                limit = limit.min(error);
+                Scored { shift: shifts[n], fills: fills[n], error }
+            });
+            shifts.collect::<Vec<_>>()
+        })?;
+        Ok(scored.into_iter().flatten().collect())
+    }
+
+    /// Mean squared difference of a shift from the `filled` known pixels of a block; infinite as soon as it exceeds `limit`.
+    fn error(&self, block: &Block, shift: &Shift, filled: usize, limit: f32) -> f32 {
+        let working = self.guide.working;
+        let most = f64::from(limit) * filled as f64;
+        let (mut sum, mut compared) = (0f64, 0usize);
+        for run in &block.filled {
+            let Some((skipped, length, [x, y])) = self.shown(run, shift) else { continue };
+            let (old, new) = (run.source + skipped, y * working.width + x);
+            let mut add = |from: usize, to: usize| {
+                let (a, b) = (&self.features[old + from..old + to], &self.features[new + from..new + to]);
+                sum += f64::from(squares(a, b, &self.turns));
+                compared += to - from;
             };
-            // Sums of a few in single precision: short chains of additions run side by side.
-            let (mut sum, mut count) = (0f64, 0u32);
-            for some in block.filled.chunks(8) {
-                let mut part = 0f32;
-                for &(at, old) in some {
-                    if let Some(new) = source(at) {
-                        part += self.guide.difference(&self.features[old as usize], &self.features[new]);
-                        count += 1;
+            if self.usable.count(x, y, length, 1) == length {
+                add(0, length);
+            } else {
+                let mut at = 0;
+                for part in working.usable[new..new + length].chunk_by(|a, b| a == b) {
+                    if part[0] {
+                        add(at, at + part.len());
                     }
+                    at += part.len();
                 }
-                sum += f64::from(part);
             }
-            let error = if count > 0 { (sum / f64::from(count)) as f32 } else { 0.0 };
-            Scored { shift, fills, error }
-        })
+            // No mean over fewer pixels is less.
+            if sum > most {
+                return f32::INFINITY;
+            }
+        }
+        if compared > 0 { (sum / compared as f64) as f32 } else { 0.0 }
     }
 
     /// Draws one of the shifts that are as good as the best. A row of lamps begins as the exemplar does, and goes on with it as far
@@ -325,7 +450,7 @@ impl Quilt<'_> {
             return scored.iter().min_by(|a, b| length(a).total_cmp(&length(b))).copied();
         }
         let least = scored.iter().map(|s| s.error).fold(f32::INFINITY, f32::min);
-        let equal: Vec<_> = scored.iter().filter(|s| s.error <= least * TOLERANCE.0 + TOLERANCE.1).collect();
+        let equal: Vec<_> = scored.iter().filter(|s| s.error <= equally_good(least)).collect();
         if matches!(self.continuation, Continuation::Row(_)) {
             let around = self.neighbours(rect);
             if let Some(same) = equal.iter().find(|s| around.contains(&s.shift)) {
@@ -345,7 +470,7 @@ impl Quilt<'_> {
                 let [x, y] = best.shift.working;
                 free_shift([x + dx * step, y + dy * step], self.guide.working.pitch)
             });
-            for near in self.score(block, &near, Some(start.fills), job)? {
+            for near in self.score(block, &near, Some(start.fills), best.error, job)? {
                 if near.error < best.error {
                     best = near;
                 }
@@ -355,19 +480,20 @@ impl Quilt<'_> {
     }
 
     /// Shows a shift in the empty pixels of a block and, with an overlap, up to the seams in the known ones.
-    fn paste(&mut self, rect: &Rect, known: &[Option<u32>], shift: Shift, overlap: Option<[usize; 2]>) {
-        let working = self.guide.working;
+    fn paste(&mut self, block: &Block, shift: Shift, overlap: Option<[usize; 2]>) {
+        let (working, rect, known) = (self.guide.working, block.rect, &block.known);
         let source = |x: usize, y: usize| {
             working
                 .index((rect.x + x) as i32 - shift.working[0], (rect.y + y) as i32 - shift.working[1])
                 .filter(|&s| working.usable[s])
         };
-        let cost = |x: usize, y: usize| match (known[y * rect.w + x].map(|k| k as usize), source(x, y)) {
-            (Some(old), Some(new)) => {
+        let cost = |x: usize, y: usize| match (known[y * rect.w + x], source(x, y)) {
+            (NONE, _) | (_, None) => 0.0,
+            (old, Some(new)) => {
+                let old = old as usize;
                 let lamp = if working.lit[old] || working.lit[new] { LAMP_COST } else { 0.0 };
-                self.guide.difference(&self.features[old], &self.features[new]) + lamp
+                squares(&self.features[old..=old], &self.features[new..=new], &self.turns) + lamp
             }
-            _ => 0.0,
         };
 
         // Where the new patch begins: the column in each row, and the row in each column.
@@ -391,14 +517,26 @@ impl Quilt<'_> {
             shifts.push(shift);
             shifts.len() as u32 - 1
         });
-        for (i, old) in known.iter().enumerate() {
+        for (i, &old) in known.iter().enumerate() {
             let (x, y) = (i % rect.w, i / rect.w);
             let beyond = overlap.is_some() && x >= from_column[y] && y >= from_row[x];
-            if (old.is_none() || beyond) && source(x, y).is_some() {
+            if (old == NONE || beyond) && source(x, y).is_some() {
                 self.open[(rect.y + y - self.first) * self.layout.width + rect.x + x] = label;
             }
         }
     }
+}
+
+impl Block {
+    fn add(&mut self, run: Run) {
+        let runs = if run.source == NONE as usize { &mut self.empty } else { &mut self.filled };
+        runs.push(run);
+    }
+}
+
+/// The largest error that is as good as another.
+fn equally_good(error: f32) -> f32 {
+    error * TOLERANCE.0 + TOLERANCE.1
 }
 
 fn free_shift(working: [i32; 2], pitch: DVec2) -> Shift {
