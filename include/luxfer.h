@@ -1739,13 +1739,20 @@ typedef struct luxfer_emission_report {
     uint32_t luminaires;
     /**
      * The largest relative difference between texture and exemplar in the share that is lit, the area of whole lamps, and the
-     * distance from each to the nearest other.
+     * distance from each to the nearest other. It weighs as much as exemplar_lamps. NaN of a plan, which is no texture yet.
      */
     double error;
     /**
      * How regular the lights are, in [0, 1]: correlation with themselves shifted by the lattice that was found, 0 without.
      */
     double regularity;
+    /**
+     * Number of lamps that the exemplars show whole. Fewer than six tell little about a design: what the border cuts off is a large
+     * part of what there is, and without a whole lamp the texture shows the cut ones.
+     */
+    uint32_t exemplar_lamps;
+    /** 0. */
+    uint32_t reserved;
 } luxfer_emission_report;
 
 /** One lamp of the texture. Set struct_size before the call. */
@@ -1830,14 +1837,15 @@ luxfer_status luxfer_emission_get_image(luxfer_emission *emission,
                                         luxfer_image **image);
 
 /**
- * Tells how good the texture is. Any thread.
+ * Tells how good the texture is, or what a plan consists of. Any thread.
  * LUXFER_NOT_READY before a job has succeeded.
  */
 luxfer_status luxfer_emission_get_report(luxfer_emission *emission,
                                          luxfer_emission_report *report);
 
 /**
- * Describes a luminaire of the texture. Any thread.
+ * Describes a luminaire of the texture. Of a plan, which has no texel yet, it is as the exemplar shows it, cut where the texture
+ * ends; lights that run through their exemplar are no lamps and not counted. Any thread.
  * LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such luminaire.
  */
 luxfer_status luxfer_emission_get_luminaire(luxfer_emission *emission,
@@ -1891,7 +1899,8 @@ luxfer_status luxfer_emission_clear_styles(luxfer_emission *emission);
 
 /**
  * Starts a job that plans the texture, in the place of luxfer_emission_start, whose results go. params and what the call and
- * the job return are the same. The caller releases *job. Any thread.
+ * the job return are the same. luxfer_emission_get_report and luxfer_emission_get_luminaire tell the lamps of the plan.
+ * The caller releases *job. Any thread.
  */
 luxfer_status luxfer_emission_start_plan(luxfer_emission *emission,
                                          const luxfer_emission_params *params,

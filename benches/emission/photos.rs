@@ -16,6 +16,8 @@ use luxfer::transfer::{self, Stage, Transfer};
 use std::path::PathBuf;
 use std::sync::Arc;
 
+/// Standard deviation of the blur of the light mask in photo pixels, that of a transfer.
+const EDGE_BLUR: f32 = 0.9;
 /// Side of the plane that the photo shows, in unwarped pixels.
 const PLANE: usize = 480;
 /// Standard deviation of the noise of a pixel, relative to white.
@@ -125,7 +127,9 @@ fn unwarped(root: &std::path::Path, name: &str) -> Result<(Exemplar, Image, Homo
     let (Some(lights), Some(plane)) = (&results.lights, &results.unwarped) else { return Err("no plane".into()) };
     let (width, height) = (plane.image.width, plane.image.height);
     let job = Monitor::default();
-    let light = rectify::warp(&lights.confidence, &plane.to_photo, width, height, job.job()).map_err(text)?;
+    // As a transfer does, so that a clipped lamp's edge is no staircase of whole pixels.
+    let smooth = luxfer::image::pyramid::blur(&lights.confidence, EDGE_BLUR, job.job()).map_err(text)?;
+    let light = rectify::warp(&smooth, &plane.to_photo, width, height, job.job()).map_err(text)?;
     let photo = transfer.input.photo.as_deref().cloned().unwrap_or_default();
     let exemplar = Exemplar { unwarped: plane.image.clone(), light, valid: plane.valid.clone() };
     Ok((exemplar, photo, plane.to_photo))
@@ -178,6 +182,7 @@ fn table_of_real() -> Table {
         "photo",
         "continuation",
         "regularity",
+        "whole lamps",
         "lamps",
         "lit %",
         "area",
@@ -204,6 +209,7 @@ fn row(table: &mut Table, name: &str, input: &Input) -> Emission {
         name.to_string(),
         format!("{:?}", result.continuation).split('(').next().unwrap_or("").to_string(),
         format!("{:.2}", result.regularity),
+        result.exemplar_lamps.to_string(),
         result.luminaires.len().to_string(),
         pair(100.0 * before.lit, 100.0 * after.lit, 2),
         pair(before.area, after.area, 0),

@@ -53,7 +53,7 @@ pub fn shift(exemplar: &Exemplar, continuation: Continuation, size: DVec2) -> Op
 /// What a lattice repeats: the lamps of a cell, that nearest to the middle of the exemplar first. Where the exemplar's extent
 /// serves as a period, all lamps along it are one.
 fn motif(exemplar: &Exemplar, continuation: Continuation) -> Vec<Bounds> {
-    let mut lamps: Vec<Bounds> = exemplar.lamps().map(Bounds::of).collect();
+    let mut lamps: Vec<Bounds> = exemplar.pieces().map(|(_, lamp)| Bounds::of(lamp)).collect();
     if lamps.is_empty() {
         lamps = exemplar.components.list.iter().map(Bounds::of).collect();
     }

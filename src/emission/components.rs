@@ -29,6 +29,25 @@ pub struct Components {
     pub list: Vec<Component>,
 }
 
+impl Components {
+    /// Takes out those that `goes` says of by index.
+    pub fn remove(&mut self, goes: impl Fn(usize) -> bool) {
+        let mut left = 0;
+        let numbers: Vec<u32> = std::iter::once(0)
+            .chain((0..self.list.len()).map(|k| {
+                left += u32::from(!goes(k));
+                if goes(k) { 0 } else { left }
+            }))
+            .collect();
+        self.labels.iter_mut().for_each(|label| *label = numbers[*label as usize]);
+        let mut k = 0;
+        self.list.retain(|_| {
+            k += 1;
+            numbers[k] != 0
+        });
+    }
+}
+
 /// Labels the 8-connected components in two passes with union-find (Rosenfeld and Pfaltz 1966).
 pub fn find(width: usize, height: usize, lit: impl Fn(usize) -> bool) -> Result<Components> {
     let mut labels = try_vec(width * height, 0u32)?;
@@ -112,5 +131,12 @@ mod tests {
         assert_eq!((found.list[0].min, found.list[0].max), ([0, 0], [4, 3]));
         assert_eq!(found.list[1].centre, DVec2::new(5.5, 0.5));
         assert!(found.labels.iter().zip(&lit).all(|(&l, &on)| (l != 0) == on));
+
+        // Without one it is as if that had never been.
+        let (mut rest, gone) = (found, 1);
+        let label = gone as u32 + 1;
+        let alone = find(6, 4, |i| lit[i] && rest.labels[i] != label).unwrap();
+        rest.remove(|k| k == gone);
+        assert_eq!((rest.labels, rest.list), (alone.labels, alone.list));
     }
 }

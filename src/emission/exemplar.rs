@@ -13,10 +13,15 @@ use glam::DVec2;
 pub const LIT: f32 = 0.5;
 
 /// Pixels of the photo that a lamp covers at least, unless no light covers more.
-const LEAST_LAMP: f64 = 4.0;
+const LEAST_LAMP: f64 = 9.0;
 
-/// A lamp cut off by the border is one of the whole lamps if it is at most this much longer than the longest of them.
-const CUT_LAMP_SLACK: f64 = 1.1;
+/// A lamp cut off by the border is one like a whole lamp if it is at most this much longer and wider.
+const CUT_LAMP_SLACK: f64 = 1.35;
+/// A lamp may touch the border with this share of its width and be whole: masks fray. A border that cuts it off meets all of its
+/// width; one that meets so much of it takes a twentieth of a round lamp.
+const WHOLE_CONTACT: f64 = 0.6;
+/// Share of what is shown along a line through a lamp that it must cover to run through.
+const RUNS_THROUGH: f64 = 0.97;
 
 pub struct Exemplar {
     pub width: usize,
@@ -24,10 +29,12 @@ pub struct Exemplar {
     /// Finite and on the plane.
     pub shown: Vec<bool>,
     pub components: Components,
-    /// Which components are lamps that end inside the shown region: these move as one piece.
+    /// Which components are lamps that end inside the shown region.
     pub whole: Vec<bool>,
     /// Which components are parts of such lamps that the border cuts off: these are not shown.
     pub cut: Vec<bool>,
+    /// Which components move as one piece: the whole ones, and of others those that no whole one is like, as far as they are seen.
+    pub piece: Vec<bool>,
     /// Pixels of the photo that show each component.
     pub photo_area: Vec<f64>,
     /// Share of the shown pixels that is lit.
@@ -90,23 +97,31 @@ impl Exemplar {
 
         let whole = find_whole(&components, &shown, width, height);
         let cut = find_cut(&components, &whole);
+        let piece = find_pieces(&components, &whole, &cut, &shown, width, height);
         let is_usable = |(&s, &l): (&bool, &u32)| s && (l == 0 || !cut[l as usize - 1]);
         let usable = try_collect(shown.iter().zip(&components.labels).map(is_usable))?;
         let sources = Sources { image, light, components: &components, usable: &usable, shown: &shown };
         let working = Working::new(&sources, working_side, job)?;
         let lit_share = lit as f64 / total as f64;
-        Ok(Self { width, height, shown, components, whole, cut, photo_area, lit_share, working })
+        Ok(Self { width, height, shown, components, whole, cut, piece, photo_area, lit_share, working })
     }
 
     /// The statistics of the pattern of `unwarped`, in its pixels; `periods` as in [`Pattern`].
     pub fn statistics(&self, unwarped: &Image, periods: [Option<f64>; 2]) -> Statistics {
-        let Self { width, height, components, whole, .. } = self;
+        // Lamps are what the texture may show as such.
+        let Self { width, height, components, piece: whole, .. } = self;
         let colour = |i: usize| self.shown[i].then(|| unwarped.rgb(i % width, i / width));
         Statistics::of(&Pattern { width: *width, height: *height, components, whole, periods, colour })
     }
 
+    /// The lamps that are whole.
     pub fn lamps(&self) -> impl Iterator<Item = &Component> {
         self.components.list.iter().zip(&self.whole).filter(|(_, whole)| **whole).map(|(c, _)| c)
+    }
+
+    /// What moves as one piece.
+    pub fn pieces(&self) -> impl Iterator<Item = (usize, &Component)> {
+        self.components.list.iter().enumerate().filter(|(k, _)| self.piece[*k])
     }
 }
 
@@ -121,25 +136,50 @@ fn photo_areas(components: &Components, to_photo: Option<Homography>) -> Vec<f64
     components.list.iter().map(|c| c.area as f64 * magnification(c.centre)).collect()
 }
 
-/// A component is whole if none of its pixels lies at the border of the image or of the shown region.
+/// A component is whole if hardly any of its pixels lies at the border of the image or of the shown region.
 fn find_whole(components: &Components, shown: &[bool], width: usize, height: usize) -> Vec<bool> {
-    let mut whole = vec![true; components.list.len()];
+    let mut contacts = vec![0usize; components.list.len()];
     for (i, &label) in components.labels.iter().enumerate().filter(|(_, l)| **l != 0) {
         let (x, y) = (i % width, i / width);
         let inside = x > 0 && y > 0 && x + 1 < width && y + 1 < height;
         if !(inside && shown[i - 1] && shown[i + 1] && shown[i - width] && shown[i + width]) {
-            whole[label as usize - 1] = false;
+            contacts[label as usize - 1] += 1;
         }
     }
-    whole
+    let is_whole = |(c, &n): (&Component, &usize)| {
+        let [across, down] = c.size().map(|s| s as f64);
+        n as f64 <= WHOLE_CONTACT * c.area as f64 / across.hypot(down)
+    };
+    components.list.iter().zip(&contacts).map(is_whole).collect()
 }
 
-/// A component is part of a cut lamp if it is not whole, yet not much longer than those that are.
+/// A component is part of a cut lamp if it is not whole, yet fits into one that is.
 fn find_cut(components: &Components, whole: &[bool]) -> Vec<bool> {
-    let side = |c: &Component| c.size()[0].max(c.size()[1]) as f64;
-    let lamps = components.list.iter().zip(whole);
-    let longest = lamps.clone().filter(|(_, w)| **w).map(|(c, _)| side(c)).fold(0.0, f64::max);
-    lamps.map(|(c, &w)| !w && side(c) <= longest * CUT_LAMP_SLACK).collect()
+    let sizes: Vec<[usize; 2]> =
+        components.list.iter().zip(whole).filter(|(_, w)| **w).map(|(c, _)| c.size()).collect();
+    let fits =
+        |c: &Component| sizes.iter().any(|size| (0..2).all(|k| c.size()[k] as f64 <= size[k] as f64 * CUT_LAMP_SLACK));
+    components.list.iter().zip(whole).map(|(c, &w)| !w && fits(c)).collect()
+}
+
+/// What is neither whole nor part of such a lamp is a piece as far as it is seen, unless it runs through all that is shown.
+fn find_pieces(
+    components: &Components,
+    whole: &[bool],
+    cut: &[bool],
+    shown: &[bool],
+    width: usize,
+    height: usize,
+) -> Vec<bool> {
+    let runs_through = |c: &Component| {
+        let (x, y) = ((c.centre.x as usize).min(width - 1), (c.centre.y as usize).min(height - 1));
+        let row = (0..width).filter(|u| shown[y * width + u]).count();
+        let column = (0..height).filter(|v| shown[v * width + x]).count();
+        let [across, down] = c.size().map(|s| s as f64);
+        across >= RUNS_THROUGH * row as f64 || down >= RUNS_THROUGH * column as f64
+    };
+    let is_piece = |((c, &whole), &cut): ((&Component, &bool), &bool)| whole || !cut && !runs_through(c);
+    components.list.iter().zip(whole).zip(cut).map(is_piece).collect()
 }
 
 /// What the working size is made from.

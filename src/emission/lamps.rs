@@ -10,7 +10,7 @@ use crate::error::Result;
 use crate::image::try_vec;
 use crate::job::Job;
 use crate::rng::Rng;
-use glam::DVec2;
+use glam::{DMat2, DVec2};
 use std::collections::BTreeMap;
 
 /// Share of a lamp that patches of its shift must show.
@@ -19,7 +19,7 @@ const LEAST_SHARE: f64 = 0.3;
 const LATTICE_SLACK: f64 = 0.2;
 
 /// By how much, relatively, lamps of a kind may differ in area and in both sides.
-const LIKE: f64 = 0.25;
+const LIKE: f64 = 0.12;
 /// A lamp is shown sharply if it covers this share of the photo pixels that the largest of its kind does.
 const SHARP: f64 = 0.4;
 
@@ -46,18 +46,21 @@ pub fn resolve(exemplar: &Exemplar, layout: &Layout, rules: Rules, seed: u64, jo
     let Rules { is_lattice, wraps } = rules;
     let footprints = footprints(exemplar);
     let working = &exemplar.working;
-    let mut lamp_at = try_vec(working.width * working.height, u32::MAX)?;
-    for (k, pixels) in footprints.iter().enumerate() {
-        pixels.iter().for_each(|&[x, y]| lamp_at[y as usize * working.width + x as usize] = k as u32);
-    }
 
     // How many pixels of each lamp are shown at each shift.
+    let rows = rows(&footprints, working.height);
     let mut shown: BTreeMap<(u32, u32), usize> = BTreeMap::new();
     for y in 0..layout.height {
         job.check()?;
-        for (x, label) in layout.labels(y).enumerate() {
-            if let Some(source) = layout.source(x, y, label, working).filter(|&s| lamp_at[s] != u32::MAX) {
-                *shown.entry((lamp_at[source], label)).or_default() += 1;
+        let mut start = 0;
+        for &(end, label) in layout.row(y) {
+            let run = std::mem::replace(&mut start, end as i32)..end as i32;
+            let Some([dx, dy]) = layout.shifts.get(label as usize).map(|s| s.working) else { continue };
+            let Some(row) = usize::try_from(y as i32 - dy).ok().and_then(|v| rows.get(v)) else { continue };
+            let (low, high) = (run.start - dx, run.end - dx);
+            for piece in row[row.partition_point(|p| p.end <= low)..].iter().take_while(|p| p.start < high) {
+                let pixels = piece.end.min(high) - piece.start.max(low);
+                *shown.entry((piece.lamp, label)).or_default() += pixels as usize;
             }
         }
     }
@@ -97,6 +100,61 @@ pub fn resolve(exemplar: &Exemplar, layout: &Layout, rules: Rules, seed: u64, jo
     }
     show_sharply(exemplar, &mut instances, seed);
     Ok(instances)
+}
+
+/// The lamps of an exemplar that repeats as a whole: all of them in each cell of the lattice that the texture shows a part of; where
+/// it repeats itself, in each cell that begins in it.
+pub fn repeat(exemplar: &Exemplar, [a, b]: [DVec2; 2], offset: DVec2, size: DVec2, wraps: bool) -> Vec<Instance> {
+    let inverse = DMat2::from_cols(a, b).inverse();
+    let point = |p: [usize; 2]| DVec2::new(p[0] as f64, p[1] as f64);
+    let mut instances = Vec::new();
+    for (component, lamp) in exemplar.pieces() {
+        // The shifts that bring some of it into the texture, and the cells around those.
+        let (low, high) = if wraps { (DVec2::ZERO, size) } else { (-point(lamp.max) - 1.0, size - point(lamp.min)) };
+        let corners = [low, DVec2::new(high.x, low.y), DVec2::new(low.x, high.y), high].map(|c| inverse * (c - offset));
+        let first = corners.iter().fold(DVec2::INFINITY, |m, c| m.min(*c)).floor();
+        let last = corners.iter().fold(DVec2::NEG_INFINITY, |m, c| m.max(*c)).ceil();
+        for j in first.y as i64..=last.y as i64 {
+            for i in first.x as i64..=last.x as i64 {
+                let shift = offset + a * i as f64 + b * j as f64;
+                // A cell that begins on the far side is the one that begins on this.
+                let slack = if wraps { DVec2::splat(1e-6) } else { DVec2::ZERO };
+                if shift.cmpge(low - slack).all() && shift.cmplt(high - slack).all() {
+                    instances.push(Instance { component, shift });
+                }
+            }
+        }
+    }
+    instances
+}
+
+/// Working pixels of a row from `start` to before `end` that a lamp covers.
+struct Piece {
+    start: i32,
+    end: i32,
+    lamp: u32,
+}
+
+/// The lamps that each working row shows, from left to right. Of lamps that share a pixel, because both are smaller than it, the
+/// last has it.
+fn rows(footprints: &[Vec<[i32; 2]>], height: usize) -> Vec<Vec<Piece>> {
+    let mut rows: Vec<BTreeMap<i32, u32>> = vec![BTreeMap::new(); height];
+    for (k, pixels) in footprints.iter().enumerate() {
+        for &[x, y] in pixels {
+            rows[y as usize].insert(x, k as u32);
+        }
+    }
+    let pieces = |row: BTreeMap<i32, u32>| {
+        let mut pieces: Vec<Piece> = Vec::new();
+        for (x, lamp) in row {
+            match pieces.last_mut().filter(|p| p.end == x && p.lamp == lamp) {
+                Some(piece) => piece.end += 1,
+                None => pieces.push(Piece { start: x, end: x + 1, lamp }),
+            }
+        }
+        pieces
+    };
+    rows.into_iter().map(pieces).collect()
 }
 
 /// A set of pixels, in the space of a bit each.
@@ -151,7 +209,7 @@ fn show_sharply(exemplar: &Exemplar, instances: &mut [Instance], seed: u64) {
     }
 }
 
-/// The working pixels of each whole lamp: those whose centre it covers, or at least that of its own centre.
+/// The working pixels of each lamp that is a piece: those whose centre it covers, or at least that of its own centre.
 fn footprints(exemplar: &Exemplar) -> Vec<Vec<[i32; 2]>> {
     let working = &exemplar.working;
     let mut footprints = vec![Vec::new(); exemplar.components.list.len()];
@@ -159,13 +217,13 @@ fn footprints(exemplar: &Exemplar) -> Vec<Vec<[i32; 2]>> {
         for x in 0..working.width {
             let centre = (DVec2::new(x as f64, y as f64) + 0.5) * working.pitch;
             let label = exemplar.components.labels[centre.y as usize * exemplar.width + centre.x as usize] as usize;
-            if label != 0 && exemplar.whole[label - 1] {
+            if label != 0 && exemplar.piece[label - 1] {
                 footprints[label - 1].push([x as i32, y as i32]);
             }
         }
     }
-    for ((pixels, lamp), &whole) in footprints.iter_mut().zip(&exemplar.components.list).zip(&exemplar.whole) {
-        if whole && pixels.is_empty() {
+    for ((pixels, lamp), &is_piece) in footprints.iter_mut().zip(&exemplar.components.list).zip(&exemplar.piece) {
+        if is_piece && pixels.is_empty() {
             let p = lamp.centre / working.pitch;
             pixels.push([(p.x as i32).min(working.width as i32 - 1), (p.y as i32).min(working.height as i32 - 1)]);
         }

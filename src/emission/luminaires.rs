@@ -16,18 +16,25 @@ pub fn reach(crumb: f64) -> usize {
     (2.0 * crumb.sqrt()).ceil() as usize
 }
 
-/// Takes out every connected piece of light smaller than `crumb` texels, and compact: no longer than the [`reach`] of one.
-pub fn sweep(texture: &mut Image, mask: &mut Image, crumb: f64) -> Result<()> {
-    if crumb <= 1.0 {
-        return Ok(());
-    }
-    let found = components(mask)?;
+/// Takes out every connected piece of light smaller than `crumb` texels, and compact: no longer than the [`reach`] of one. Those
+/// that `is_cut` says of by their first and last texel are the rest of something larger.
+pub fn sweep(
+    texture: &mut Image,
+    mask: &mut Image,
+    found: &mut Components,
+    crumb: f64,
+    is_cut: impl Fn([usize; 2], [usize; 2]) -> bool,
+) {
     let reach = reach(crumb);
-    let is_crumb = |piece: &Component| (piece.area as f64) < crumb && piece.size().into_iter().all(|s| s <= reach);
-    if found.list.iter().any(is_crumb) {
-        take_out(texture, mask, &found, |k, _| is_crumb(&found.list[k]));
+    let is_crumb = |piece: &Component| {
+        let is_small = (piece.area as f64) < crumb && piece.size().into_iter().all(|s| s <= reach);
+        is_small && !is_cut(piece.min, piece.max)
+    };
+    let crumbs: Vec<bool> = found.list.iter().map(is_crumb).collect();
+    if crumbs.contains(&true) {
+        take_out(texture, mask, found, |k, _| crumbs[k]);
+        found.remove(|k| crumbs[k]);
     }
-    Ok(())
 }
 
 /// Takes out the texels of lamps that `goes` names by lamp and texel, and rims whose lamps all go: texels less than half of

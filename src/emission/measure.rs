@@ -17,14 +17,36 @@ pub struct Measure {
     pub spacing: f64,
     /// Width of what it shows.
     pub width: f64,
+    pub(super) reading: Reading,
 }
 
-/// Measures an exemplar. Errors as of [`run`].
+/// An exemplar that has been read: its lamps, and how they go on.
+pub(super) struct Reading {
+    pub exemplar: Exemplar,
+    pub continuation: Continuation,
+    pub regularity: f64,
+    /// What it was read with.
+    working_side: f64,
+    least_regularity: f32,
+}
+
+impl Reading {
+    /// Whether a texture of such settings would read the exemplar in the same way.
+    pub fn serves(&self, input: &Input, params: &Params) -> bool {
+        let Exemplar { width, height, .. } = self.exemplar;
+        [width, height] == [input.unwarped.width, input.unwarped.height]
+            && self.working_side == working_side(input, params)
+            && self.least_regularity == params.least_regularity
+    }
+}
+
+/// Measures an exemplar. Errors as of [`super::run`].
 pub fn measure(input: &Input, params: &Params, job: Job) -> Result<Measure> {
     params.check()?;
     check_input(input)?;
-    let exemplar = Exemplar::new(input, working_side(input, params), job.part(0.0, 0.5))?;
-    let (continuation, _) = period::find(&exemplar, params.least_regularity, job.part(0.5, 1.0))?;
+    let side = working_side(input, params);
+    let exemplar = Exemplar::new(input, side, job.part(0.0, 0.5))?;
+    let (continuation, regularity) = period::find(&exemplar, params.least_regularity, job.part(0.5, 1.0))?;
     let spacing = match continuation {
         Continuation::Lattice([a, b]) => a.length().min(b.length()),
         _ => {
@@ -37,9 +59,8 @@ pub fn measure(input: &Input, params: &Params, job: Job) -> Result<Measure> {
     let mut lengths: Vec<usize> = exemplar.lamps().map(|lamp| lamp.size()[0].max(lamp.size()[1])).collect();
     lengths.sort_unstable();
     let columns = (0..exemplar.width).filter(|&x| (0..exemplar.height).any(|y| exemplar.shown[y * exemplar.width + x]));
-    Ok(Measure {
-        lamp_length: lengths.get(lengths.len() / 2).map_or(0.0, |&l| l as f64),
-        spacing,
-        width: columns.count() as f64,
-    })
+    let (lamp_length, width) = (lengths.get(lengths.len() / 2).map_or(0.0, |&l| l as f64), columns.count() as f64);
+    let least_regularity = params.least_regularity;
+    let reading = Reading { exemplar, continuation, regularity, working_side: side, least_regularity };
+    Ok(Measure { lamp_length, spacing, width, reading })
 }

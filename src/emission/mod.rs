@@ -10,6 +10,7 @@
 //! 5. [`lamps`]: every lamp that patches show becomes one piece again; no seam cuts it.
 //! 6. [`recover`]: full detail from the photo. 7. [`luminaires`]: the lamps as a list. 8. [`statistics`]: how far the
 //!    texture's are from the exemplar's; and by [`pairs`] of lamps.
+//! 9. [`lamp_list`]: the lamps of a plan, whose texture is never there as a whole.
 //!
 //! A texture that fits inside the exemplar is a part of it, copied.
 //!
@@ -25,6 +26,7 @@ mod components;
 mod correlation;
 mod exemplar;
 mod ground;
+mod lamp_list;
 mod lamps;
 mod layout;
 mod luminaires;
@@ -43,6 +45,7 @@ mod window;
 
 pub use blend::Style;
 pub use ground::Ground;
+pub use lamp_list::LampList;
 pub use measure::{Measure, measure};
 pub use period::Continuation;
 pub use plan::{Plan, Tile};
@@ -165,8 +168,11 @@ pub struct Emission {
     pub regularity: f64,
     /// Of the exemplar, in texels, and of the texture.
     pub statistics: [Statistics; 2],
-    /// Largest relative difference between the two, their luminance aside.
+    /// Largest relative difference between the two, their luminance aside. It weighs as much as the lamps that the exemplar shows
+    /// whole, `exemplar_lamps`: of a few, what the border cuts off is a large part, and without any only light is compared.
     pub error: f64,
+    /// Number of lamps that the exemplars show whole.
+    pub exemplar_lamps: usize,
 }
 
 impl Params {
@@ -205,6 +211,7 @@ pub fn given(texture: &Image, job: Job) -> Result<Emission> {
     let components = luminaires::components(&mask)?;
     let luminaires = luminaires::find(&texture, &components, job)?;
     let statistics = statistics_of(&texture, &components, [Some(f64::INFINITY); 2]);
+    let exemplar_lamps = statistics.whole;
     Ok(Emission {
         texture,
         mask,
@@ -215,6 +222,7 @@ pub fn given(texture: &Image, job: Job) -> Result<Emission> {
         regularity: 0.0,
         statistics: [statistics; 2],
         error: 0.0,
+        exemplar_lamps,
     })
 }
 
@@ -244,17 +252,37 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Emission> {
 /// The same with lights of further exemplars where their weights say so. What it tells beside the texture, its lamps and its
 /// statistics is of the first. Errors: as for [`run`]; weights that are not in `[0, 1]`, or add up to more.
 pub fn blend(input: &Input, styles: &[Style], params: &Params, job: Job) -> Result<Emission> {
-    let mut plan = Plan::new(input, styles, params, job.part(0.0, 0.85))?;
-    let (texture, mask) = plan.tile(input, styles, plan.whole(), job.part(0.85, 0.94))?;
-    let components = luminaires::components(&mask)?;
+    make(Plan::new(input, styles, params, job.part(0.0, 0.85))?, input, styles, params, job)
+}
+
+/// The same of a first exemplar that [`measure`] has read, which is not read again.
+pub fn blend_measured(
+    measured: Measure,
+    input: &Input,
+    styles: &[Style],
+    params: &Params,
+    job: Job,
+) -> Result<Emission> {
+    let plan = Plan::of(Some(measured.reading), input, styles, params, job.part(0.0, 0.85))?;
+    make(plan, input, styles, params, job)
+}
+
+fn make(mut plan: Plan, input: &Input, styles: &[Style], params: &Params, job: Job) -> Result<Emission> {
+    let (texture, mask, components) = plan.all(input, styles, job.part(0.85, 0.95))?;
     let luminaires = luminaires::find(&texture, &components, job.part(0.95, 1.0))?;
 
     let inputs = std::iter::once(input).chain(styles.iter().map(|style| &style.input));
     let parts = plan.layers.iter().zip(inputs).enumerate().map(|(k, (layer, input))| {
-        let own = layer.exemplar.statistics(input.unwarped, layer.continuation.periods());
+        // What repeats as a whole is one period.
+        let periods = match layer.continuation {
+            Continuation::Tile(_) => [Some(f64::INFINITY); 2],
+            other => other.periods(),
+        };
+        let own = layer.exemplar.statistics(input.unwarped, periods);
         (own.scaled(1.0 / layer.scale), plan.weights.mean(k))
     });
     let expected = Statistics::mixed(parts);
+    let exemplar_lamps = plan.exemplar_lamps();
     let Layer { exemplar, continuation, regularity, metadata, layout, .. } = plan.layers.swap_remove(0);
     let periods = if styles.is_empty() { continuation.periods() } else { [None; 2] };
     let statistics = [expected, statistics_of(&texture, &components, periods.map(|p| p.map(|p| p / params.scale)))];
@@ -271,6 +299,7 @@ pub fn blend(input: &Input, styles: &[Style], params: &Params, job: Job) -> Resu
         regularity,
         statistics,
         error,
+        exemplar_lamps,
     })
 }
 

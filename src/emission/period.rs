@@ -5,8 +5,10 @@
 //! held to its phase. One repeat alone, or a handful of lamps, is continued by taking the exemplar as the other period:
 //! nothing in it says how a design goes on beside itself. Many lamps without any repeat are left free.
 
+use super::components::Component;
 use super::correlation::Autocorrelation;
 use super::exemplar::Exemplar;
+use super::statistics;
 use crate::error::{Error, Result};
 use crate::image::{Image, pyramid};
 use crate::job::Job;
@@ -21,9 +23,19 @@ const LEAST_OVERLAP: f32 = 0.2;
 /// Longest side of the image that is correlated.
 const SIDE: usize = 160;
 /// Slant of a row of lamps that is taken for none.
-const MOST_SLANT: f64 = 0.02;
+const MOST_SLANT: f64 = 0.04;
 /// Fewer lamps than this show no law of their own: the exemplar repeats as a whole.
 const FEW_LAMPS: usize = 6;
+
+/// Room around lamps from which they are a group by themselves, both sides together, in the longest distance from one of them to
+/// the nearest other.
+const GROUP_MARGIN: f64 = 2.5;
+
+/// By how much, relatively, both sides of lamps of a kind may differ, and the share of lamps that a period may lead to others.
+const KIND: f64 = 0.33;
+const MOST_UNLIKE: f64 = 0.4;
+/// Unwarped pixels between the lamps of one cell and those of the next, where cells are as small as they can be.
+const CELL_GAP: f64 = 4.0;
 
 /// How the texture goes on beyond the exemplar.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -125,13 +137,13 @@ pub fn find(exemplar: &Exemplar, least_regularity: f32, job: Job) -> Result<(Con
     repeats.sort_by(|a, b| a.0.length_squared().total_cmp(&b.0.length_squared()));
     for (shift, value) in repeats {
         let parallel = |p: &(DVec2, f64)| p.0.normalize().perp_dot(shift.normalize()).abs() < 0.3;
-        if periods.len() < 2 && !periods.iter().any(parallel) {
+        if periods.len() < 2 && !periods.iter().any(parallel) && keeps_kinds(exemplar, shift) {
             periods.push((shift, f64::from(value)));
         }
     }
     let goodness = periods.iter().map(|p| p.1).fold(f64::INFINITY, f64::min);
 
-    let few = exemplar.lamps().count() < FEW_LAMPS;
+    let few = exemplar.lamps().count() < FEW_LAMPS || is_group(exemplar, extent);
     Ok(match periods[..] {
         [(a, _), (b, _)] => (Continuation::Lattice(refine(exemplar, [a, b], 2)), goodness),
         [(a, _)] => {
@@ -139,9 +151,90 @@ pub fn find(exemplar: &Exemplar, least_regularity: f32, job: Job) -> Result<(Con
             let [period, _] = refine(exemplar, [a, across], 1);
             (Continuation::Row([straight(period), across]), goodness)
         }
-        _ if few => (Continuation::Tile([DVec2::X * extent, DVec2::Y * extent]), 0.0),
+        _ if few => {
+            let cell = whole_exemplar(exemplar, extent);
+            (Continuation::Tile([DVec2::X * cell, DVec2::Y * cell]), 0.0)
+        }
         _ => (Continuation::Free, 0.0),
     })
+}
+
+/// The sides at which an exemplar repeats as a whole, so that light covers the share of the plane that it covers of what is shown:
+/// less than its extent where that has dark corners that the photo does not show, or lamps cut off that are left out.
+fn whole_exemplar(exemplar: &Exemplar, extent: DVec2) -> DVec2 {
+    let lamps = &exemplar.components.list;
+    let lit: usize = lamps.iter().zip(&exemplar.cut).filter(|(_, cut)| !**cut).map(|(lamp, _)| lamp.area).sum();
+    let share = (lit as f64 / exemplar.lit_share / extent.element_product()).min(1.0);
+    if share > 1.0 - 1e-6 {
+        return extent;
+    }
+    // Lamps of one cell keep clear of those of the next.
+    let point = |p: [usize; 2]| DVec2::new(p[0] as f64, p[1] as f64);
+    let (low, high) = exemplar.pieces().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), (_, lamp)| {
+        (low.min(point(lamp.min)), high.max(point(lamp.max) + 1.0))
+    });
+    let least = if low.x <= high.x { (high - low + CELL_GAP) / extent } else { DVec2::ZERO };
+    let x = (share / least.y.max(share.sqrt())).max(least.x).min(1.0);
+    extent * DVec2::new(x, (share / x).max(least.y).min(1.0))
+}
+
+/// The period at which a row that ends is repeated along itself: as many of its own as the exemplar shows, with the room at both
+/// ends. `None` where it may go on beyond the exemplar: another lamp would find no room at one of the ends.
+pub fn repeat_of_row(exemplar: &Exemplar, period: DVec2) -> Option<DVec2> {
+    let axis = period.normalize();
+    let working = &exemplar.working;
+    let bounds = working.usable_box();
+    let along = |x: usize, y: usize| axis.dot(DVec2::new(x as f64, y as f64));
+    let span = |[x0, y0, x1, y1]: [usize; 4]| {
+        let corners = [along(x0, y0), along(x1, y0), along(x0, y1), along(x1, y1)];
+        (
+            corners.iter().copied().fold(f64::INFINITY, f64::min),
+            corners.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+        )
+    };
+    let lamps = exemplar.components.list.iter().map(|l| span([l.min[0], l.min[1], l.max[0] + 1, l.max[1] + 1]));
+    let (low, high) = lamps.clone().fold((f64::INFINITY, f64::NEG_INFINITY), |s, l| (s.0.min(l.0), s.1.max(l.1)));
+    let longest = lamps.map(|(low, high)| high - low).fold(0.0, f64::max);
+    let pixels = |n: usize, pitch: f64| (n as f64 * pitch).round() as usize;
+    let [x0, y0, x1, y1] = bounds;
+    let (pitch_x, pitch_y) = (working.pitch.x, working.pitch.y);
+    let (start, end) = span([pixels(x0, pitch_x), pixels(y0, pitch_y), pixels(x1, pitch_x), pixels(y1, pitch_y)]);
+    let gap = period.length() - longest;
+    let times = ((end - start) / period.length()).round();
+    (low - start > gap && end - high > gap && times >= 1.0).then(|| period * times)
+}
+
+/// Whether a shift leads from lamps to lamps of their kind, where it leads to any: light correlates with itself where a row of narrow
+/// panes falls onto one of wide ones, but that is no period.
+fn keeps_kinds(exemplar: &Exemplar, shift: DVec2) -> bool {
+    const MOST: usize = 200;
+    let all: Vec<_> = exemplar.lamps().collect();
+    let size = |lamp: &Component| DVec2::new(lamp.size()[0] as f64, lamp.size()[1] as f64);
+    let (mut like, mut unlike) = (0, 0);
+    for lamp in all.iter().step_by(all.len().div_ceil(MOST).max(1)) {
+        let at = lamp.centre + shift;
+        let is_hit = |other: &&&Component| {
+            let reach = (size(other) + size(lamp)) / 4.0;
+            (other.centre - at).abs().cmple(reach).all()
+        };
+        if let Some(other) = all.iter().find(is_hit) {
+            let (a, b) = (size(lamp), size(other));
+            let is_like = (a.max(b) - a.min(b)).cmple((KIND * a.max(b)).max(DVec2::splat(2.0))).all();
+            if is_like { like += 1 } else { unlike += 1 }
+        }
+    }
+    f64::from(unlike) <= MOST_UNLIKE * f64::from(like + unlike)
+}
+
+/// Whether the lamps keep together, far from the sides of what is shown along both axes: they are one thing, as a chandelier is.
+fn is_group(exemplar: &Exemplar, extent: DVec2) -> bool {
+    let lamps = &exemplar.components.list;
+    let centres: Vec<DVec2> = lamps.iter().map(|lamp| lamp.centre).collect();
+    let farthest = statistics::nearest_distances(&centres).into_iter().fold(0.0, f64::max);
+    let point = |p: [usize; 2]| DVec2::new(p[0] as f64, p[1] as f64);
+    let low = lamps.iter().map(|lamp| point(lamp.min)).fold(DVec2::INFINITY, DVec2::min);
+    let high = lamps.iter().map(|lamp| point(lamp.max) + 1.0).fold(DVec2::NEG_INFINITY, DVec2::max);
+    farthest.is_finite() && (extent - (high - low)).min_element() > GROUP_MARGIN * farthest
 }
 
 /// Whether the lights stay the same under any shift along an axis, up to half of the image.
@@ -215,7 +308,7 @@ fn sharpen(peaks: &mut [(DVec2, f32)]) {
     }
 }
 
-/// A period that all but follows an axis follows it: a row of few lamps cannot tell a slant of 1 % from their own disorder,
+/// A period that all but follows an axis follows it: a row of few lamps cannot tell a slant of a few % from their own disorder,
 /// but carried on for long it would leave the plane's axes, along which the photo was unwarped.
 fn straight(period: DVec2) -> DVec2 {
     match () {
@@ -226,7 +319,8 @@ fn straight(period: DVec2) -> DVec2 {
 }
 
 /// Fits the first `count` basis vectors to the centres of like lamps: every pair whose difference is near `i a + j b`
-/// votes for both vectors by least squares, near pairs first, so that the long ones are counted by an exact ruler.
+/// votes for both vectors by least squares, near pairs first, so that the long ones are counted by an exact ruler. Its vote weighs
+/// as much as the smaller of both is large: crumbs are alike everywhere.
 fn refine(exemplar: &Exemplar, basis: [DVec2; 2], count: usize) -> [DVec2; 2] {
     const MOST: usize = 400;
     let all: Vec<_> = exemplar.lamps().collect();
@@ -249,8 +343,9 @@ fn refine(exemplar: &Exemplar, basis: [DVec2; 2], count: usize) -> [DVec2; 2] {
                 let off = (difference - basis[0] * step.x - basis[1] * step.y).length();
                 let near = step.x.abs().max(step.y.abs()) <= reach;
                 if alike && near && step != DVec2::ZERO && off < 0.12 * basis[0].length() {
-                    gram += DMat2::from_cols(step * step.x, step * step.y);
-                    sums += DMat2::from_cols(difference * step.x, difference * step.y);
+                    let weight = p.area.min(q.area) as f64;
+                    gram += DMat2::from_cols(step * step.x, step * step.y) * weight;
+                    sums += DMat2::from_cols(difference * step.x, difference * step.y) * weight;
                     votes += 1;
                 }
             }

@@ -7,9 +7,11 @@
 use super::blend::{self, Style, Weights};
 use super::centre;
 use super::clipping::Clipping;
+use super::components::Components;
 use super::exemplar::Exemplar;
 use super::lamps::{self, Instance, Rules};
 use super::layout::Layout;
+use super::measure::Reading;
 use super::patches::{self, Guide};
 use super::period::{self, Continuation};
 use super::recover::{self, Bands, Source};
@@ -70,6 +72,17 @@ pub(super) struct Layer {
 impl Plan {
     /// Plans the texture that [`super::blend`] makes. Errors as there.
     pub fn new(input: &Input, styles: &[Style], params: &Params, job: Job) -> Result<Self> {
+        Self::of(None, input, styles, params, job)
+    }
+
+    /// The same where the first exemplar has been read.
+    pub(super) fn of(
+        mut reading: Option<Reading>,
+        input: &Input,
+        styles: &[Style],
+        params: &Params,
+        job: Job,
+    ) -> Result<Self> {
         params.check()?;
         let weights = Weights::new(styles)?;
         let count = (1 + styles.len()) as f64;
@@ -78,7 +91,8 @@ impl Plan {
             super::check_input(input)?;
             let params = Params { scale, ..params.clone() };
             params.check()?;
-            layers.push(Layer::new(input, &params, job.part(k as f64 / count, (k + 1) as f64 / count))?);
+            let job = job.part(k as f64 / count, (k + 1) as f64 / count);
+            layers.push(Layer::new(reading.take(), input, &params, job)?);
         }
         blend::draw(&mut layers, &weights, params);
         for layer in &mut layers {
@@ -98,16 +112,73 @@ impl Plan {
         self.layers.iter().map(|layer| layer.instances.len()).sum()
     }
 
+    /// How regular the lights of the first exemplar are, as in [`super::Emission::regularity`].
+    pub fn regularity(&self) -> f64 {
+        self.layers.first().map_or(0.0, |layer| layer.regularity)
+    }
+
+    /// The number of lamps that the exemplars show whole.
+    pub fn exemplar_lamps(&self) -> usize {
+        self.layers.iter().map(|layer| layer.exemplar.lamps().count()).sum()
+    }
+
     /// Renders a tile of the texture, and its mask, from the exemplars that the plan was made of.
     ///
     /// Errors: `InvalidArgument` for a tile that is empty or reaches beyond the texture, or exemplars of another number or size.
     pub fn tile(&self, input: &Input, styles: &[Style], tile: Tile, job: Job) -> Result<(Image, Image)> {
         self.check(tile)?;
+        // A crumb, and whatever joins a piece to something larger, lies within its reach of the tile.
+        let margin = if self.has_crumbs() { luminaires::reach(self.crumb) + 2 } else { 0 };
+        let around = tile.widened(margin, self.width, self.height);
+        let (mut texture, mut mask) = self.render(input, styles, around, job)?;
+        if self.has_crumbs() {
+            let mut found = luminaires::components(&mask)?;
+            self.sweep(&mut texture, &mut mask, &mut found, around);
+        }
+        if around == tile {
+            return Ok((texture, mask));
+        }
+        Ok((tile.cut(&texture, around)?, tile.cut(&mask, around)?))
+    }
+
+    /// The whole texture, its mask, and the lamps of that.
+    pub(super) fn all(&self, input: &Input, styles: &[Style], job: Job) -> Result<(Image, Image, Components)> {
+        let (mut texture, mut mask) = self.render(input, styles, self.whole(), job)?;
+        let mut found = luminaires::components(&mask)?;
+        if self.has_crumbs() {
+            self.sweep(&mut texture, &mut mask, &mut found, self.whole());
+        }
+        Ok((texture, mask, found))
+    }
+
+    /// Takes the crumbs out of a tile. What the border of the texture leaves of a lamp is none.
+    fn sweep(&self, texture: &mut Image, mask: &mut Image, found: &mut Components, tile: Tile) {
+        let is_cut = |min: [usize; 2], max: [usize; 2]| {
+            let (low, high) = ([tile.x + min[0], tile.y + min[1]], [tile.x + max[0] + 1, tile.y + max[1] + 1]);
+            low.contains(&0) || high[0] == self.width || high[1] == self.height
+        };
+        luminaires::sweep(texture, mask, found, self.crumb, is_cut);
+    }
+
+    fn has_crumbs(&self) -> bool {
+        self.crumb > 1.0
+    }
+
+    /// A tile, crumbs and all.
+    fn render(&self, input: &Input, styles: &[Style], tile: Tile, job: Job) -> Result<(Image, Image)> {
+        self.check_exemplars(input, styles)?;
+        let inputs = exemplars(input, 1.0, styles);
+        let sources: Vec<Source> =
+            self.layers.iter().zip(inputs).map(|(layer, (input, _))| Source { layer, input }).collect();
+        recover::run(self, &sources, tile, job)
+    }
+
+    /// Checks that exemplars are those, or as large as those, that the plan was made of.
+    pub(super) fn check_exemplars(&self, input: &Input, styles: &[Style]) -> Result<()> {
         if styles.len() + 1 != self.layers.len() {
             let (given, planned) = (styles.len() + 1, self.layers.len());
             return Err(Error::argument(format!("there are {given} exemplars; the plan was made of {planned}")));
         }
-        let mut sources = Vec::new();
         for (layer, (input, _)) in self.layers.iter().zip(exemplars(input, 1.0, styles)) {
             super::check_input(input)?;
             let (size, planned) = ([input.unwarped.width, input.unwarped.height], &layer.exemplar);
@@ -117,17 +188,8 @@ impl Plan {
                     size[0], size[1], planned.width, planned.height
                 )));
             }
-            sources.push(Source { layer, input });
         }
-        // A crumb, and whatever joins a piece to something larger, lies within its reach of the tile.
-        let reach = luminaires::reach(self.crumb);
-        let around = tile.widened(if self.crumb > 0.0 { reach + 2 } else { 0 }, self.width, self.height);
-        let (mut texture, mut mask) = recover::run(self, &sources, around, job)?;
-        luminaires::sweep(&mut texture, &mut mask, self.crumb)?;
-        if around == tile {
-            return Ok((texture, mask));
-        }
-        Ok((tile.cut(&texture, around)?, tile.cut(&mask, around)?))
+        Ok(())
     }
 
     /// The whole texture as a tile.
@@ -168,8 +230,11 @@ impl Tile {
 }
 
 impl Layer {
-    fn new(input: &Input, params: &Params, job: Job) -> Result<Self> {
-        let exemplar = Exemplar::new(input, working_side(input, params), job.part(0.0, 0.15))?;
+    fn new(reading: Option<Reading>, input: &Input, params: &Params, job: Job) -> Result<Self> {
+        let (exemplar, read) = match reading.filter(|r| r.serves(input, params)) {
+            Some(reading) => (reading.exemplar, Some((reading.continuation, reading.regularity))),
+            None => (Exemplar::new(input, working_side(input, params), job.part(0.0, 0.15))?, None),
+        };
         let working = &exemplar.working;
 
         // How the pattern goes on, the size of a patch, and the metadata at that scale.
@@ -179,7 +244,10 @@ impl Layer {
         let (continuation, regularity) = match inside {
             Some(_) => (Continuation::Copy, 0.0),
             None => {
-                let (found, regularity) = period::find(&exemplar, params.least_regularity, job.part(0.15, 0.25))?;
+                let (found, regularity) = match read {
+                    Some(read) => read,
+                    None => period::find(&exemplar, params.least_regularity, job.part(0.15, 0.25))?,
+                };
                 (if params.tileable { found.fitted(params.size())? } else { found }, regularity)
             }
         };
@@ -200,13 +268,13 @@ impl Layer {
         // Which part of the exemplar each part of the texture shows.
         let canvas = (params.size() / working.pitch).ceil();
         let canvas = (canvas.x as usize, canvas.y as usize);
+        let centred = if params.centred { centre::shift(&exemplar, continuation, params.size()) } else { None };
+        let offset = params.offset * params.scale + centred.unwrap_or(DVec2::ZERO);
+        let offset = window.map_or(offset, |w| -w.corner);
         let layout = match inside {
             Some(corner) => window::copy(corner, canvas, working.pitch),
             None => {
                 let guide = Guide { working, metadata: &metadata, metadata_weight: params.metadata_weight };
-                let centred = if params.centred { centre::shift(&exemplar, continuation, params.size()) } else { None };
-                let offset = params.offset * params.scale + centred.unwrap_or(DVec2::ZERO);
-                let offset = window.map_or(offset, |w| -w.corner);
                 // One row is made, and repeated beside itself: that is all that the exemplar tells.
                 let row = match continuation {
                     Continuation::Row([_, across]) => {
@@ -218,7 +286,14 @@ impl Layer {
                     _ => None,
                 };
                 let size = row.map_or(canvas, |r| r.1);
-                let made = patches::place(&guide, continuation, offset, size, block, params.seed, job.part(0.3, 0.9))?;
+                // A row that ends in the exemplar ends in the texture, and begins again at the same distance each time.
+                let laid = match continuation {
+                    Continuation::Row([along, across]) if !params.tileable => {
+                        Continuation::Row([period::repeat_of_row(&exemplar, along).unwrap_or(along), across])
+                    }
+                    _ => continuation,
+                };
+                let made = patches::place(&guide, laid, offset, size, block, params.seed, job.part(0.3, 0.9))?;
                 match row {
                     Some((across, size)) if size != canvas => made.repeated(canvas, across.abs(), working.pitch),
                     _ => made,
@@ -230,8 +305,13 @@ impl Layer {
         let (instances, by_pixel) = match inside {
             None if params.whole_lamps => {
                 let rules = Rules { is_lattice: continuation.lattice().is_some(), wraps: params.tileable };
-                let instances = lamps::resolve(&exemplar, &layout, rules, params.seed, job.part(0.9, 1.0))?;
-                (instances, exemplar.whole.iter().zip(&exemplar.cut).map(|(whole, cut)| !whole && !cut).collect())
+                let instances = match continuation {
+                    Continuation::Tile(basis) => {
+                        lamps::repeat(&exemplar, basis, offset, params.size(), params.tileable)
+                    }
+                    _ => lamps::resolve(&exemplar, &layout, rules, params.seed, job.part(0.9, 1.0))?,
+                };
+                (instances, exemplar.piece.iter().zip(&exemplar.cut).map(|(piece, cut)| !piece && !cut).collect())
             }
             _ => (Vec::new(), vec![true; exemplar.whole.len()]),
         };
@@ -261,13 +341,17 @@ impl Layer {
 
     /// Area in texels below which a piece of light is a crumb; 0 where no lamp says what is small.
     fn crumb(&self) -> f64 {
-        let smallest = self.exemplar.lamps().map(|l| l.area as f64).fold(f64::INFINITY, f64::min);
+        let smallest = self.exemplar.pieces().map(|(_, l)| l.area as f64).fold(f64::INFINITY, f64::min);
         if self.instances.is_empty() { 0.0 } else { CRUMB * smallest / self.scale.powi(2) }
     }
 }
 
 /// All exemplars and their unwarped pixels per texel.
-fn exemplars<'a>(first: &'a Input, scale: f64, styles: &'a [Style]) -> impl Iterator<Item = (&'a Input<'a>, f64)> {
+pub(super) fn exemplars<'a>(
+    first: &'a Input,
+    scale: f64,
+    styles: &'a [Style],
+) -> impl Iterator<Item = (&'a Input<'a>, f64)> {
     std::iter::once((first, scale)).chain(styles.iter().map(|style| (&style.input, style.scale)))
 }
 

@@ -115,7 +115,7 @@ fn texels(layer: &Layer, instance: &Instance, width: usize, height: usize) -> Op
 
 impl Layer {
     /// Shifts become whole pixels where pixels are copied one to one, so that copies are exact.
-    fn rounded(&self, shift: DVec2) -> DVec2 {
+    pub fn rounded(&self, shift: DVec2) -> DVec2 {
         if self.scale == 1.0 { shift.round() } else { shift }
     }
 }

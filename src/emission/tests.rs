@@ -448,3 +448,61 @@ fn an_exemplar_is_measured_in_its_own_pixels() {
     let alone = of(&Design::new(80, 60, |x, y| (x - 40.0).abs() < 10.0 && (y - 25.0).abs() < 8.0));
     assert_eq!((alone.lamp_length, alone.spacing), (20.0, 0.0));
 }
+
+#[test]
+fn what_was_measured_is_not_read_again_and_gives_the_same_bits() {
+    let exemplar = Design::new(200, 180, grid(40.0, 36.0, 14.0, 10.0)).with_corners_cut();
+    let params = Params { width: 300, height: 280, ..Params::default() };
+    let job = Monitor::default();
+    // Read with other settings it is read again.
+    for read_with in [Params::default(), params.clone(), Params { working_side: 64, ..Params::default() }] {
+        let measured = measure(&exemplar.input(), &read_with, job.job()).unwrap();
+        let result = blend_measured(measured, &exemplar.input(), &[], &params, job.job()).unwrap();
+        let fresh = exemplar.run(&params).unwrap();
+        assert_eq!((result.texture, result.luminaires), (fresh.texture, fresh.luminaires));
+    }
+}
+
+#[test]
+fn a_chandelier_is_repeated_as_it_hangs() {
+    // Twelve bulbs on a ring and three in its middle, none at equal distances, on a bare ceiling.
+    let bulbs: Vec<DVec2> = (0..12)
+        .map(|i| (DVec2::from_angle(std::f64::consts::TAU * (f64::from(i) + 0.15 * f64::from(i % 3)) / 12.0), i))
+        .map(|(direction, i)| DVec2::new(150.0, 130.0) + direction * (44.0 + 5.0 * f64::from(i % 2)))
+        .chain([DVec2::new(141.0, 127.0), DVec2::new(158.0, 122.0), DVec2::new(152.0, 141.0)])
+        .collect();
+    let exemplar = Design::new(300, 280, |x, y| bulbs.iter().any(|b| b.distance(DVec2::new(x, y)) < 5.0));
+    let result = exemplar.run(&Params { width: 600, height: 560, ..Params::default() }).unwrap();
+    assert!(matches!(result.continuation, Continuation::Tile(_)), "{:?}", result.continuation);
+    assert_eq!(result.luminaires.len(), 4 * bulbs.len(), "{:?}", result.continuation);
+    assert!(result.error < 1e-6, "{}", result.error);
+    for bulb in &bulbs {
+        for turn in [DVec2::ZERO, DVec2::X * 300.0, DVec2::Y * 280.0, DVec2::new(300.0, 280.0)] {
+            let nearest = result.luminaires.iter().map(|l| l.centre.distance(*bulb + turn)).fold(f64::MAX, f64::min);
+            assert!(nearest < 1.0, "{bulb} {turn} {nearest}");
+        }
+    }
+}
+
+#[test]
+fn textures_smaller_than_a_patch_show_what_fits() {
+    let exemplar = Design::new(200, 200, grid(40.0, 40.0, 14.0, 14.0));
+    for (width, height) in [(1, 1), (30, 9), (59, 41), (41, 59)] {
+        for (block, scale) in [(0, 1.0), (150, 1.0), (150, 0.25)] {
+            // Laid out anew, not copied.
+            let params = Params { width, height, block, scale, centred: true, ..Params::default() };
+            let result = exemplar.run(&params).unwrap();
+            assert!(matches!(result.continuation, Continuation::Lattice(_)));
+            let lamps = inner(&result.luminaires, width, height);
+            let area = 196.0 / (scale * scale);
+            assert!(lamps.iter().all(|l| (l.area / area - 1.0).abs() < 0.15), "{width} x {height} {lamps:?}");
+            // One in the middle.
+            let size = DVec2::new(width as f64, height as f64);
+            let side = 14.0 / scale;
+            if size.min_element() > side + 2.0 && size.max_element() < 40.0 / scale {
+                assert_eq!(lamps.len(), 1, "{width} x {height}");
+                assert!(lamps[0].centre.distance(size / 2.0) < 1.0, "{}", lamps[0].centre);
+            }
+        }
+    }
+}

@@ -14,11 +14,12 @@ use super::pointer::Out;
 use super::scene::missing;
 use super::stage::{Stage, need};
 use super::status::luxfer_status;
-use crate::emission::{self, Emission, Style};
+use crate::emission::{self, Emission, LampList, Luminaire, Style};
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::Homography;
 use crate::image::Image;
 use glam::{DMat3, DVec2};
+use std::borrow::Cow;
 use std::sync::Arc;
 
 /// An emissive texture in the making. See luxfer_emission_create.
@@ -134,18 +135,23 @@ pub struct luxfer_emission_report {
     /// Number of luminaires; see luxfer_emission_get_luminaire.
     pub luminaires: u32,
     /// The largest relative difference between texture and exemplar in the share that is lit, the area of whole lamps, and the
-    /// distance from each to the nearest other.
+    /// distance from each to the nearest other. It weighs as much as exemplar_lamps. NaN of a plan, which is no texture yet.
     pub error: f64,
     /// How regular the lights are, in [0, 1]: correlation with themselves shifted by the lattice that was found, 0 without.
     pub regularity: f64,
+    /// Number of lamps that the exemplars show whole. Fewer than six tell little about a design: what the border cuts off is a large
+    /// part of what there is, and without a whole lamp the texture shows the cut ones.
+    pub exemplar_lamps: u32,
+    /// 0.
+    pub reserved: u32,
 }
 
 // SAFETY: plain numbers.
 unsafe impl Versioned for luxfer_emission_report {
     const NAME: &'static str = "luxfer_emission_report";
-    const SIZES: &'static [usize] = &[24];
+    const SIZES: &'static [usize] = &[32];
     fn defaults() -> Self {
-        Self { struct_size: 24, luminaires: 0, error: 0.0, regularity: 0.0 }
+        Self { struct_size: 32, luminaires: 0, error: 0.0, regularity: 0.0, exemplar_lamps: 0, reserved: 0 }
     }
 }
 
@@ -219,7 +225,30 @@ pub(super) struct Inputs {
 #[derive(Default)]
 pub(super) struct Made {
     pub texture: Option<Arc<Emission>>,
-    pub plan: Option<(emission::Plan, Inputs)>,
+    pub plan: Option<Planned>,
+}
+
+/// A plan, its lamps, and what it was made from.
+pub(super) struct Planned {
+    pub plan: emission::Plan,
+    pub lamps: LampList,
+    pub inputs: Inputs,
+}
+
+impl Made {
+    fn luminaires(&self) -> usize {
+        let planned = self.plan.as_ref().map(|p| p.lamps.count());
+        planned.or(self.texture.as_ref().map(|t| t.luminaires.len())).unwrap_or(0)
+    }
+
+    fn luminaire(&self, index: u32) -> Result<Cow<'_, Luminaire>> {
+        let lamp = match (&self.plan, &self.texture) {
+            (Some(Planned { plan, lamps, .. }), _) => lamps.get(plan, index as usize).map(Cow::Owned),
+            (_, Some(texture)) => texture.luminaires.get(index as usize).map(Cow::Borrowed),
+            _ => None,
+        };
+        lamp.ok_or_else(|| missing("luminaire", index, self.luminaires()))
+    }
 }
 
 impl Exemplar {
@@ -384,7 +413,7 @@ pub unsafe extern "C" fn luxfer_emission_get_image(
     })
 }
 
-/// Tells how good the texture is. Any thread.
+/// Tells how good the texture is, or what a plan consists of. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_get_report(
@@ -393,18 +422,26 @@ pub unsafe extern "C" fn luxfer_emission_get_report(
 ) -> luxfer_status {
     enter(emission, |stage| {
         let out = Report::new(report)?;
-        let output = texture(stage)?;
+        let made = stage.output()?;
+        let count = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
+        let (error, regularity, exemplar_lamps) = match (&made.plan, &made.texture) {
+            (Some(planned), _) => (f64::NAN, planned.plan.regularity(), planned.plan.exemplar_lamps()),
+            (_, Some(texture)) => (texture.error, texture.regularity, texture.exemplar_lamps),
+            _ => (f64::NAN, 0.0, 0),
+        };
         out.set(luxfer_emission_report {
-            luminaires: u32::try_from(output.luminaires.len()).unwrap_or(u32::MAX),
-            error: output.error,
-            regularity: output.regularity,
+            luminaires: count(made.luminaires()),
+            error,
+            regularity,
+            exemplar_lamps: count(exemplar_lamps),
             ..luxfer_emission_report::defaults()
         });
         Ok(())
     })
 }
 
-/// Describes a luminaire of the texture. Any thread.
+/// Describes a luminaire of the texture. Of a plan, which has no texel yet, it is as the exemplar shows it, cut where the texture
+/// ends; lights that run through their exemplar are no lamps and not counted. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such luminaire.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_get_luminaire(
@@ -414,9 +451,8 @@ pub unsafe extern "C" fn luxfer_emission_get_luminaire(
 ) -> luxfer_status {
     enter(emission, |stage| {
         let out = Report::new(luminaire)?;
-        let output = texture(stage)?;
-        let count = output.luminaires.len();
-        let lamp = output.luminaires.get(index as usize).ok_or_else(|| missing("luminaire", index, count))?;
+        let output = stage.output()?;
+        let lamp = output.luminaire(index)?;
         out.set(luxfer_luminaire {
             corners: lamp.outline.len() as u32,
             centre: lamp.centre.to_array(),
@@ -443,9 +479,8 @@ pub unsafe extern "C" fn luxfer_emission_get_corner(
 ) -> luxfer_status {
     enter(emission, |stage| {
         let (out_x, out_y) = (Out::new(x, "x")?, Out::new(y, "y")?);
-        let output = texture(stage)?;
-        let count = output.luminaires.len();
-        let lamp = output.luminaires.get(index as usize).ok_or_else(|| missing("luminaire", index, count))?;
+        let output = stage.output()?;
+        let lamp = output.luminaire(index)?;
         let point = lamp.outline.get(corner as usize).ok_or_else(|| missing("corner", corner, lamp.outline.len()))?;
         out_x.set(point.x);
         out_y.set(point.y);

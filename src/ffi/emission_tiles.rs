@@ -4,7 +4,9 @@
 //! where every lamp goes, and luxfer_emission_render_tile renders any part. Beside the exemplars a plan holds a place for each
 //! lamp and the outlines of the patches, but no texel.
 
-use super::emission::{Exemplar, Further, Made, luxfer_emission, luxfer_emission_params, photo_of, unwarped_of};
+use super::emission::{
+    Exemplar, Further, Made, Planned, luxfer_emission, luxfer_emission_params, photo_of, unwarped_of,
+};
 use super::guard::enter;
 use super::handle::{self, Owned};
 use super::image::{Pixels, luxfer_image};
@@ -12,7 +14,7 @@ use super::job::luxfer_job;
 use super::params;
 use super::pointer::Out;
 use super::status::luxfer_status;
-use crate::emission::{Plan, Tile};
+use crate::emission::{LampList, Plan, Tile};
 use crate::error::{Error, ErrorKind};
 use crate::image::Image;
 use crate::job::Monitor;
@@ -59,7 +61,8 @@ pub unsafe extern "C" fn luxfer_emission_clear_styles(emission: *mut luxfer_emis
 }
 
 /// Starts a job that plans the texture, in the place of luxfer_emission_start, whose results go. params and what the call and
-/// the job return are the same. The caller releases *job. Any thread.
+/// the job return are the same. luxfer_emission_get_report and luxfer_emission_get_luminaire tell the lamps of the plan.
+/// The caller releases *job. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_start_plan(
     emission: *mut luxfer_emission,
@@ -70,8 +73,12 @@ pub unsafe extern "C" fn luxfer_emission_start_plan(
         let params = params::read(params)?.params()?;
         stage.inputs().with(|_, _| Ok(()))?;
         stage.start(job, move |inputs, _, job| {
-            let plan = inputs.with(|input, styles| Plan::new(input, styles, &params, job))?;
-            Ok(Made { plan: Some((plan, inputs.clone())), ..Made::default() })
+            let (plan, lamps) = inputs.with(|input, styles| {
+                let plan = Plan::new(input, styles, &params, job.part(0.0, 0.95))?;
+                let lamps = LampList::new(&plan, input, styles, job.part(0.95, 1.0))?;
+                Ok((plan, lamps))
+            })?;
+            Ok(Made { plan: Some(Planned { plan, lamps, inputs: inputs.clone() }), ..Made::default() })
         })
     })
 }
@@ -93,7 +100,7 @@ pub unsafe extern "C" fn luxfer_emission_render_tile(
     enter(emission, |stage| {
         let out = Out::new(tile, "tile")?;
         let made = stage.output()?;
-        let (plan, inputs) = made.plan.as_ref().ok_or_else(|| {
+        let Planned { plan, inputs, .. } = made.plan.as_ref().ok_or_else(|| {
             Error::new(ErrorKind::NotReady, "nothing is planned: call luxfer_emission_start_plan and wait for its job")
         })?;
         let part = Tile { x: x as usize, y: y as usize, width: width as usize, height: height as usize };

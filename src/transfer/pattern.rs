@@ -1,6 +1,6 @@
 //! How the pattern of lights lies on the surface: how large, how turned, from where on, and where not.
 
-use crate::emission;
+use crate::emission::{self, Measure};
 use crate::error::{Error, Result, check_range};
 use crate::job::Job;
 use crate::scene::surface::Surface;
@@ -65,27 +65,32 @@ impl Pattern {
         Ok(())
     }
 
-    /// Metres per unwarped pixel, where the photo's camera is so many metres from its plane that a pixel is `at_distance`.
+    /// Metres per unwarped pixel, where the photo's camera is so many metres from its plane that a pixel is `at_distance`; and what
+    /// was measured for that.
     pub(super) fn pixel_size(
         &self,
         at_distance: f64,
         (exemplar, params): (&emission::Input, &emission::Params),
         surface: &Surface,
         job: Job,
-    ) -> Result<f64> {
-        let measure = || emission::measure(exemplar, params, job);
+    ) -> Result<(f64, Option<Measure>)> {
         let length = |metres: f64, pixels: f64, what: &str| match pixels > 0.0 {
             true => Ok(metres / pixels),
             false => Err(Error::degenerate(format!(
                 "the pattern cannot be scaled by {what}: the photo shows too few whole ones; scale it by the distance"
             ))),
         };
-        match self.scale {
-            Scale::Distance => Ok(at_distance),
-            Scale::Lamp(metres) => length(metres, measure()?.lamp_length, "its lamps"),
-            Scale::Spacing(metres) => length(metres, measure()?.spacing, "the spacing of its lamps"),
-            Scale::Across => length(surface.size.x.into(), measure()?.width, "its width"),
+        if self.scale == Scale::Distance {
+            return Ok((at_distance, None));
         }
+        let measured = emission::measure(exemplar, params, job)?;
+        let pixel = match self.scale {
+            Scale::Distance => at_distance,
+            Scale::Lamp(metres) => length(metres, measured.lamp_length, "its lamps")?,
+            Scale::Spacing(metres) => length(metres, measured.spacing, "the spacing of its lamps")?,
+            Scale::Across => length(surface.size.x.into(), measured.width, "its width")?,
+        };
+        Ok((pixel, Some(measured)))
     }
 
     /// Texels of the given size, or as fine as unwarped pixels, but no more than `max_texels` along the longer side.

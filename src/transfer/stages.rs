@@ -108,7 +108,7 @@ impl Transfer {
         let pattern = &self.params.pattern;
         let at_distance = unwarped.pixel_size * self.params.plane_distance;
         let exemplar = (&input, &self.params.emission);
-        let pixel = pattern.pixel_size(at_distance, exemplar, surface, job.part(0.1, 0.15))?;
+        let (pixel, measured) = pattern.pixel_size(at_distance, exemplar, surface, job.part(0.1, 0.15))?;
         let grid = pattern.texel_grid(surface, pixel, self.params.max_texels)?;
         let params = emission::Params {
             width: grid.width,
@@ -117,7 +117,11 @@ impl Transfer {
             offset: pattern.offset * grid.density,
             ..self.params.emission.clone()
         };
-        emission::run(&input, &params, job.part(0.15, 1.0))
+        let job = job.part(0.15, 1.0);
+        match measured {
+            Some(measured) => emission::blend_measured(measured, &input, &[], &params, job),
+            None => emission::run(&input, &params, job),
+        }
     }
 
     pub(super) fn relight(&mut self, job: Job) -> Result<()> {

@@ -91,7 +91,11 @@ class Transfer(Case):
         emission = luxfer.Emission(context(), *exemplar(4))
         whole = emission.run(width=150, height=130).image().numpy()
         mask = emission.image("mask").numpy()
+        lamps, lit = emission.luminaires, emission.report.exemplar_lamps
         emission.start_plan(width=150, height=130).wait()
+        self.assertEqual(emission.report.exemplar_lamps, lit)
+        planned = {lamp.centre: lamp.area for lamp in emission.luminaires}
+        self.assertEqual(planned, {lamp.centre: lamp.area for lamp in lamps})
         with self.assertRaises(luxfer.errors.NotReady):
             emission.image("texture")
         for x, y, width, height in ((100, 90, 50, 40), (0, 0, 7, 130), (149, 129, 1, 1)):

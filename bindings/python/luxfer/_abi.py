@@ -638,6 +638,8 @@ class luxfer_emission_report(Structure):
         ("luminaires", c_uint32),
         ("error", c_double),
         ("regularity", c_double),
+        ("exemplar_lamps", c_uint32),
+        ("reserved", c_uint32),
     ]
     result = types.EmissionReport
 

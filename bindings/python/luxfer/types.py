@@ -1102,10 +1102,14 @@ class EmissionReport:
     """Number of luminaires; see luxfer_emission_get_luminaire."""
     error: float
     """The largest relative difference between texture and exemplar in the share that is lit, the area of whole
-    lamps, and the distance from each to the nearest other."""
+    lamps, and the distance from each to the nearest other. It weighs as much as exemplar_lamps. NaN of a plan,
+    which is no texture yet."""
     regularity: float
     """How regular the lights are, in [0, 1]: correlation with themselves shifted by the lattice that was found,
     0 without."""
+    exemplar_lamps: int
+    """Number of lamps that the exemplars show whole. Fewer than six tell little about a design: what the border
+    cuts off is a large part of what there is, and without a whole lamp the texture shows the cut ones."""
 
 
 @dataclass(frozen=True)

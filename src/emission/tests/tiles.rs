@@ -53,3 +53,73 @@ fn tiles_that_are_no_part_of_the_texture_are_refused() {
     let other = Design::new(90, 100, grid(33.0, 29.0, 12.0, 9.0));
     assert!(plan.tile(&other.input(), &[], plan.whole(), Monitor::default().job()).is_err());
 }
+
+#[test]
+fn a_plan_lists_the_lamps_that_its_texture_shows() {
+    let lattice = || Design::new(200, 180, grid(33.0, 29.0, 12.0, 9.0)).with_corners_cut();
+    let round = Design::new(200, 180, |x, y| (x.rem_euclid(40.0) - 20.0).hypot(y.rem_euclid(40.0) - 20.0) < 9.0);
+    let whole_pixels = Params { width: 310, height: 290, ..Params::default() };
+    for (exemplar, params) in [
+        (lattice(), whole_pixels.clone()),
+        (lattice(), Params { tileable: true, ..whole_pixels.clone() }),
+        (lattice(), Params { scale: 0.37, ..whole_pixels.clone() }),
+        (round, Params { scale: 0.7, even_lamps: true, ..whole_pixels.clone() }),
+        // A part of the exemplar, copied.
+        (lattice(), Params { width: 110, height: 90, scale: 1.1, ..whole_pixels }),
+    ] {
+        let job = Monitor::default();
+        let plan = Plan::new(&exemplar.input(), &[], &params, job.job()).unwrap();
+        let list = LampList::new(&plan, &exemplar.input(), &[], job.job()).unwrap();
+        let listed: Vec<Luminaire> = (0..list.count()).map(|i| list.get(&plan, i).unwrap()).collect();
+        assert!(list.get(&plan, list.count()).is_none());
+        let shown = exemplar.run(&params).unwrap().luminaires;
+        // Slivers of less than a texel at the border may be in one of the two only.
+        let large = |list: &[Luminaire]| list.iter().filter(|l| l.area > 8.0).cloned().collect::<Vec<_>>();
+        let (listed, shown) = (large(&listed), large(&shown));
+        assert_eq!(listed.len(), shown.len(), "{params:?}");
+        assert!((listed.iter().map(|l| l.flux_share).sum::<f64>() - 1.0).abs() < 0.01);
+        for lamp in &shown {
+            let apart = |l: &&Luminaire| l.centre.distance(lamp.centre);
+            let same = listed.iter().min_by(|a, b| apart(a).total_cmp(&apart(b))).unwrap();
+            // To the bit where texels are pixels and lamps are whole, else to the texel.
+            let size = DVec2::new(params.width as f64, params.height as f64);
+            let is_inside = lamp.outline.iter().all(|p| p.min_element() > 0.0 && p.cmplt(size).all());
+            if params.scale == 1.0 && is_inside {
+                assert_eq!((same.size, same.area, same.centre), (lamp.size, lamp.area, lamp.centre));
+                assert_eq!(same.outline, lamp.outline);
+                assert!((same.colour - lamp.colour).abs().max_element() < 1e-4);
+            }
+            let (off, perimeter) = (same.centre.distance(lamp.centre), 2.0 * lamp.size.element_sum());
+            assert!(off < 1.0 && (same.area - lamp.area).abs() < 0.6 * perimeter, "{params:?} {same:?} {lamp:?}");
+            // What is left of a lamp at the border is measured along the axes of the whole.
+            let size_off = (same.size - lamp.size).abs().max_element();
+            assert!(!is_inside || size_off < 2.5, "{} {}", same.size, lamp.size);
+        }
+    }
+}
+
+#[test]
+fn a_plan_of_blended_styles_lists_the_lamps_of_each() {
+    let exemplar = |side: f64| {
+        Design::new(280, 280, move |x, y| {
+            (x.rem_euclid(40.0) - 20.0).abs().max((y.rem_euclid(40.0) - 20.0).abs()) < side / 2.0
+        })
+    };
+    let (small, large) = (exemplar(8.0), exemplar(18.0));
+    let ramp = Image::from_fn(2, 1, |x, _| [x as f32]).unwrap();
+    let params = Params { width: 800, height: 600, ..Params::default() };
+    let styles = [Style { input: large.input(), scale: 1.0, weights: &ramp }];
+    let job = Monitor::default();
+    let plan = Plan::new(&small.input(), &styles, &params, job.job()).unwrap();
+    let list = LampList::new(&plan, &small.input(), &styles, job.job()).unwrap();
+    let shown = blend(&small.input(), &styles, &params, job.job()).unwrap().luminaires;
+    let areas = |lamps: &mut dyn Iterator<Item = f64>| {
+        let mut areas: Vec<f64> = lamps.collect();
+        areas.sort_by(f64::total_cmp);
+        areas
+    };
+    let listed = areas(&mut (0..list.count()).map(|i| list.get(&plan, i).unwrap().area));
+    assert_eq!(listed, areas(&mut shown.iter().map(|l| l.area)));
+    assert_eq!((listed[0], listed[listed.len() - 1]), (64.0, 324.0));
+    assert!(LampList::new(&plan, &small.input(), &[], job.job()).is_err());
+}

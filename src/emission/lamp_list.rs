@@ -1,0 +1,139 @@
+//! The lamps of a plan, one by one: what a texture consists of that is never there as a whole.
+//!
+//! Every lamp of a texture is a shifted one of an exemplar, so a list needs their outlines once, and for each lamp its place.
+//! Where texels are not unwarped pixels a lamp is what it is in the exemplar; a texture shows it to the texel. Lights that run
+//! through their exemplar are no lamps, and not in the list; without [`super::Params::whole_lamps`] there are none.
+
+use super::blend::Style;
+use super::lamps::Instance;
+use super::plan::{Layer, Plan, exemplars};
+use super::{Continuation, Input, Luminaire, luminaires, recover};
+use crate::error::Result;
+use crate::geometry::polygon;
+use crate::image::colour::luminance;
+use crate::job::Job;
+use glam::{DVec2, Vec2Swizzles};
+
+/// Share of a lamp that must be within the texture for it to be one of its lamps.
+const LEAST_SHOWN: f64 = 1e-6;
+
+/// The lamps that a plan shows.
+pub struct LampList {
+    /// The components of each exemplar, in its pixels.
+    shapes: Vec<Vec<Luminaire>>,
+    /// Each lamp and its exemplar.
+    shown: Vec<(u32, Instance)>,
+    /// Light of all of them.
+    flux: f64,
+}
+
+impl LampList {
+    /// Lists the lamps of a plan, from the exemplars it was made of. Errors as of [`Plan::tile`].
+    pub fn new(plan: &Plan, input: &Input, styles: &[Style], job: Job) -> Result<Self> {
+        plan.check_exemplars(input, styles)?;
+        let mut list = Self { shapes: Vec::new(), shown: Vec::new(), flux: 0.0 };
+        for (layer, (input, _)) in plan.layers.iter().zip(exemplars(input, 1.0, styles)) {
+            let colours = recover::mean_colours(layer, input, job)?;
+            let mut shapes = luminaires::find(&input.unwarped.to_rgb()?, &layer.exemplar.components, job)?;
+            shapes.iter_mut().zip(colours).for_each(|(shape, colour)| shape.colour = colour);
+            list.shapes.push(shapes);
+        }
+        for (k, layer) in plan.layers.iter().enumerate() {
+            job.check()?;
+            // A part of the exemplar shows the lamps that lie there.
+            let copied = layer.layout.shifts.first().filter(|_| layer.continuation == Continuation::Copy);
+            let copies = copied.map(|shift| {
+                let instance = |component| Instance { component, shift: shift.exact };
+                (0..layer.exemplar.components.list.len()).map(instance).collect::<Vec<_>>()
+            });
+            for &instance in copies.as_ref().unwrap_or(&layer.instances) {
+                let lamp = list.placed(plan, k, instance);
+                if lamp.area > LEAST_SHOWN {
+                    list.shown.push((k as u32, instance));
+                    list.flux += flux(&lamp);
+                }
+            }
+        }
+        Ok(list)
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.shown.len()
+    }
+
+    /// One of them; of those that the border cuts, what is within.
+    pub fn get(&self, plan: &Plan, index: usize) -> Option<Luminaire> {
+        let &(k, instance) = self.shown.get(index)?;
+        let mut lamp = self.placed(plan, k as usize, instance);
+        lamp.flux_share = if self.flux > 0.0 { flux(&lamp) / self.flux } else { 0.0 };
+        Some(lamp)
+    }
+
+    /// A lamp where the texture shows it.
+    fn placed(&self, plan: &Plan, k: usize, instance: Instance) -> Luminaire {
+        let layer: &Layer = &plan.layers[k];
+        let shape = &self.shapes[k][instance.component];
+        let shift = layer.rounded(instance.shift);
+        let size = DVec2::new(plan.width as f64, plan.height as f64);
+        let outline: Vec<DVec2> = shape.outline.iter().map(|p| (*p + shift) / layer.scale).collect();
+        let whole = Luminaire {
+            centre: (shape.centre + shift) / layer.scale,
+            size: shape.size / layer.scale,
+            area: shape.area / layer.scale.powi(2),
+            outline,
+            ..shape.clone()
+        };
+        // Copied lights are dimmed by the exemplar's weight; others are there or not.
+        let whole = match layer.continuation {
+            Continuation::Copy => Luminaire { colour: whole.colour * plan.weights.at(k, whole.centre / size), ..whole },
+            _ => whole,
+        };
+        if whole.outline.iter().all(|p| p.cmpge(DVec2::ZERO).all() && p.cmple(size).all()) {
+            return whole;
+        }
+        within(whole, size)
+    }
+}
+
+fn flux(lamp: &Luminaire) -> f64 {
+    f64::from(luminance(lamp.colour)) * lamp.area
+}
+
+/// What of a lamp lies within a texture of the given size.
+fn within(lamp: Luminaire, size: DVec2) -> Luminaire {
+    let sides = [(DVec2::NEG_X, 0.0), (DVec2::NEG_Y, 0.0), (DVec2::X, size.x), (DVec2::Y, size.y)];
+    let outline =
+        sides.iter().fold(lamp.outline.clone(), |outline, &(normal, offset)| polygon::clip(&outline, normal, offset));
+    let all = polygon::area(&lamp.outline).abs();
+    let left = polygon::area(&outline).abs();
+    let share = if all > 0.0 { (left / all).min(1.0) } else { 0.0 };
+    if share <= 0.0 {
+        return Luminaire { area: 0.0, outline: Vec::new(), ..lamp };
+    }
+    let axis = DVec2::from_angle(lamp.orientation);
+    let extent = |axis: DVec2| {
+        let along = outline.iter().map(|p| p.dot(axis));
+        along.clone().fold(f64::NEG_INFINITY, f64::max) - along.fold(f64::INFINITY, f64::min)
+    };
+    // What is left may be longer across than along.
+    let (size, quarter) = (DVec2::new(extent(axis), extent(axis.perp())), std::f64::consts::FRAC_PI_2);
+    let (size, orientation) = match lamp.orientation {
+        angle if size.x >= size.y => (size, angle),
+        angle => (size.yx(), if angle > 0.0 { angle - quarter } else { angle + quarter }),
+    };
+    Luminaire { centre: centroid(&outline), size, orientation, area: lamp.area * share, outline, ..lamp }
+}
+
+/// The centre of what a polygon encloses.
+fn centroid(corners: &[DVec2]) -> DVec2 {
+    let origin = corners.first().copied().unwrap_or_default();
+    let (mut sum, mut area) = (DVec2::ZERO, 0.0);
+    for (i, p) in corners.iter().enumerate() {
+        let (p, q) = (*p - origin, corners[(i + 1) % corners.len()] - origin);
+        let part = p.perp_dot(q);
+        sum += (p + q) * part / 3.0;
+        area += part;
+    }
+    origin + if area == 0.0 { DVec2::ZERO } else { sum / area }
+}
