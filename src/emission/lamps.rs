@@ -186,7 +186,7 @@ pub fn wrapped(instances: &[Instance], size: DVec2) -> Vec<Instance> {
 
 /// Puts in the place of a lamp that the photo shows small one like it that it shows large. Which of several is drawn, so
 /// that they keep their variety.
-fn show_sharply(exemplar: &Exemplar, instances: &mut [Instance], seed: u64) {
+pub fn show_sharply(exemplar: &Exemplar, instances: &mut [Instance], seed: u64) {
     let lamps = &exemplar.components.list;
     let sharp = |k: usize| -> Vec<usize> {
         let is_like = |j: &usize| {

@@ -20,6 +20,7 @@
 //! Not modelled: lamps that are a mixture of two exemplars', and a pattern that bends from one plane into another.
 
 mod blend;
+mod cells;
 mod centre;
 mod clipping;
 mod components;

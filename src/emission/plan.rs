@@ -5,6 +5,7 @@
 //! the number of threads.
 
 use super::blend::{self, Style, Weights};
+use super::cells;
 use super::centre;
 use super::clipping::Clipping;
 use super::components::Components;
@@ -241,16 +242,14 @@ impl Layer {
         let stays = params.tileable || params.centred;
         let window = if stays { None } else { Window::find(&exemplar, params)? };
         let inside = window.as_ref().filter(|w| w.is_shown).map(|w| w.corner);
-        let (continuation, regularity) = match inside {
+        let (found, regularity) = match inside {
             Some(_) => (Continuation::Copy, 0.0),
-            None => {
-                let (found, regularity) = match read {
-                    Some(read) => read,
-                    None => period::find(&exemplar, params.least_regularity, job.part(0.15, 0.25))?,
-                };
-                (if params.tileable { found.fitted(params.size())? } else { found }, regularity)
-            }
+            None => match read {
+                Some(read) => read,
+                None => period::find(&exemplar, params.least_regularity, job.part(0.15, 0.25))?,
+            },
         };
+        let continuation = if params.tileable { found.fitted(params.size())? } else { found };
         let block = if params.block > 0 { params.block } else { default_block(&exemplar, continuation) };
         let reach = continuation
             .lattice()
@@ -305,7 +304,14 @@ impl Layer {
         let (instances, by_pixel) = match inside {
             None if params.whole_lamps => {
                 let rules = Rules { is_lattice: continuation.lattice().is_some(), wraps: params.tileable };
+                let laid = found.lattice().zip(continuation.lattice()).filter(|_| params.tileable);
+                let stretched = laid.and_then(|(own, stretched)| {
+                    cells::place(&exemplar, &layout, [own, stretched], offset, params.size(), params.seed)
+                });
                 let instances = match continuation {
+                    Continuation::Lattice(_) | Continuation::Row(_) if stretched.is_some() => {
+                        stretched.unwrap_or_default()
+                    }
                     Continuation::Tile(basis) => {
                         lamps::repeat(&exemplar, basis, offset, params.size(), params.tileable)
                     }

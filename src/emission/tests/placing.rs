@@ -146,6 +146,16 @@ fn tileable_textures_repeat_without_a_seam() {
             _ => assert!(least > 0.85 * most, "{name}: lamps of {least} to {most} texels"),
         }
         if let Some([a, b]) = result.continuation.lattice() {
+            // No lamp keeps the distance that the exemplar has: all lie on the stretched lattice, one in each of its cells.
+            let lamps = inner(&result.luminaires, width, height);
+            let centres: Vec<DVec2> = lamps.iter().map(|l| l.centre).collect();
+            let basis = [a / scale, b / scale];
+            let phase = statistics::phase(&centres, basis);
+            assert!(phase < 0.02, "{name}: {phase}");
+            let expected = size.element_product() / basis[0].perp_dot(basis[1]).abs();
+            let lit = result.mask.data.iter().sum::<f32>() as f64;
+            let mean = lamps.iter().map(|l| l.area).sum::<f64>() / lamps.len() as f64;
+            assert!((lit / mean / expected - 1.0).abs() < 0.02, "{name}: {} {expected}", lit / mean);
             let steps = DMat2::from_cols(a, b).inverse() * DVec2::new(width as f64 * scale, 0.0);
             assert!((steps - steps.round()).length() < 1e-9);
         }
