@@ -14,8 +14,7 @@ use crate::exec;
 use crate::image::{Image, try_vec};
 use crate::job::Job;
 use crate::rng::{self, Rng};
-use crate::simd::widest;
-use glam::{DMat2, DVec2};
+use glam::{DMat2, DVec2, Vec3, Vec4};
 use std::collections::BTreeMap;
 
 /// Candidates per patch where any shift is allowed, and the most where the lattice allows too many.
@@ -27,11 +26,14 @@ const TOLERANCE: (f32, f32) = (1.1, 1e-6);
 const ENOUGH_COVERAGE: f64 = 0.95;
 /// Added to the cost of a seam on a lamp: more than any path around it.
 const LAMP_COST: f32 = 1e4;
+/// Of more patches than this, only those that agree best in one of so many rows are compared in all.
+const FINALISTS: usize = 16;
+const ROW_STEP: usize = 4;
 /// Pixels compared by one thread before another is worth waking.
 const TASK: usize = 1 << 16;
 
-/// What is compared of a pixel: channels scaled by the roots of their weights, so that squares add up as they are.
-type Feature = [f32; 8];
+/// What is compared of a pixel, colour and metadata: scaled by the roots of their weights, so that squares add up as they are.
+type Feature = [Vec4; 2];
 
 /// Colour and metadata of the exemplar, and their weights.
 pub struct Guide<'a> {
@@ -45,10 +47,7 @@ impl Guide<'_> {
         let (colour, metadata) = self.scales();
         let pixels = self.working.colour.data.chunks_exact(3).zip(self.metadata.data.chunks_exact(3));
         pixels
-            .map(|(c, m)| {
-                let (c, m) = ([c[0], c[1], c[2]].map(|v| v * colour), [m[0], m[1], m[2]].map(|v| v * metadata));
-                [c[0], c[1], c[2], m[0], m[1], m[2], 0.0, 0.0]
-            })
+            .map(|(c, m)| [Vec3::from_slice(c).extend(0.0) * colour, Vec3::from_slice(m).extend(0.0) * metadata])
             .collect()
     }
 
@@ -57,28 +56,32 @@ impl Guide<'_> {
         ((1.0f32 / 3.0).sqrt(), self.metadata_weight.sqrt())
     }
 
-    /// After which difference each channel is the same again. Distances wrap: one cap to the left of a lamp is as far as one cap
-    /// to its right.
-    fn turns(&self) -> Feature {
+    /// After which difference each channel of the metadata is the same again. Distances wrap: one cap to the left of a lamp is as far
+    /// as one cap to its right.
+    fn turns(&self) -> Vec4 {
         let turn = 2.0 * self.scales().1;
-        let none = f32::INFINITY;
-        [none, none, none, none, turn, turn, none, none]
+        Vec4::new(f32::INFINITY, turn, turn, f32::INFINITY)
     }
 }
 
-widest! {
-    /// Sum over two rows of pixels of the squared differences of their channels, which come again after `turns`.
-    fn squares(a: &[Feature], b: &[Feature], turns: &Feature) -> f32 {
-        let mut sums = [0f32; 8];
-        for (a, b) in a.iter().zip(b) {
-            for c in 0..8 {
-                let apart = (a[c] - b[c]).abs();
-                let apart = apart.min(turns[c] - apart);
-                sums[c] += apart * apart;
-            }
-        }
-        (sums[0] + sums[1] + sums[2]) + (sums[3] + sums[4] + sums[5])
+/// Sum over two rows of pixels of the squared differences of their channels; metadata come again after `turns`.
+fn squares(a: &[Feature], b: &[Feature], turns: Vec4) -> f32 {
+    let add = |[colour, metadata]: [Vec4; 2], a: &Feature, b: &Feature| {
+        let (off, apart) = (a[0] - b[0], (a[1] - b[1]).abs());
+        let apart = apart.min(turns - apart);
+        [colour + off * off, metadata + apart * apart]
+    };
+    // Two pixels at once, for chains of additions that run side by side.
+    let (mut even, mut odd) = ([Vec4::ZERO; 2], [Vec4::ZERO; 2]);
+    let (a, b) = (a.chunks_exact(2), b.chunks_exact(2));
+    if let ([a], [b]) = (a.remainder(), b.remainder()) {
+        even = add(even, a, b);
     }
+    for (a, b) in a.zip(b) {
+        even = add(even, &a[0], &b[0]);
+        odd = add(odd, &a[1], &b[1]);
+    }
+    ((even[0] + odd[0]) + (even[1] + odd[1])).element_sum()
 }
 
 #[derive(Clone, Copy)]
@@ -122,7 +125,7 @@ struct Scored {
 struct Quilt<'a> {
     guide: &'a Guide<'a>,
     features: Vec<Feature>,
-    turns: Feature,
+    turns: Vec4,
     /// The rows that no block reaches any more, and all shifts.
     layout: Layout,
     /// The labels of the rows from `first` on that blocks still reach.
@@ -239,27 +242,19 @@ impl Quilt<'_> {
         let mut block =
             Block { rect: *rect, known: Vec::with_capacity(rect.w * rect.h), empty: Vec::new(), filled: Vec::new() };
         for y in rect.y..rect.y + rect.h {
-            let mut last: Option<Run> = None;
-            for x in rect.x..rect.x + rect.w {
-                let label = self.label(x, y);
-                let source = self.layout.source(x, y, label, self.guide.working).map_or(NONE, |s| s as u32);
-                block.known.push(source);
-                // Does it go on with what is to the left?
-                let source = source as usize;
-                last = match last {
-                    Some(run) if source == NONE as usize && run.source == source => {
-                        Some(Run { length: run.length + 1, ..run })
-                    }
-                    Some(run) if source != NONE as usize && run.source + run.length == source => {
-                        Some(Run { length: run.length + 1, ..run })
-                    }
-                    _ => {
-                        last.into_iter().for_each(|run| block.add(run));
-                        Some(Run { x, y, length: 1, source })
-                    }
-                };
+            let start = (y - self.first) * self.layout.width + rect.x;
+            let mut x = rect.x;
+            for labels in self.open[start..start + rect.w].chunk_by(|a, b| a == b) {
+                // One shift shows pixels side by side.
+                let source = self.layout.source(x, y, labels[0], self.guide.working);
+                let run = Run { x, y, length: labels.len(), source: source.unwrap_or(NONE as usize) };
+                match source {
+                    Some(source) => block.known.extend((source..).take(run.length).map(|s| s as u32)),
+                    None => block.known.extend(std::iter::repeat_n(NONE, run.length)),
+                }
+                block.add(run);
+                x += run.length;
             }
-            last.into_iter().for_each(|run| block.add(run));
         }
         block
     }
@@ -343,9 +338,9 @@ impl Quilt<'_> {
         inside.then(|| (skipped as usize, length as usize, [(x + skipped) as usize, y as usize]))
     }
 
-    /// How many empty pixels of a block each shift fills: exactly for those that fill nearly as many as the best does, else no more
-    /// than stated.
-    fn fills(&self, block: &Block, shifts: &[Shift]) -> Vec<usize> {
+    /// How many empty pixels of a block each shift fills, or 0 if far less than the best; and whether it shows something usable in all
+    /// of the block.
+    fn fills(&self, block: &Block, shifts: &[Shift]) -> Vec<(usize, bool)> {
         let Rect { x, y, w, h } = block.rect;
         let empty = count(&block.empty);
         let usable_of = |runs: &[Run], shift: &Shift| -> usize {
@@ -370,14 +365,14 @@ impl Quilt<'_> {
         let mut most = if bounds.contains(&(w * h)) { empty } else { 0 };
         let exact = |(shift, bound): (&Shift, usize)| {
             if bound == w * h {
-                return empty;
+                return (empty, true);
             }
             if (bound as f64) < ENOUGH_COVERAGE * most as f64 {
-                return 0;
+                return (0, false);
             }
             let fills = usable_of(&block.empty, shift);
             most = most.max(fills);
-            fills
+            (fills, false)
         };
         shifts.iter().zip(bounds).map(exact).collect()
     }
@@ -393,37 +388,49 @@ impl Quilt<'_> {
         job: Job,
     ) -> Result<Vec<Scored>> {
         let fills = self.fills(block, shifts);
-        let most = fills.iter().copied().max().unwrap_or(0);
+        let most = fills.iter().map(|f| f.0).max().unwrap_or(0);
         let least = least.unwrap_or((ENOUGH_COVERAGE * most as f64).ceil() as usize).max(1);
-        let covering: Vec<usize> = (0..shifts.len()).filter(|&n| fills[n] >= least).collect();
+        let mut covering: Vec<usize> = (0..shifts.len()).filter(|&n| fills[n].0 >= least).collect();
         let filled = count(&block.filled);
+        if covering.len() > FINALISTS && block.rect.h >= 4 * ROW_STEP {
+            let is_sampled = |run: &&Run| (run.y - block.rect.y) % ROW_STEP == ROW_STEP / 2;
+            let rows: Vec<Run> = block.filled.iter().filter(is_sampled).copied().collect();
+            let compared = count(&rows);
+            let error = |&n: &usize| (self.error(&rows, (&shifts[n], fills[n].1), compared, f32::INFINITY), n);
+            let mut ranked: Vec<(f32, usize)> = covering.iter().map(error).collect();
+            ranked.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            // What nothing known tells apart all stays.
+            ranked.truncate(if compared > 0 { FINALISTS } else { usize::MAX });
+            covering = ranked.into_iter().map(|r| r.1).collect();
+        }
         let some = (TASK / filled.max(1)).max(1);
         let scored = exec::map(covering.len().div_ceil(some), job, |task| {
             let mut limit = limit;
             let shifts = covering[task * some..].iter().take(some).map(|&n| {
-                let error = self.error(block, &shifts[n], filled, equally_good(limit));
+                let error = self.error(&block.filled, (&shifts[n], fills[n].1), filled, equally_good(limit));
                 limit = limit.min(error);
-                Scored { shift: shifts[n], fills: fills[n], error }
+                Scored { shift: shifts[n], fills: fills[n].0, error }
             });
             shifts.collect::<Vec<_>>()
         })?;
         Ok(scored.into_iter().flatten().collect())
     }
 
-    /// Mean squared difference of a shift from the `filled` known pixels of a block; infinite as soon as it exceeds `limit`.
-    fn error(&self, block: &Block, shift: &Shift, filled: usize, limit: f32) -> f32 {
+    /// Mean squared difference of a shift, which may show something usable everywhere, from known pixels, of which there are `filled`;
+    /// infinite as soon as it exceeds `limit`.
+    fn error(&self, known: &[Run], (shift, is_whole): (&Shift, bool), filled: usize, limit: f32) -> f32 {
         let working = self.guide.working;
         let most = f64::from(limit) * filled as f64;
         let (mut sum, mut compared) = (0f64, 0usize);
-        for run in &block.filled {
+        for run in known {
             let Some((skipped, length, [x, y])) = self.shown(run, shift) else { continue };
             let (old, new) = (run.source + skipped, y * working.width + x);
             let mut add = |from: usize, to: usize| {
                 let (a, b) = (&self.features[old + from..old + to], &self.features[new + from..new + to]);
-                sum += f64::from(squares(a, b, &self.turns));
+                sum += f64::from(squares(a, b, self.turns));
                 compared += to - from;
             };
-            if self.usable.count(x, y, length, 1) == length {
+            if is_whole || self.usable.count(x, y, length, 1) == length {
                 add(0, length);
             } else {
                 let mut at = 0;
@@ -492,7 +499,7 @@ impl Quilt<'_> {
             (old, Some(new)) => {
                 let old = old as usize;
                 let lamp = if working.lit[old] || working.lit[new] { LAMP_COST } else { 0.0 };
-                squares(&self.features[old..=old], &self.features[new..=new], &self.turns) + lamp
+                squares(&self.features[old..=old], &self.features[new..=new], self.turns) + lamp
             }
         };
 
