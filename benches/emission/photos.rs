@@ -7,7 +7,7 @@ use luxfer::emission::pairs::{self, Points};
 use luxfer::emission::{self, Emission, Input, Luminaire, Params};
 use luxfer::geometry::Homography;
 use luxfer::image::io::{self, Encoding};
-use luxfer::image::{Image, colour};
+use luxfer::image::Image;
 use luxfer::job::Monitor;
 use luxfer::rectify;
 use luxfer::rng::Rng;
