@@ -1,5 +1,5 @@
 # make demo   builds the library and two C programs, and runs a lighting transfer and a stylisation, into out/
-# make test   sets up what is missing (Debian packages; Mitsuba, numpy and mkdocs from PyPI) and runs every test
+# make test   sets up what is missing (Debian packages; Mitsuba, numpy, Dask and mkdocs from PyPI) and runs every test
 # make bench  runs the benches and prints the headline figures; make bench ONLY=rays runs one; plots go to out/bench/
 # make trade  measures every stage's error against its time, over its knobs, and writes the plots and fronts into the guide
 # make blender  builds the Blender extension, with the library inside, into out/blender/
@@ -53,7 +53,7 @@ setup:
 	  $$root apt-get update -qq </dev/null && \
 	  $$root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $$missing </dev/null; \
 	fi
-	@benches/peers/install.sh mitsuba python exr docs
+	@benches/peers/install.sh mitsuba python dask exr docs
 
 test: setup lib
 	$(CARGO) test

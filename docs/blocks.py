@@ -21,7 +21,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 GUIDE = ROOT / "docs" / "guide"
 #: Programs that tests compile and run, all of them, as tests/CMakeLists.txt has it.
-TESTED = re.compile(r"examples_c/\w+\.[ch]|tests/docs/\w+\.(cpp|hpp|c)|tests/package/(CMakeLists\.txt|consumer\.(c|cpp)|check\.sh)")
+TESTED = re.compile(r"examples_c/\w+\.[ch]|tests/docs/\w+\.(cpp|hpp|c|py)|tests/package/(CMakeLists\.txt|consumer\.(c|cpp)|check\.sh)")
 RUN = {"python": "python", "sh": "sh"}
 FENCE = re.compile(r"^([ \t]*)(`{3,}|~{3,})([^\n]*)\n(.*?)^\1\2[ \t]*$", re.S | re.M)
 

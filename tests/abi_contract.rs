@@ -188,6 +188,7 @@ fn every_params_struct_takes_its_own_size_and_no_other() {
         luxfer_rectify_params_init: luxfer_rectify_params;
         luxfer_emission_params_init: luxfer_emission_params;
         luxfer_render_params_init: luxfer_render_params;
+        luxfer_render_part_init: luxfer_render_part;
         luxfer_illuminance_params_init: luxfer_illuminance_params;
         luxfer_illuminance_grid_init: luxfer_illuminance_grid;
         luxfer_relight_params_init: luxfer_relight_params;

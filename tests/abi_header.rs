@@ -37,6 +37,7 @@ const GROUPS: &[&str] = &[
     "emission_tiles",
     "render",
     "render_outputs",
+    "render_parts",
     "illuminance",
     "relight",
     "lamps",
@@ -363,6 +364,7 @@ layouts! {
     luxfer_render_params: struct_size width height samples target_error time_budget_ms seed pixel_error bounce_error
         preview reserved;
     luxfer_render_report: struct_size samples error discarded preview_bias;
+    luxfer_render_part: struct_size x y width height first_sample samples;
     luxfer_illuminance_params: struct_size columns rows samples seed;
     luxfer_illuminance_grid: struct_size origin across down normal reserved;
     luxfer_illuminance_report: struct_size points least mean largest mean_error;

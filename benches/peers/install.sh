@@ -17,6 +17,8 @@ install() { # name, packages...
 
 # For the tests of the Python package.
 install python numpy 'setuptools>=70.1'
+# The same on a cluster.
+install dask numpy distributed
 # What else reads and writes OpenEXR files.
 install exr OpenEXR numpy
 # For the guide.

@@ -17,8 +17,8 @@ use super::status::luxfer_status;
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::Image;
 use crate::job::Monitor;
-use crate::render::{self, Film, Outputs};
-use crate::scene::Camera;
+use crate::render::{self, Film, Outputs, parts};
+use crate::scene::{Camera, Scene};
 use std::sync::Arc;
 
 /// A rendering of a scene. See luxfer_render_create.
@@ -149,6 +149,24 @@ pub(super) struct Inputs {
     scene: Option<Arc<SceneObject>>,
     camera: Viewpoint,
     pub(super) outputs: Outputs,
+    /// Files to be merged.
+    pub(super) parts: Vec<parts::File>,
+}
+
+impl Inputs {
+    /// What is to be rendered: the scene, as it is now, and the camera.
+    pub(super) fn view(&self) -> Result<(Arc<SceneObject>, Arc<Scene>, Camera)> {
+        let object = need(&self.scene, "luxfer_render_set_scene")?.clone();
+        let scene = object.snapshot();
+        let camera = match &self.camera {
+            Viewpoint::Own(camera) => camera.clone(),
+            Viewpoint::OfScene(index) => {
+                let found = scene.cameras.get(*index as usize).cloned();
+                found.ok_or_else(|| missing("camera", *index, scene.cameras.len()))?
+            }
+        };
+        Ok((object, scene, camera))
+    }
 }
 
 #[derive(Clone)]
@@ -239,16 +257,8 @@ pub unsafe extern "C" fn luxfer_render_start(
 ) -> luxfer_status {
     enter(render, |stage| {
         let inputs = stage.inputs();
+        let (object, scene, camera) = inputs.view()?;
         let params = render::Params { outputs: inputs.outputs, ..params::read(params)?.params()? };
-        let object = need(&inputs.scene, "luxfer_render_set_scene")?.clone();
-        let scene = object.snapshot();
-        let camera = match inputs.camera {
-            Viewpoint::Own(camera) => camera,
-            Viewpoint::OfScene(index) => {
-                let found = scene.cameras.get(index as usize).cloned();
-                found.ok_or_else(|| missing("camera", index, scene.cameras.len()))?
-            }
-        };
         stage.start(job, move |_, stage, job| {
             let world = object.world(&scene, job.part(0.0, 0.05))?;
             render::run(&world, &camera, &params, job.part(0.05, 1.0), &mut |film| {

@@ -111,11 +111,11 @@ fn sample<const N: usize, T>(raw: &[u8], index: usize, of: fn([u8; N]) -> T) -> 
     of(std::array::from_fn(|k| raw[index * N + k]))
 }
 
-fn broken_exr(e: exr::error::Error) -> Error {
+pub(super) fn broken_exr(e: exr::error::Error) -> Error {
     Error::format(format!("the OpenEXR file cannot be decoded: {e}"))
 }
 
-fn exr_headers(bytes: &[u8]) -> Result<exr::meta::Headers> {
+pub(super) fn exr_headers(bytes: &[u8]) -> Result<exr::meta::Headers> {
     let meta = exr::meta::MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(broken_exr)?;
     for header in &meta.headers {
         check_size(header.layer_size.0 as u64, header.layer_size.1 as u64)?;

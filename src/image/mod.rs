@@ -7,6 +7,7 @@
 mod buffer;
 pub mod colour;
 pub mod io;
+pub mod numbers;
 pub(crate) mod pages;
 pub mod patches;
 mod planes;

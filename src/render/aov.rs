@@ -6,6 +6,7 @@
 //! it is that of the surface most samples met, if any met more than half of them, else of one of those met (the majority
 //! vote of Boyer and Moore 1981, which takes one pass and one counter).
 
+use super::ballot;
 use super::path::Seen;
 use super::world::World;
 use glam::{DVec3, Vec3};
@@ -86,6 +87,30 @@ impl Aov {
         }
     }
 
+    /// How many numbers of a pixel are summed for it where nothing may be lost ([`Surfaces::add_to`]).
+    pub fn summed(self) -> usize {
+        match self {
+            Self::Object | Self::Material => ballot::NUMBERS,
+            _ => self.kept(),
+        }
+    }
+
+    /// Such sums as the numbers that are kept.
+    pub fn keep_sums(self, sums: &[f64], kept: &mut [f32]) {
+        match self {
+            Self::Object | Self::Material => kept.copy_from_slice(&ballot::winner(sums).map(|v| v as f32)),
+            _ => kept.iter_mut().zip(sums).for_each(|(k, &s)| *k = s as f32),
+        }
+    }
+
+    /// Adds the sums over some paths to those over others.
+    pub fn join_sums(self, sums: &mut [f64], others: &[f64]) {
+        match self {
+            Self::Object | Self::Material => ballot::join(sums, others),
+            _ => sums.iter_mut().zip(others).for_each(|(sum, other)| *sum += other),
+        }
+    }
+
     /// The value of a pixel (positions relative to the world's centre) from the numbers kept, the samples that met a surface, and all samples.
     pub fn value(self, kept: &[f32], hits: f64, samples: f64, out: &mut [f32]) {
         let vector = || DVec3::from_array(std::array::from_fn(|i| f64::from(kept[i])));
@@ -135,17 +160,32 @@ impl Surfaces {
 
     /// Adds the sums to those kept of a pixel.
     pub fn keep(&self, aov: Aov, kept: &mut [f32]) {
-        let mut add = |v: DVec3| v.to_array().iter().zip(kept.iter_mut()).for_each(|(v, k)| *k += *v as f32);
         match aov {
-            Aov::Depth => add(DVec3::splat(self.depth)),
-            Aov::Distance => add(DVec3::splat(self.distance)),
-            Aov::Position => add(self.position),
-            Aov::Normal => add(self.normal),
-            Aov::GeometricNormal => add(self.geometric),
-            Aov::Albedo => add(self.albedo),
             Aov::Object => self.object.join(kept),
             Aov::Material => self.material.join(kept),
-            Aov::Alpha | Aov::Luminance => (),
+            _ => self.sum(aov).to_array().iter().zip(kept).for_each(|(v, k)| *k += *v as f32),
+        }
+    }
+
+    /// Adds what a single path met to sums that keep all digits, and all votes but those of very many candidates.
+    pub fn add_to(&self, aov: Aov, sums: &mut [f64]) {
+        match aov {
+            Aov::Object => ballot::cast(sums, self.object.candidate.into(), self.object.lead.into()),
+            Aov::Material => ballot::cast(sums, self.material.candidate.into(), self.material.lead.into()),
+            _ => self.sum(aov).to_array().iter().zip(sums).for_each(|(v, s)| *s += v),
+        }
+    }
+
+    /// The sum of what is no index, in as many of its numbers as there are.
+    fn sum(&self, aov: Aov) -> DVec3 {
+        match aov {
+            Aov::Depth => DVec3::splat(self.depth),
+            Aov::Distance => DVec3::splat(self.distance),
+            Aov::Position => self.position,
+            Aov::Normal => self.normal,
+            Aov::GeometricNormal => self.geometric,
+            Aov::Albedo => self.albedo,
+            Aov::Object | Aov::Material | Aov::Alpha | Aov::Luminance => DVec3::ZERO,
         }
     }
 }

@@ -17,6 +17,9 @@ use crate::scene::Camera;
 use glam::{DVec3, Vec3};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
+/// What is kept of a tile: the numbers of its pixels, one pixel after the other.
+pub type Kept<'a> = MutexGuard<'a, Vec<f32>>;
+
 /// Longest name of a layer, and the most layers.
 const LONGEST_NAME: usize = 64;
 const MOST_LAYERS: usize = 1024;
@@ -103,11 +106,53 @@ impl<'a> Layers<'a> {
         Ok(Some(Self { world, outputs, eye, forward, table, width, tiles }))
     }
 
-    /// Begins with the paths of a tile.
-    pub fn recorder(&self, tile: usize) -> Recorder<'_> {
+    /// What is kept of a tile.
+    pub fn kept(&self, tile: usize) -> Kept<'_> {
+        self.tiles[tile].lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Takes over what was summed elsewhere as what is kept of a pixel; see [`Recorder::add_to`].
+    pub fn keep_sums(&self, tile: usize, pixel: usize, sums: &[f64]) {
+        let mut kept = self.kept(tile);
+        let (colours, surfaces) =
+            kept[pixel * self.width..][..self.width].split_at_mut(3 * self.outputs.expressions.len());
+        let (light, sums) = sums.split_at(colours.len());
+        colours.iter_mut().zip(light).for_each(|(kept, &sum)| *kept = sum as f32);
+        if let (Some((hits, mut kept)), Some((met, mut sums))) = (surfaces.split_first_mut(), sums.split_first()) {
+            *hits = *met as f32;
+            for aov in &self.outputs.aovs {
+                let (of_sums, of_kept);
+                (of_kept, kept) = kept.split_at_mut(aov.kept());
+                (of_sums, sums) = sums.split_at(aov.summed());
+                aov.keep_sums(of_sums, of_kept);
+            }
+        }
+    }
+
+    /// How many numbers [`Recorder::add_to`] adds to.
+    pub fn summed(&self) -> usize {
+        let Outputs { expressions, aovs, .. } = self.outputs;
+        3 * expressions.len() + if aovs.is_empty() { 0 } else { 1 + aovs.iter().map(|a| a.summed()).sum::<usize>() }
+    }
+
+    /// Adds the sums over some paths to those over others.
+    pub fn join_sums(&self, sums: &mut [f64], others: &[f64]) {
+        let plain = 3 * self.outputs.expressions.len() + usize::from(!self.outputs.aovs.is_empty());
+        let (light, mut sums) = sums.split_at_mut(plain);
+        let (other_light, mut others) = others.split_at(plain);
+        light.iter_mut().zip(other_light).for_each(|(sum, other)| *sum += other);
+        for aov in &self.outputs.aovs {
+            let (into, from);
+            (into, sums) = sums.split_at_mut(aov.summed());
+            (from, others) = others.split_at(aov.summed());
+            aov.join_sums(into, from);
+        }
+    }
+
+    /// Begins with paths.
+    pub fn recorder(&self) -> Recorder<'_> {
         Recorder {
             layers: self,
-            kept: self.tiles[tile].lock().unwrap_or_else(PoisonError::into_inner),
             beauty: Vec3::ZERO,
             trail: Trail::new(&self.table),
             sums: vec![DVec3::ZERO; self.table.lists().len()],
@@ -161,11 +206,9 @@ impl<'a> Layers<'a> {
     }
 }
 
-/// Follows the paths of a tile, pixel by pixel.
+/// Follows paths, pixel by pixel.
 pub struct Recorder<'a> {
     layers: &'a Layers<'a>,
-    /// Sums of all passes.
-    kept: MutexGuard<'a, Vec<f32>>,
     /// Sum of the contributions of one path, as the main image has it.
     beauty: Vec3,
     trail: Trail<'a>,
@@ -191,9 +234,9 @@ impl Recorder<'_> {
         self.beauty
     }
 
-    /// Adds what has been gathered to the sums kept of a pixel.
-    pub fn keep(&mut self, pixel: usize) {
-        let Self { layers, kept, sums, .. } = self;
+    /// Adds what has been gathered to the sums kept of a pixel of a tile.
+    pub fn keep(&mut self, kept: &mut Kept, pixel: usize) {
+        let Self { layers, sums, .. } = self;
         let (colours, surfaces) =
             kept[pixel * layers.width..][..layers.width].split_at_mut(3 * layers.outputs.expressions.len());
         let (colours, _) = colours.as_chunks_mut::<3>();
@@ -213,6 +256,33 @@ impl Recorder<'_> {
                 let kept;
                 (kept, rest) = rest.split_at_mut(aov.kept());
                 self.surfaces.keep(*aov, kept);
+            }
+            self.surfaces = Surfaces::default();
+        }
+    }
+
+    /// Adds what a single path has brought to sums that keep all digits: three for each expression, the paths that met a
+    /// surface, and [`Aov::summed`] for each image of surfaces.
+    pub fn add_to(&mut self, totals: &mut [f64]) {
+        let Self { layers, sums, .. } = self;
+        let (colours, surfaces) = totals.split_at_mut(3 * layers.outputs.expressions.len());
+        let (colours, _) = colours.as_chunks_mut::<3>();
+        let lists = layers.table.lists().iter().zip(sums);
+        for (list, sum) in lists.filter(|(_, sum)| **sum != DVec3::ZERO) {
+            for &expression in list {
+                let total = &mut colours[usize::from(expression)];
+                *total = (DVec3::from(*total) + *sum).into();
+            }
+            *sum = DVec3::ZERO;
+        }
+        if let Some((hits, mut rest)) = surfaces.split_first_mut()
+            && self.surfaces.hits > 0
+        {
+            *hits += f64::from(self.surfaces.hits);
+            for aov in &layers.outputs.aovs {
+                let total;
+                (total, rest) = rest.split_at_mut(aov.summed());
+                self.surfaces.add_to(*aov, total);
             }
             self.surfaces = Surfaces::default();
         }

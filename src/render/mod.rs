@@ -13,6 +13,7 @@
 //! Not modelled: volumes, refraction in solids, frosted glass, polarisation, wavelengths, depth of field, motion blur.
 
 mod aov;
+mod ballot;
 mod bsdf;
 pub mod denoise;
 mod distribution;
@@ -26,6 +27,7 @@ pub mod illuminance;
 mod layers;
 mod light;
 pub mod lpe;
+pub mod parts;
 mod path;
 mod preview;
 mod requirements;

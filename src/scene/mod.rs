@@ -5,6 +5,7 @@
 
 pub mod accel;
 pub mod camera;
+mod fingerprint;
 pub mod gltf;
 pub mod light;
 pub mod material;

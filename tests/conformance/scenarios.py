@@ -203,6 +203,13 @@ def rendering() -> Scenario:
     s.call("render_find_layer", stage, "direct", ROOM)
     s.make("render_get_layer", stage, 0)
     s.call("render_write_exr", stage, "layers.exr")
+    small = struct("render_params", width=16, height=12, samples=8)
+    s.call("render_split", stage, small, 2, 1, 2, 3, struct("render_part", "size"))
+    for n, first in enumerate((0, 4)):
+        s.run("render_start_part", stage, small, struct("render_part", first_sample=first, samples=4), f"part{n}.exr")
+        s.call("render_add_part", stage, f"part{n}.exr")
+    s.run("render_start_merge", stage, small)
+    s.call("render_clear_parts", stage)
     return s
 
 

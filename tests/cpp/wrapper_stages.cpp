@@ -194,6 +194,18 @@ void light(const Context &context) {
     job.wait();
     CHECK(render.layer_count() == 2);
     render.write_exr("wrapper_stages.exr");
+    // In parts: the right half first.
+    for (std::uint32_t index : {1u, 0u}) {
+        const luxfer_render_part part = render.split(2, 1, 1, index, tiny);
+        CHECK(part.x == 4 * index && part.width == 4 && part.height == 8 && part.samples == 2);
+        const std::string name = "wrapper_stages_part" + std::to_string(index) + ".exr";
+        render.start_part(name, part, tiny).wait();
+        CHECK(has_size(render.image(), 4, 8, 3));
+        render.add_part(name);
+    }
+    render.start_merge(tiny).wait();
+    CHECK(has_size(render.image(), 8, 8, 3) && render.report().samples == 2);
+    render.clear_parts();
     scene.save("wrapper_stages.glb");
     std::ifstream file("wrapper_stages.exr", std::ios::binary);
     const std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());

@@ -156,6 +156,30 @@ class Rendering(Case):
         with self.assertRaises(errors.InvalidArgument):
             render.add_expression("bad", "L(E")
 
+    def test_parts_are_merged_to_the_same_bits(self):
+        size = {"width": 40, "height": 24, "samples": 12}
+        render = luxfer.Render(context(), lit_room(), aovs="depth", expressions={"direct": "LDE"})
+        paths = []
+        for index in range(6):
+            paths.append(self.folder / f"part {index}.exr")
+            part = render.split(3, 1, 2, index, **size)
+            render.start_part(paths[-1], part, **size).wait()
+            self.assertEqual(render.image().size, (part["width"], part["height"], 3))
+        # Anyone can look at a part.
+        np.testing.assert_array_equal(luxfer.Image.load(context(), paths[-1]).numpy(), render.image().numpy())
+        merged = render.start_merge(paths, **size).wait()
+        beauty, direct = merged.image().numpy(), merged.layer("direct").numpy()
+        render.start_part(self.folder / "whole.exr", {}, **size).wait()
+        np.testing.assert_array_equal(render.image().numpy(), beauty)
+        np.testing.assert_array_equal(render.layer("direct").numpy(), direct)
+        with self.assertRaisesRegex(errors.InvalidArgument, r"paths 6 to 11 of the 13 x 24 pixels at \(13, 0\)"):
+            render.start_merge([*paths[:4], *paths[5:]], **size).wait()
+        with self.assertRaisesRegex(errors.InvalidArgument, "part 2.exr: its seed"):
+            render.start_merge(paths[2:], seed=2, **size).wait()
+        paths[0].write_bytes(b"no picture")
+        with self.assertRaisesRegex(errors.FormatError, "part 0.exr"):
+            render.start_merge(paths, **size)
+
     def test_the_same_seed_gives_the_same_bits(self):
         def picture(threads, seed):
             with luxfer.Context(num_threads=threads) as own:

@@ -8,6 +8,7 @@
 namespace luxfer {
 
 using RenderParams = Params<luxfer_render_params, luxfer_render_params_init>;
+using RenderPart = Params<luxfer_render_part, luxfer_render_part_init>;
 using IlluminanceParams = Params<luxfer_illuminance_params, luxfer_illuminance_params_init>;
 using IlluminanceGrid = Params<luxfer_illuminance_grid, luxfer_illuminance_grid_init>;
 using RelightParams = Params<luxfer_relight_params, luxfer_relight_params_init>;
@@ -41,6 +42,28 @@ public:
 
     Result<Job> start(const luxfer_render_params &params = RenderParams()) const {
         return make<Job>(luxfer_render_start, &params);
+    }
+
+    // In parts, on many machines.
+
+    /// Part number index of columns x rows rectangles and ranges of paths.
+    Result<luxfer_render_part> split(std::uint32_t columns, std::uint32_t rows, std::uint32_t ranges, std::uint32_t index,
+                                     const luxfer_render_params &params = RenderParams()) const {
+        return value<luxfer_render_part>(luxfer_render_split, &params, columns, rows, ranges, index);
+    }
+
+    /// Renders a part into a file.
+    Result<Job> start_part(Text path, const luxfer_render_part &part = RenderPart(),
+                           const luxfer_render_params &params = RenderParams()) const {
+        return make<Job>(luxfer_render_start_part, &params, &part, path.get());
+    }
+
+    /// The files that start_merge adds up.
+    Result<> add_part(Text path) const { return call(luxfer_render_add_part, path.get()); }
+    Result<> clear_parts() const { return call(luxfer_render_clear_parts); }
+
+    Result<Job> start_merge(const luxfer_render_params &params = RenderParams()) const {
+        return make<Job>(luxfer_render_start_merge, &params);
     }
 
     /// A LUXFER_RENDER_ value.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, cast
 
 from . import _abi, _params
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from .context import Context
     from .scene import Scene
-    from .types import CameraParams, RenderParams
+    from .types import CameraParams, RenderParams, RenderPart
 
 
 class Render(StageBase):
@@ -83,6 +83,34 @@ class Render(StageBase):
     def run(self, progress: Progress | None = None, **params: Unpack[RenderParams]) -> Render:
         """Starts the work and waits for it."""
         return self.start(**params).wait(progress)
+
+    # -- in parts, on many machines
+
+    def split(self, columns: int, rows: int, ranges: int, index: int, **params: Unpack[RenderParams]) -> RenderPart:
+        """Part number index, of columns * rows * ranges, if a rendering with these settings is split into so many rectangles
+        and ranges of its paths.
+
+        >>> Render(context).split(2, 1, 4, 3, width=64, height=32, samples=16)["x"]
+        32
+        """
+        part = _params.sized(_abi.luxfer_render_part)
+        settings = _params.fill(_abi.luxfer_render_params, params, [])
+        self._call("split", settings, columns, rows, ranges, index, part)
+        return cast("RenderPart", _params.settings(part))
+
+    def start_part(self, path: str | os.PathLike[str], part: RenderPart, **params: Unpack[RenderParams]) -> Job[Render]:
+        """Starts to render a part into a file; then the images are those of the part."""
+        settings = _params.fill(_abi.luxfer_render_params, params, [])
+        which = _params.fill(_abi.luxfer_render_part, part, [])
+        return self._job("start_part", settings, which, _params.text(os.fspath(path), "path"))
+
+    def start_merge(self, paths: Iterable[str | os.PathLike[str]], **params: Unpack[RenderParams]) -> Job[Render]:
+        """Starts to add up the files of all parts, in any order, to the rendering of the whole. Scene, camera, layers and
+        settings are those the parts were made with."""
+        self._call("clear_parts")
+        for path in paths:
+            self._call("add_part", _params.text(os.fspath(path), "path"))
+        return self._job("start_merge", _params.fill(_abi.luxfer_render_params, params, []))
 
     def image(self, which: RenderImage | str = RenderImage.BEAUTY) -> Image:
         """ "beauty", "variance", "paths", "interval" or, if asked for, "preview", as far as it is."""

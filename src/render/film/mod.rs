@@ -4,17 +4,24 @@
 //! → `interval` says how far off the image may be. A pass only ever extends the paths of each pixel up to a count. So one that is cut short
 //! leaves a valid image with fewer paths here and there; and as the counts follow from the pixels of the pass before,
 //! they are the same for any number of threads.
+//!
+//! For renders that are done in parts, `sums` adds up the paths of some pixels apart from all others, by the light of a
+//! `survey` instead of the passes before.
 
 mod clock;
 mod grid;
 mod interval;
 mod pixel;
 mod plan;
+mod sums;
+mod survey;
 mod worth;
 
 pub use clock::Clock;
+pub use grid::TILE;
 pub use interval::pooled;
 pub use plan::{Pass, Plan};
+pub use sums::Sums;
 
 use super::layers::{Layers, Recorder};
 use super::path::{self, Contributions, Length, MOST_SCATTERINGS};
@@ -53,12 +60,34 @@ pub struct Canvas<'a> {
 
 impl<'a> Canvas<'a> {
     pub fn new(world: &'a World, camera: &'a Camera, params: &'a Params) -> Result<Self> {
-        let grid = Grid { width: params.width, height: params.height };
+        Self::sized(world, camera, params, Grid { width: params.width, height: params.height })
+    }
+
+    fn sized(world: &'a World, camera: &'a Camera, params: &'a Params, grid: Grid) -> Result<Self> {
         let pixels = try_vec(grid.tiles() * AREA, Pixel::default())?;
         let layers = Layers::new(world, camera, &params.outputs, grid.tiles(), AREA)?;
-        let most = world.requirements().bounces(params.bounce_error).unwrap_or(MOST_SCATTERINGS).min(MOST_SCATTERINGS);
-        let eye = Eye::new(camera, &grid, most);
+        let eye = Eye::new(world, camera, params);
         Ok(Self { world, eye, seed: params.seed, grid, pixels, layers, discarded: AtomicU64::new(0) })
+    }
+
+    /// The pixels of sums, and those alone.
+    pub fn of_sums(world: &'a World, camera: &'a Camera, params: &'a Params, sums: &Sums, job: Job) -> Result<Self> {
+        let part = sums.part();
+        let mut canvas = Self::sized(world, camera, params, Grid { width: part.width, height: part.height })?;
+        let Self { grid, pixels, layers, .. } = &mut canvas;
+        let layers = layers.as_ref();
+        exec::for_rows(pixels, AREA, job, |tile, pixels| {
+            for (i, pixel) in pixels.iter_mut().enumerate() {
+                let Some((x, y)) = grid.place(tile, i) else { continue };
+                let (light, others) = sums.pixel(part.x + x, part.y + y);
+                *pixel = Pixel::of_sums(light, part.samples);
+                if let Some(layers) = layers {
+                    layers.keep_sums(tile, i, others);
+                }
+            }
+        })?;
+        canvas.discarded = AtomicU64::new(sums.discarded());
+        Ok(canvas)
     }
 
     /// Extends the paths of every pixel to what the pass asks for; at the deadline it leaves the rest as it is.
@@ -72,7 +101,7 @@ impl<'a> Canvas<'a> {
             if pass.passes_over(grid.corner(tile)) {
                 return;
             }
-            let mut recorder = layers.map(|l| l.recorder(tile));
+            let (mut recorder, mut kept) = layers.map(|l| (l.recorder(), l.kept(tile))).unzip();
             let surroundings = level.map(|level| Surroundings::of(pixels, level));
             for (i, pixel) in pixels.iter_mut().enumerate() {
                 let Some((x, y)) = grid.place(tile, i) else { continue };
@@ -88,8 +117,8 @@ impl<'a> Canvas<'a> {
                         let seed = rng::mix(seed ^ u64::from(replication));
                         paths(world, eye, [x, y], length, (seed, indices), recorder.as_mut(), discarded)
                     });
-                    if let Some(recorder) = &mut recorder {
-                        recorder.keep(i);
+                    if let (Some(recorder), Some(kept)) = (&mut recorder, &mut kept) {
+                        recorder.keep(kept, i);
                     }
                 }
             }
@@ -245,12 +274,13 @@ struct Eye {
 }
 
 impl Eye {
-    fn new(camera: &Camera, grid: &Grid, most: u32) -> Self {
-        let aspect = grid.width as f32 / grid.height as f32;
+    fn new(world: &World, camera: &Camera, params: &Params) -> Self {
+        let most = world.requirements().bounces(params.bounce_error).unwrap_or(MOST_SCATTERINGS).min(MOST_SCATTERINGS);
+        let aspect = params.width as f32 / params.height as f32;
         let at = |x: f32, y: f32| camera.direction(x, y, aspect);
         let corner = at(0.0, 0.0);
-        let right = (at(1.0, 0.0) - corner) / grid.width as f32;
-        let down = (at(0.0, 1.0) - corner) / grid.height as f32;
+        let right = (at(1.0, 0.0) - corner) / params.width as f32;
+        let down = (at(0.0, 1.0) - corner) / params.height as f32;
         Self { position: camera.position, corner, right, down, most }
     }
 

@@ -20,11 +20,16 @@ pub struct Pixel {
 }
 
 /// How many of a pixel's first `count` paths belong to a replication.
-fn share(count: u32, replication: u32) -> u32 {
+pub fn share(count: u32, replication: u32) -> u32 {
     (count + REPLICATIONS - 1 - replication) / REPLICATIONS
 }
 
 impl Pixel {
+    /// Of sums made elsewhere of `count` paths, those of each replication.
+    pub fn of_sums(sums: [DVec3; REPLICATIONS as usize], count: u32) -> Self {
+        Self { sums: sums.map(|s| s.as_vec3()), count }
+    }
+
     pub fn count(&self) -> u32 {
         self.count
     }

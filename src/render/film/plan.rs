@@ -149,11 +149,7 @@ pub struct Plan<'p> {
 
 impl<'p> Plan<'p> {
     pub fn new(params: &'p Params) -> Self {
-        let mut stride = 1;
-        while params.width.div_ceil(stride) * params.height.div_ceil(stride) > COARSE {
-            stride *= 2;
-        }
-        Self { params, stride: 2 * stride, even: 0 }
+        Self { params, stride: 2 * coarse_stride(params.width, params.height), even: 0 }
     }
 
     /// The next pass; none if the image is as good as was asked for, or there is no time left.
@@ -253,6 +249,15 @@ impl<'p> Plan<'p> {
         }
         Ok(wanted)
     }
+}
+
+/// Distance between the pixels of the coarsest image of a size: a power of two.
+pub fn coarse_stride(width: usize, height: usize) -> usize {
+    let mut stride = 1;
+    while width.div_ceil(stride) * height.div_ceil(stride) > COARSE {
+        stride *= 2;
+    }
+    stride
 }
 
 fn whole(tallies: &[Tally]) -> Tally {

@@ -21,12 +21,17 @@ pub fn level(pixels: &[Pixel], job: Job) -> Result<Option<DVec3>> {
     let tile = |i: usize| &pixels[i * AREA..(i + 1) * AREA];
     let means = exec::map(pixels.len() / AREA, job, |i| mean(tile(i)).map(|(mean, _)| mean))?;
     let means: Vec<DVec3> = means.into_iter().flatten().collect();
+    Ok(median(&means))
+}
+
+/// The median of each channel; none of nothing.
+pub fn median(means: &[DVec3]) -> Option<DVec3> {
     let median = |channel: usize| {
         let mut values: Vec<f64> = means.iter().map(|m| m[channel]).collect();
         let middle = values.len() / 2;
         *values.select_nth_unstable_by(middle, f64::total_cmp).1
     };
-    Ok((!means.is_empty()).then(|| DVec3::from_array([0, 1, 2].map(median))))
+    (!means.is_empty()).then(|| DVec3::from_array([0, 1, 2].map(median)))
 }
 
 /// Mean of the pixels that have paths, and how many paths they have.

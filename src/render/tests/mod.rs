@@ -9,6 +9,7 @@ mod illuminance;
 mod irradiance;
 mod layers;
 mod luminaires;
+mod parts;
 mod place;
 mod refusal;
 mod requirements;

@@ -1,0 +1,155 @@
+"""Work for many machines, on a Dask cluster: renderings by part, stylised sequences by shot, solutions by target.
+
+Needs `distributed` from PyPI (pip install luxfer[distributed]), here and on the workers. A worker that is lost costs the time
+of what it was doing: Dask gives its tasks to others, and each gives the same bits again.
+
+Scenes do not travel, but how to make them does: `prepare` is a function of a module that the workers have too, or a
+functools.partial of one. It takes a Context and describes the work in it, and is called once on each worker. `params` are
+the settings of the work, as keyword arguments.
+
+    client = distributed.Client("scheduler:8786")
+    with luxfer.Context() as context:
+        render = luxfer.distributed.render(client, view, context, columns=8, rows=4, width=1920, height=1080, samples=256)
+        render.write_exr("view.exr")
+"""
+
+from __future__ import annotations
+
+import tempfile
+import threading
+import uuid
+from collections.abc import Callable, Iterable, Sequence
+from functools import lru_cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar, cast
+
+from .context import Context
+from .errors import Cancelled
+
+if TYPE_CHECKING:
+    from distributed import Client
+    from typing_extensions import Unpack
+
+    from .job import Progress
+    from .relight import Relight
+    from .render import Render
+    from .types import RelightParams, RelightReport, RenderParams, RenderPart
+
+Item = TypeVar("Item")
+Result = TypeVar("Result")
+
+
+def render(
+    client: Client,
+    prepare: Callable[[Context], Render],
+    context: Context,
+    *,
+    columns: int = 4,
+    rows: int = 4,
+    ranges: int = 1,
+    progress: Progress | None = None,
+    **params: Unpack[RenderParams],
+) -> Render:
+    """Renders columns x rows rectangles of a view, in ranges of their paths, on the workers, and merges them here: the same
+    as one part for all of it. Make a few times as many parts as there are workers. prepare returns a Render with its scene,
+    camera and layers; False from progress gives up, which is errors.Cancelled."""
+    here = prepare(context)
+    parts = [here.split(columns, rows, ranges, index, **params) for index in range(columns * rows * ranges)]
+    with tempfile.TemporaryDirectory() as folder:
+        # What a worker has made is fetched at once, and is safe from then on.
+        paths = [Path(folder, f"{index}.exr") for index in range(len(parts))]
+        task = _Part(prepare, params)
+        for done, (index, data) in enumerate(_as_completed(client, task, parts), 1):
+            paths[index].write_bytes(data)
+            if progress is not None and progress(done / (len(parts) + 1)) is False:
+                raise Cancelled("the rendering was cancelled")
+        here.start_merge(paths, **params).wait()
+    if progress is not None:
+        progress(1.0)
+    return here
+
+
+def stylise(client: Client, paint: Callable[[Context, Item], Result], shots: Iterable[Item]) -> list[Result]:
+    """Paints shots on the workers, each from its first frame to its last on one of them, as frames go on from each other.
+    paint(context, shot) does it, and returns what is wanted of it: arrays, or the names of files it has written."""
+    return _all(client, _Shot(paint), list(shots))
+
+
+def relight(
+    client: Client,
+    prepare: Callable[[Context], Relight],
+    targets: Iterable[Sequence[float]],
+    **params: Unpack[RelightParams],
+) -> list[RelightReport]:
+    """Solves for each of some targets, mean radiances in cd/m² per channel, on the workers. prepare returns a Relight with
+    its scene; the reports come in the order of the targets."""
+    return _all(client, _Target(prepare, params), [tuple(float(v) for v in target) for target in targets])
+
+
+class _Task:
+    """What a worker is to do with an item, as it travels: the same task wherever it arrives."""
+
+    def __init__(self, work: Callable[..., Any], params: Any = None) -> None:
+        self.work, self.params, self.key = work, params, uuid.uuid4().hex
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Task) and self.key == other.key
+
+    def __hash__(self) -> int:
+        return hash(self.key)
+
+
+class _Part(_Task):
+    def __call__(self, part: RenderPart) -> bytes:
+        stage, free = _prepared(self)
+        with free, tempfile.TemporaryDirectory() as folder:
+            path = Path(folder, "part.exr")
+            stage.start_part(path, part, **self.params).wait()
+            return path.read_bytes()
+
+
+class _Shot(_Task):
+    def __call__(self, shot: Any) -> Any:
+        return self.work(_context(), shot)
+
+
+class _Target(_Task):
+    def __call__(self, target: tuple[float, ...]) -> RelightReport:
+        stage, free = _prepared(self)
+        with free:
+            stage.set_target(target)
+            return cast("RelightReport", stage.run(**self.params).report)
+
+
+@lru_cache(maxsize=1)
+def _context() -> Context:
+    """The context of a worker: one for all its tasks, with as many threads as it has."""
+    from distributed import get_worker
+
+    return Context(num_threads=get_worker().state.nthreads)
+
+
+@lru_cache(maxsize=2)
+def _prepared(task: _Task) -> tuple[Any, threading.Lock]:
+    """What a task works on, made once on this worker, not for every item. One item at a time: it has all threads."""
+    return task.work(_context()), threading.Lock()
+
+
+def _as_completed(client: Client, task: _Task, items: Sequence[Any]) -> Iterable[tuple[int, Any]]:
+    """Results as they come, with their places. What has not begun when the caller gives up is not begun."""
+    from distributed import as_completed
+
+    futures = {client.submit(task, item, pure=False): index for index, item in enumerate(items)}
+    try:
+        for future, result in as_completed(list(futures), with_results=True):
+            yield futures[future], result
+            future.release()
+    finally:
+        client.cancel(list(futures))
+
+
+def _all(client: Client, task: _Task, items: Sequence[Any]) -> list[Any]:
+    results: list[Any] = [None] * len(items)
+    for index, result in _as_completed(client, task, items):
+        results[index] = result
+    return results

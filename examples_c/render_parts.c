@@ -1,0 +1,114 @@
+/* A rendering on many machines: each renders parts of it into files, and one merges the files.
+ *
+ *   render_parts part INDEX FILE      renders part INDEX of PARTS into FILE: a task of a farm
+ *   render_parts merge FILE...        merges the parts, in any order, into render_parts.exr and render_parts.png
+ *   render_parts                      does both, and compares with a rendering of the whole in one part
+ */
+#include "common.h"
+
+#include <string.h>
+
+/* The image as 3 x 2 rectangles with 2 ranges of paths each. */
+enum { COLUMNS = 3, ROWS = 2, RANGES = 2, PARTS = COLUMNS * ROWS * RANGES };
+
+/* The same in every task, or the merge refuses: scene, camera, layers, settings. */
+static luxfer_render *describe(luxfer_render_params *params) {
+    luxfer_scene *scene = NULL;
+    luxfer_render *render = NULL;
+    check(luxfer_demo_scene(context, LUXFER_DEMO_STILL_LIFE, &scene), "scene"); /* luxfer_scene_load(context, file, &scene) */
+    check(luxfer_render_create(context, &render), "render");
+    check(luxfer_render_set_scene(render, scene), "render");
+    check(luxfer_render_add_expression(render, "direct", "LDE"), "layer");
+    check(luxfer_render_set_aovs(render, LUXFER_AOV_DEPTH | LUXFER_AOV_OBJECT), "layers");
+    check(luxfer_render_params_init(params, sizeof *params), "settings");
+    params->width = 240;
+    params->height = 180;
+    params->samples = 16;
+    luxfer_scene_release(scene);
+    return render;
+}
+
+/* --8<-- [start:part] */
+/* A task: renders one part into a file, which appears when it is complete. */
+static void render_part(luxfer_render *render, const luxfer_render_params *params, uint32_t index, const char *file) {
+    luxfer_render_part part;
+    luxfer_job *job = NULL;
+    part.struct_size = sizeof part;
+    check(luxfer_render_split(render, params, COLUMNS, ROWS, RANGES, index, &part), "part");
+    check(luxfer_render_start_part(render, params, &part, file, &job), file);
+    finish(job, file);
+}
+/* --8<-- [end:part] */
+
+/* --8<-- [start:merge] */
+/* When all tasks are done: the rendering, as if it had been made here. */
+static void merge(luxfer_render *render, const luxfer_render_params *params, char **files, int count) {
+    luxfer_job *job = NULL;
+    int i;
+    check(luxfer_render_clear_parts(render), "merge");
+    for (i = 0; i < count; i++) check(luxfer_render_add_part(render, files[i]), files[i]);
+    check(luxfer_render_start_merge(render, params, &job), "merge");
+    finish(job, "merging");
+    check(luxfer_render_write_exr(render, "render_parts.exr"), "render_parts.exr");
+}
+/* --8<-- [end:merge] */
+
+/* The pixels of the picture; frees nothing. */
+static float *pixels(luxfer_render *render, luxfer_image_view *view) {
+    luxfer_image *image = NULL;
+    check(luxfer_render_get_image(render, LUXFER_RENDER_BEAUTY, &image), "picture");
+    check(luxfer_image_view_init(view, sizeof *view), "picture");
+    check(luxfer_image_size(image, &view->width, &view->height, &view->channels), "picture");
+    view->byte_size = (size_t)view->width * view->height * view->channels * sizeof(float);
+    view->data = malloc(view->byte_size);
+    if (!view->data) exit(1);
+    check(luxfer_image_read(image, 0, view), "picture");
+    check(luxfer_image_save(image, "render_parts.png", 1 / 450.0f), "render_parts.png");
+    luxfer_image_release(image);
+    return view->data;
+}
+
+/* All parts, the last first, and the whole in one: the same bits. */
+static int demonstrate(luxfer_render *render, const luxfer_render_params *params) {
+    char names[PARTS][32], *files[PARTS], *whole = "whole.part.exr";
+    luxfer_image_view view;
+    float *merged, *at_once;
+    luxfer_job *job = NULL;
+    int i, differs;
+    for (i = 0; i < PARTS; i++) {
+        files[i] = names[i];
+        sprintf(names[i], "part%02d.exr", PARTS - 1 - i);
+        render_part(render, params, (uint32_t)(PARTS - 1 - i), names[i]);
+    }
+    merge(render, params, files, PARTS);
+    merged = pixels(render, &view);
+
+    check(luxfer_render_start_part(render, params, NULL, whole, &job), whole);
+    finish(job, whole);
+    merge(render, params, &whole, 1);
+    at_once = pixels(render, &view);
+    differs = memcmp(merged, at_once, view.byte_size) != 0;
+    printf("%d parts and one give %s\n", PARTS, differs ? "different pictures" : "the same picture to the bit");
+    free(merged);
+    free(at_once);
+    return differs;
+}
+
+int main(int argc, char **argv) {
+    luxfer_render_params params;
+    luxfer_render *render;
+    int status = 0;
+    check(luxfer_context_create(NULL, &context), "context");
+    render = describe(&params);
+    if (argc == 4 && strcmp(argv[1], "part") == 0)
+        render_part(render, &params, (uint32_t)atoi(argv[2]), argv[3]);
+    else if (argc > 2 && strcmp(argv[1], "merge") == 0)
+        merge(render, &params, argv + 2, argc - 2);
+    else if (argc == 1)
+        status = demonstrate(render, &params);
+    else
+        status = 2;
+    luxfer_render_release(render);
+    luxfer_context_release(context);
+    return status;
+}

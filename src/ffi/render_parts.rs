@@ -1,0 +1,179 @@
+//! Renderings in parts
+//!
+//! A rendering on many machines: each renders parts, rectangles of the image and ranges of its paths, into files, and one
+//! merges the files. The image is that of one machine which renders all of it in a single part, but for the rounding of sums in
+//! double precision, whatever the parts and their order. A part that was lost is rendered again, to the same bits.
+//!
+//! Parts have a fixed number of paths: target_error, pixel_error and time_budget_ms must be 0. The scene, the camera, the
+//! layers and luxfer_render_params must be the same for all parts and for the merge, which checks it.
+//!
+//! The files are OpenEXR: R, G, B show the part in its place in the image, and integer channels keep its sums.
+
+use super::guard::{enter, guard};
+use super::job::luxfer_job;
+use super::params::{self, Report, Versioned};
+use super::pointer::text;
+use super::render::{luxfer_render, luxfer_render_params};
+use super::status::luxfer_status;
+use crate::error::Result;
+use crate::render::parts::{self, Part};
+use crate::render::{Film, Params};
+use std::ffi::c_char;
+use std::path::{Path, PathBuf};
+
+/// A part of a rendering. Fill it with luxfer_render_part_init, which makes it the whole, or with luxfer_render_split.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_render_part {
+    /// sizeof(luxfer_render_part), set by luxfer_render_part_init.
+    pub struct_size: u32,
+    /// Column of its first pixel; default 0.
+    pub x: u32,
+    /// Row of its first pixel, from the top; default 0.
+    pub y: u32,
+    /// Width in pixels; default 0: as far as the image goes.
+    pub width: u32,
+    /// Height in pixels; default 0: as far as the image goes.
+    pub height: u32,
+    /// Number of its first path in each pixel; default 0.
+    pub first_sample: u32,
+    /// Paths per pixel; default 0: all that follow, of luxfer_render_params.samples.
+    pub samples: u32,
+}
+
+// SAFETY: plain integers.
+unsafe impl Versioned for luxfer_render_part {
+    const NAME: &'static str = "luxfer_render_part";
+    const SIZES: &'static [usize] = &[28];
+    fn defaults() -> Self {
+        Self { struct_size: 28, x: 0, y: 0, width: 0, height: 0, first_sample: 0, samples: 0 }
+    }
+}
+
+impl luxfer_render_part {
+    fn part(&self, params: &Params) -> Part {
+        let (x, y, first) = (self.x as usize, self.y as usize, self.first_sample);
+        Part {
+            x,
+            y,
+            width: if self.width == 0 { params.width.saturating_sub(x) } else { self.width as usize },
+            height: if self.height == 0 { params.height.saturating_sub(y) } else { self.height as usize },
+            first,
+            samples: if self.samples == 0 { params.samples.saturating_sub(first) } else { self.samples },
+        }
+    }
+}
+
+/// Fills *part with the whole rendering; size is sizeof *part. LUXFER_INVALID_ARGUMENT if part is NULL or size is wrong.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_render_part_init(part: *mut luxfer_render_part, size: usize) -> luxfer_status {
+    guard(|| params::init(part, size))
+}
+
+/// Tells what part number index is if a rendering with these params is split into columns x rows rectangles and ranges of
+/// its paths, all of about the same size; columns * rows * ranges are all of it. Rectangles go on row by row, and all of one
+/// range come before the next. params may be NULL for the defaults; set part->struct_size before the call. Any thread.
+/// LUXFER_INVALID_ARGUMENT if there is no such part, or parts without a pixel or a path would have to be made.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_render_split(
+    render: *mut luxfer_render,
+    params: *const luxfer_render_params,
+    columns: u32,
+    rows: u32,
+    ranges: u32,
+    index: u32,
+    part: *mut luxfer_render_part,
+) -> luxfer_status {
+    enter(render, |_| {
+        let out = Report::new(part)?;
+        let part = Part::split(&params::read(params)?.params()?, [columns, rows, ranges], index)?;
+        out.set(luxfer_render_part {
+            x: part.x as u32,
+            y: part.y as u32,
+            width: part.width as u32,
+            height: part.height as u32,
+            first_sample: part.first,
+            samples: part.samples,
+            ..luxfer_render_part::defaults()
+        });
+        Ok(())
+    })
+}
+
+/// Starts a job that renders a part, NULL for the whole, and writes it into a file; path is UTF-8, and an existing file is
+/// replaced only by a complete one. Then the images of the rendering are those of the part alone. params may be NULL for the
+/// defaults. The caller releases *job. Any thread.
+/// LUXFER_INVALID_OPERATION if the scene is missing or a job runs already; LUXFER_NOT_FOUND if the scene has no such
+/// camera. The job may end with LUXFER_INVALID_ARGUMENT if a setting is out of range or would not fix the paths, or the part
+/// is none of the image's; LUXFER_IO if the file cannot be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_render_start_part(
+    render: *mut luxfer_render,
+    params: *const luxfer_render_params,
+    part: *const luxfer_render_part,
+    path: *const c_char,
+    job: *mut *mut luxfer_job,
+) -> luxfer_status {
+    enter(render, |stage| {
+        let inputs = stage.inputs();
+        let (object, scene, camera) = inputs.view()?;
+        let params = Params { outputs: inputs.outputs, ..params::read(params)?.params()? };
+        let part = params::read(part)?.part(&params);
+        let path = PathBuf::from(text(path, "path")?);
+        stage.start(job, move |_, _, job| {
+            let world = object.world(&scene, job.part(0.0, 0.05))?;
+            let rendered = parts::run(&world, &camera, &params, &part, job.part(0.05, 0.99))?;
+            rendered.save(&path)?;
+            Ok(rendered.film)
+        })
+    })
+}
+
+/// Adds a file of luxfer_render_start_part to those to be merged; path is UTF-8. It is read when they are merged, its header
+/// also now. Any thread.
+/// LUXFER_IO if it cannot be read; LUXFER_FORMAT if it is no part of a rendering; LUXFER_INVALID_OPERATION while a job runs.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_render_add_part(render: *mut luxfer_render, path: *const c_char) -> luxfer_status {
+    enter(render, |stage| {
+        let file = parts::File::open(Path::new(text(path, "path")?))?;
+        stage.change(|inputs| {
+            inputs.parts.push(file);
+            Ok(())
+        })
+    })
+}
+
+/// Forgets all files to be merged. Any thread.
+/// LUXFER_INVALID_OPERATION while a job runs.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_render_clear_parts(render: *mut luxfer_render) -> luxfer_status {
+    enter(render, |stage| {
+        stage.change(|inputs| {
+            inputs.parts.clear();
+            Ok(())
+        })
+    })
+}
+
+/// Starts a job that merges the files that were added, in any order; then the rendering has its images and layers as after
+/// luxfer_render_start. params may be NULL for the defaults. The caller releases *job. Any thread.
+/// LUXFER_INVALID_OPERATION if the scene is missing or a job runs already; LUXFER_NOT_FOUND if the scene has no such
+/// camera. The job may end with LUXFER_INVALID_ARGUMENT if a file is of another rendering, or of another scene, if parts
+/// overlap, or if some are missing: the message tells which; LUXFER_IO or LUXFER_FORMAT if a file cannot be read.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_render_start_merge(
+    render: *mut luxfer_render,
+    params: *const luxfer_render_params,
+    job: *mut *mut luxfer_job,
+) -> luxfer_status {
+    enter(render, |stage| {
+        let inputs = stage.inputs();
+        let (object, scene, camera) = inputs.view()?;
+        let params = Params { outputs: inputs.outputs, ..params::read(params)?.params()? };
+        let files = inputs.parts;
+        stage.start(job, move |_, _, job| -> Result<Film> {
+            let world = object.world(&scene, job.part(0.0, 0.1))?;
+            parts::merge(&world, &camera, &params, &files, job.part(0.1, 1.0))
+        })
+    })
+}

@@ -1,0 +1,247 @@
+//! Files of exact numbers: windows of a picture as OpenEXR files that keep any count of doubles for each pixel.
+//!
+//! The picture itself is in R, G and B, so that any program can show what there is; the file's data window is where the
+//! window lies in the whole, its display window. A double is two channels of 32-bit integers, `number.K.high` and
+//! `number.K.low`: floating-point channels have 32 bits at most. What else there is to say stands in texts of the header.
+
+use super::io::{broken_exr, exr_headers};
+use super::{Image, try_vec, try_with_capacity};
+use crate::error::{Error, ErrorKind, Result};
+use exr::meta::header::Header;
+use exr::prelude as ex;
+use std::fs::File;
+use std::io::{BufReader, Cursor};
+use std::path::Path;
+
+/// No compression of a readable file makes numbers more times shorter (deflate: 1032).
+const DENSEST: usize = 1100;
+
+/// What the header of such a file says.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Head {
+    /// Width and height of the whole picture.
+    pub whole: [usize; 2],
+    /// Column and row of the window's first pixel.
+    pub corner: [usize; 2],
+    /// Width and height of the window.
+    pub size: [usize; 2],
+    /// Doubles of a pixel.
+    pub numbers: usize,
+    /// Names and texts, by name.
+    pub notes: Vec<(String, String)>,
+}
+
+impl Head {
+    pub fn note(&self, name: &str) -> Option<&str> {
+        self.notes.iter().find(|(n, _)| n == name).map(|(_, text)| text.as_str())
+    }
+
+    fn of(headers: &[Header]) -> Result<Self> {
+        let [header] = headers else {
+            return Err(Error::format(format!("it has {} layers in place of one", headers.len())));
+        };
+        let (window, display) = (header.own_attributes.layer_position, header.shared_attributes.display_window);
+        let size = [header.layer_size.0, header.layer_size.1];
+        let corner = [window.0, window.1].map(|v| usize::try_from(v).ok());
+        let origin = [display.position.0, display.position.1];
+        let whole = [display.size.0, display.size.1];
+        let ([Some(x), Some(y)], [0, 0]) = (corner, origin) else {
+            return Err(Error::format("its windows begin left of or above the picture"));
+        };
+        if x.saturating_add(size[0]) > whole[0] || y.saturating_add(size[1]) > whole[1] {
+            return Err(Error::format(format!(
+                "its window of {} x {} pixels at {x}, {y} does not lie in the picture of {} x {}",
+                size[0], size[1], whole[0], whole[1]
+            )));
+        }
+        // Three channels of the picture, then two of each number in their order.
+        let channels = &header.channels.list;
+        let numbers = channels.len().saturating_sub(3) / 2;
+        for (i, channel) in channels.iter().enumerate() {
+            let (name, kind) = match i {
+                0..3 => (["B", "G", "R"][i].to_string(), ex::SampleType::F32),
+                _ => (name((i - 3) / 2, i % 2 == 1), ex::SampleType::U32),
+            };
+            if !channel.name.eq(name.as_str()) || channel.sample_type != kind || channel.sampling != ex::Vec2(1, 1) {
+                return Err(Error::format(format!("its channel {} is not {name} of {kind:?}", channel.name)));
+            }
+        }
+        if channels.len() < 3 || channels.len() % 2 == 0 {
+            return Err(Error::format(format!("it has {} channels", channels.len())));
+        }
+        let mut notes: Vec<(String, String)> = Vec::new();
+        for (name, value) in &header.own_attributes.other {
+            if let ex::AttributeValue::Text(text) = value {
+                notes.push((utf8(name), utf8(text)));
+            }
+        }
+        notes.sort();
+        Ok(Self { whole, corner: [x, y], size, numbers, notes })
+    }
+}
+
+fn utf8(text: &ex::Text) -> String {
+    String::from_utf8_lossy(text.bytes()).into_owned()
+}
+
+/// The name of half a number.
+fn name(number: usize, is_high: bool) -> String {
+    format!("number.{number:05}.{}", if is_high { "high" } else { "low" })
+}
+
+/// What the beginning of a file says.
+pub fn read_head(path: &Path) -> Result<Head> {
+    let file = File::open(path).map_err(|e| Error::new(ErrorKind::Io, format!("{}: {e}", path.display())))?;
+    let meta = exr::meta::MetaData::read_from_buffered(BufReader::new(file), false).map_err(broken_exr);
+    meta.and_then(|meta| Head::of(&meta.headers)).map_err(|e| e.within(path.display()))
+}
+
+/// Hands over the numbers of each pixel of a file that is known to have this head: anything else is refused before memory is
+/// taken for it.
+pub fn decode(bytes: &[u8], head: &Head, mut pixel: impl FnMut([usize; 2], &[f64])) -> Result<()> {
+    let found = Head::of(&exr_headers(bytes)?)?;
+    if found != *head {
+        return Err(Error::format("its header is not what it was before"));
+    }
+    let ([width, height], channels) = (head.size, 3 + 2 * head.numbers);
+    if 4 * channels * width * height > bytes.len().saturating_mul(DENSEST) {
+        return Err(Error::format("its header promises more than so short a file can hold"));
+    }
+    use ex::{ReadChannels, ReadLayers};
+    let file = ex::read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .all_channels()
+        .first_valid_layer()
+        .all_attributes()
+        .non_parallel()
+        .from_buffered(Cursor::new(bytes))
+        .map_err(broken_exr)?;
+    let mut halves: Vec<&[u32]> = try_with_capacity(2 * head.numbers)?;
+    for channel in file.layer_data.channel_data.list.iter().skip(3) {
+        match &channel.sample_data {
+            ex::FlatSamples::U32(samples) if samples.len() == width * height => halves.push(samples),
+            _ => return Err(Error::format(format!("its channel {} is incomplete", channel.name))),
+        }
+    }
+    let (pairs, _) = halves.as_chunks::<2>();
+    let mut numbers = try_vec(head.numbers, 0.0)?;
+    for i in 0..width * height {
+        for (number, [high, low]) in numbers.iter_mut().zip(pairs) {
+            *number = f64::from_bits(u64::from(high[i]) << 32 | u64::from(low[i]));
+        }
+        pixel([i % width, i / width], &numbers);
+    }
+    Ok(())
+}
+
+/// Encodes a window: its picture, 3 channels, and `number(x, y, k)` for each of its pixels.
+pub fn encode(head: &Head, picture: &Image, number: impl Fn([usize; 2], usize) -> f64) -> Result<Vec<u8>> {
+    let text = |text: &str| ex::Text::from_slice_unchecked(text.as_bytes());
+    let [width, height] = head.size;
+    let mut list = ex::SmallVec::<[ex::AnyChannel<ex::FlatSamples>; 4]>::new();
+    for (c, name) in ["R", "G", "B"].into_iter().enumerate() {
+        let samples = super::try_collect(picture.data.iter().skip(c).step_by(3).copied())?;
+        list.push(ex::AnyChannel::new(text(name), ex::FlatSamples::F32(samples)));
+    }
+    for k in 0..head.numbers {
+        for is_high in [true, false] {
+            let mut samples: Vec<u32> = try_with_capacity(width * height)?;
+            for i in 0..width * height {
+                let bits = number([i % width, i / width], k).to_bits();
+                samples.push(if is_high { (bits >> 32) as u32 } else { bits as u32 });
+            }
+            list.push(ex::AnyChannel::new(text(&name(k, is_high)), ex::FlatSamples::U32(samples)));
+        }
+    }
+    let mut attributes = ex::LayerAttributes::default();
+    attributes.layer_position = ex::Vec2(head.corner[0] as i32, head.corner[1] as i32);
+    for (name, note) in &head.notes {
+        attributes.other.insert(text(name), ex::AttributeValue::Text(text(note)));
+    }
+    let channels = ex::AnyChannels::sort(list);
+    let layer = ex::Layer::new((width, height), attributes, ex::Encoding::SMALL_LOSSLESS, channels);
+    let mut file = ex::Image::from_layer(layer);
+    file.attributes.display_window = ex::IntegerBounds::new((0, 0), (head.whole[0], head.whole[1]));
+    // Room for what no compression could make larger: samples, and for each line its number, size and place; names and notes.
+    let texts = head.notes.iter().map(|(name, note)| name.len() + note.len() + 64).sum::<usize>();
+    let samples = (3 + 2 * head.numbers) * (4 * width * height + 64);
+    use ex::WritableImage;
+    let mut out = Cursor::new(try_with_capacity(samples + texts + 32 * height + 4096)?);
+    file.write()
+        .non_parallel()
+        .to_buffered(&mut out)
+        .map_err(|e| Error::new(ErrorKind::Internal, format!("the OpenEXR encoder failed: {e}")))?;
+    Ok(out.into_inner())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::image::io::{Encoding, decode as decode_picture};
+
+    fn number(at: [usize; 2], k: usize) -> f64 {
+        [1.0 / 3.0, -0.0, f64::MAX, 1e-300, 1e9 + 1e-7][k] * (1 + at[0] + 100 * at[1]) as f64
+    }
+
+    fn file() -> (Head, Image, Vec<u8>) {
+        let head = Head {
+            whole: [40, 30],
+            corner: [8, 5],
+            size: [19, 13],
+            numbers: 5,
+            notes: vec![("luxfer.one".into(), "Ä".into()), ("luxfer.two".into(), String::new())],
+        };
+        let picture = Image::from_fn(19, 13, |x, y| [x as f32, y as f32, 0.5]).unwrap();
+        let bytes = encode(&head, &picture, number).unwrap();
+        (head, picture, bytes)
+    }
+
+    #[test]
+    fn doubles_come_back_to_the_bit_and_anyone_sees_the_picture() {
+        let (head, picture, bytes) = file();
+        let mut seen = 0;
+        decode(&bytes, &head, |at, numbers| {
+            assert_eq!(at, [seen % 19, seen / 19]);
+            let expected: Vec<u64> = (0..5).map(|k| number(at, k).to_bits()).collect();
+            assert_eq!(numbers.iter().map(|n| n.to_bits()).collect::<Vec<_>>(), expected);
+            seen += 1;
+        })
+        .unwrap();
+        assert_eq!(seen, 19 * 13);
+        assert_eq!(decode_picture(&bytes, Encoding::Linear).unwrap(), picture);
+        assert_eq!((head.note("luxfer.one"), head.note("three")), (Some("Ä"), None));
+    }
+
+    #[test]
+    fn damaged_files_are_errors() {
+        let (head, picture, bytes) = file();
+        for cut in [0, 4, 100, 400, bytes.len() / 2, bytes.len() - 20] {
+            assert_eq!(decode(&bytes[..cut], &head, |_, _| ()).unwrap_err().kind, ErrorKind::Format, "cut at {cut}");
+        }
+        let other = Head { numbers: 4, ..head.clone() };
+        assert_eq!(decode(&bytes, &other, |_, _| ()).unwrap_err().kind, ErrorKind::Format);
+        // A picture of another kind.
+        let layer = super::super::io::Layer { name: "", image: &picture, channels: &["R", "G", "B"] };
+        let plain = super::super::io::encode_exr(&[layer], &[]).unwrap();
+        assert_eq!(Head::of(&exr_headers(&plain).unwrap()).unwrap().numbers, 0);
+        let layer = super::super::io::Layer { name: "deep", image: &picture, channels: &["R", "G", "B"] };
+        let plain = super::super::io::encode_exr(&[layer], &[]).unwrap();
+        assert!(Head::of(&exr_headers(&plain).unwrap()).is_err());
+        // One that says it is a picture of 16384 x 16384.
+        let bomb = Head { whole: [1 << 14, 1 << 14], size: [1 << 14, 1 << 14], corner: [0, 0], ..head.clone() };
+        let mut lie = bytes.clone();
+        let window = |[x, y]: [usize; 2], [w, h]: [usize; 2]| {
+            [x, y, x + w - 1, y + h - 1].map(|v| (v as i32).to_le_bytes()).concat()
+        };
+        for (from, to) in [
+            (window(head.corner, head.size), window(bomb.corner, bomb.size)),
+            (window([0, 0], head.whole), window([0, 0], bomb.whole)),
+        ] {
+            let at = lie.windows(16).position(|bytes| bytes == from).unwrap();
+            lie[at..at + 16].copy_from_slice(&to);
+        }
+        let error = decode(&lie, &bomb, |_, _| ()).unwrap_err();
+        assert!(error.kind == ErrorKind::Format, "{}", error.message);
+    }
+}

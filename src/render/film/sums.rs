@@ -1,0 +1,160 @@
+//! Sums over some paths of some pixels, which add up with those of other paths and pixels to an image.
+//!
+//! The path of a number in a pixel is the same one whoever makes it, as are its replication and its place in the point
+//! sequence. Its light is added in f64: a sum of so few numbers in f32 loses at most its last bits, so that it hardly ever
+//! matters for an image in f32 in which order, or in how many parts, it was added up.
+
+use super::grid::{AREA, Grid, TILE};
+use super::pixel::{REPLICATIONS, share};
+use super::survey::Survey;
+use super::{Eye, radiance};
+use crate::error::Result;
+use crate::exec;
+use crate::image::try_vec;
+use crate::job::Job;
+use crate::render::layers::Layers;
+use crate::render::parts::Part;
+use crate::render::path::Length;
+use crate::render::sampler::Sampler;
+use crate::render::{Params, World};
+use crate::rng;
+use crate::scene::Camera;
+use glam::DVec3;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Numbers of a pixel for its light: three for each replication.
+const LIGHT: usize = 3 * REPLICATIONS as usize;
+/// Paths of a pixel between two looks for a cancel request.
+const SLICE: u32 = 16;
+
+/// The sums of a part.
+pub struct Sums {
+    part: Part,
+    /// The tiles of the image that the part touches.
+    corner: [usize; 2],
+    grid: Grid,
+    /// Numbers of a pixel: those of its light, then those of the layers.
+    width: usize,
+    /// Tile by tile.
+    numbers: Vec<f64>,
+    /// Paths that were left out because their radiance was no finite number.
+    discarded: u64,
+}
+
+impl Sums {
+    /// Of no paths yet.
+    pub fn new(part: &Part, layers: Option<&Layers>) -> Result<Self> {
+        let corner = [part.x / TILE * TILE, part.y / TILE * TILE];
+        let grid = Grid { width: part.x + part.width - corner[0], height: part.y + part.height - corner[1] };
+        let width = LIGHT + layers.map_or(0, Layers::summed);
+        let numbers = try_vec(grid.tiles() * AREA * width, 0.0)?;
+        Ok(Self { part: *part, corner, grid, width, numbers, discarded: 0 })
+    }
+
+    /// Of the paths of a part.
+    pub fn trace(world: &World, camera: &Camera, params: &Params, part: &Part, job: Job) -> Result<Self> {
+        let layers = Layers::new(world, camera, &params.outputs, 0, AREA)?;
+        let mut sums = Self::new(part, layers.as_ref())?;
+        let eye = Eye::new(world, camera, params);
+        let survey = Survey::new(world, &eye, params, job.part(0.0, 0.01))?;
+        let discarded = AtomicU64::new(0);
+        let Self { corner, grid, width, numbers, .. } = &mut sums;
+        exec::for_rows(numbers, AREA * *width, job.part(0.01, 1.0), |tile, numbers| {
+            let (left, top) = grid.corner(tile);
+            let length = Length { most: eye.most, worth: survey.worth([corner[0] + left, corner[1] + top]) };
+            let mut recorder = layers.as_ref().map(Layers::recorder);
+            for (i, numbers) in numbers.chunks_exact_mut(*width).enumerate() {
+                let at = [corner[0] + left + i % TILE, corner[1] + top + i / TILE];
+                if !part.has(at) {
+                    continue;
+                }
+                let (light, others) = numbers.split_at_mut(LIGHT);
+                let (light, _) = light.as_chunks_mut::<3>();
+                let seed = rng::hash(params.seed, &at.map(|v| v as u64));
+                for (replication, light) in (0..).zip(light) {
+                    let seed = rng::mix(seed ^ u64::from(replication));
+                    let mut sum = DVec3::ZERO;
+                    for index in share(part.first, replication)..share(part.first + part.samples, replication) {
+                        if index % SLICE == 0 && job.is_cancelled() {
+                            return;
+                        }
+                        let path = Sampler::new(seed, index);
+                        let radiance = radiance(world, &eye, at, length, path, recorder.as_mut());
+                        if radiance.is_finite() {
+                            sum += radiance.as_dvec3();
+                        } else {
+                            discarded.fetch_add(1, Ordering::Relaxed);
+                        }
+                        if let Some(recorder) = &mut recorder {
+                            recorder.add_to(others);
+                        }
+                    }
+                    *light = sum.into();
+                }
+            }
+        })?;
+        job.check()?;
+        sums.discarded = discarded.into_inner();
+        Ok(sums)
+    }
+
+    /// Adds the sums of a part within this one.
+    pub fn join(&mut self, other: &Self, layers: Option<&Layers>, job: Job) -> Result<()> {
+        let Self { corner, grid, width, numbers, .. } = self;
+        exec::for_rows(numbers, AREA * *width, job, |tile, numbers| {
+            let (left, top) = grid.corner(tile);
+            for (i, numbers) in numbers.chunks_exact_mut(*width).enumerate() {
+                let at = [corner[0] + left + i % TILE, corner[1] + top + i / TILE];
+                if other.part.has(at) {
+                    let (light, others) = numbers.split_at_mut(LIGHT);
+                    let (other_light, other_others) = other.numbers(at).split_at(LIGHT);
+                    light.iter_mut().zip(other_light).for_each(|(sum, other)| *sum += other);
+                    if let Some(layers) = layers {
+                        layers.join_sums(others, other_others);
+                    }
+                }
+            }
+        })?;
+        self.discarded += other.discarded;
+        Ok(())
+    }
+
+    pub fn part(&self) -> &Part {
+        &self.part
+    }
+
+    pub fn discarded(&self) -> u64 {
+        self.discarded
+    }
+
+    pub fn set_discarded(&mut self, discarded: u64) {
+        self.discarded = discarded;
+    }
+
+    /// How many numbers there are for a pixel.
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// The sums of each replication, the first path's first, and those of the layers.
+    pub fn pixel(&self, x: usize, y: usize) -> ([DVec3; REPLICATIONS as usize], &[f64]) {
+        let (light, others) = self.numbers([x, y]).split_at(LIGHT);
+        let first = self.part.first as usize;
+        (std::array::from_fn(|i| DVec3::from_slice(&light[3 * ((first + i) % REPLICATIONS as usize)..])), others)
+    }
+
+    /// All numbers of a pixel of the part.
+    pub fn numbers(&self, at: [usize; 2]) -> &[f64] {
+        &self.numbers[self.place(at)..][..self.width]
+    }
+
+    pub fn numbers_mut(&mut self, at: [usize; 2]) -> &mut [f64] {
+        let place = self.place(at);
+        &mut self.numbers[place..][..self.width]
+    }
+
+    fn place(&self, [x, y]: [usize; 2]) -> usize {
+        let (tile, i) = self.grid.locate(x - self.corner[0], y - self.corner[1]);
+        (tile * AREA + i) * self.width
+    }
+}

@@ -1,0 +1,69 @@
+//! A look at a scene before it is rendered, for what light is worth to its pixels (`worth`).
+//!
+//! A render of the whole image learns that from its own paths as they come. Parts of one, done on many machines, know
+//! nothing of each other's; so each makes the same few paths over the image and, within a tile, over the tile, which tell
+//! all of them the same. These paths have seeds of their own and are no part of the image: no estimate is biased by them.
+
+use super::grid::TILE;
+use super::pixel::Pixel;
+use super::plan::coarse_stride;
+use super::worth::{Surroundings, median};
+use super::{Eye, radiance};
+use crate::error::Result;
+use crate::exec;
+use crate::job::Job;
+use crate::render::path::Length;
+use crate::render::sampler::Sampler;
+use crate::render::{Params, World};
+use crate::rng;
+use glam::{DVec3, Vec3};
+
+/// Paths of each pixel that is looked at for the brightness of the middling tile.
+const PATHS: u32 = 8;
+/// Distance between the pixels of a tile that are looked at, with one path each.
+const STEP: usize = 2;
+/// Tells the paths of the survey from those of the image.
+const SALT: u64 = 0x7375_7276_6579_6564;
+
+pub struct Survey<'a> {
+    world: &'a World,
+    eye: &'a Eye,
+    params: &'a Params,
+    level: Option<DVec3>,
+}
+
+impl<'a> Survey<'a> {
+    pub fn new(world: &'a World, eye: &'a Eye, params: &'a Params, job: Job) -> Result<Self> {
+        let mut survey = Self { world, eye, params, level: None };
+        let stride = coarse_stride(params.width, params.height);
+        let across = params.width.div_ceil(stride);
+        let means = exec::map(across * params.height.div_ceil(stride), job, |i| {
+            survey.look([i % across * stride, i / across * stride], PATHS).mean()
+        })?;
+        survey.level = median(&means);
+        Ok(survey)
+    }
+
+    /// What light of the brightness of the middling tile is worth in the tile with this corner.
+    pub fn worth(&self, [left, top]: [usize; 2]) -> Option<Vec3> {
+        let end = |start: usize, size: usize| (start + TILE).min(size);
+        let (right, bottom) = (end(left, self.params.width), end(top, self.params.height));
+        let columns = || (left..right).step_by(STEP);
+        let pixels = (top..bottom).step_by(STEP).flat_map(|y| columns().map(move |x| [x, y]));
+        let pixels: Vec<Pixel> = pixels.map(|at| self.look(at, 1)).collect();
+        self.level.map(|level| Surroundings::of(&pixels, level).worth(&Pixel::default()))
+    }
+
+    /// Some paths of a pixel.
+    fn look(&self, at: [usize; 2], paths: u32) -> Pixel {
+        let seed = rng::hash(self.params.seed ^ SALT, &at.map(|v| v as u64));
+        let length = Length { most: self.eye.most, worth: None };
+        let mut pixel = Pixel::default();
+        pixel.extend(paths, |replication, indices| {
+            let seed = rng::mix(seed ^ u64::from(replication));
+            let paths = indices.map(|i| radiance(self.world, self.eye, at, length, Sampler::new(seed, i), None));
+            paths.filter(|r| r.is_finite()).map(|r| r.as_dvec3()).sum()
+        });
+        pixel
+    }
+}

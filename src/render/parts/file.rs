@@ -1,0 +1,103 @@
+//! Parts as files (`image::numbers`): the sums, where they belong, and what render they are of.
+
+use super::{Identity, Part};
+use crate::error::{Error, Result};
+use crate::image::numbers::{self, Head};
+use crate::image::{Image, io};
+use crate::render::Params;
+use crate::render::film::Sums;
+use crate::render::layers::Layers;
+use std::path::{Path, PathBuf};
+
+/// Begins the names of all texts in the header.
+const PREFIX: &str = "luxfer.part.";
+
+/// A file that holds a part.
+#[derive(Clone, Debug)]
+pub struct File {
+    path: PathBuf,
+    head: Head,
+    pub part: Part,
+    discarded: u64,
+}
+
+impl File {
+    /// Reads what part a file holds, not yet its sums.
+    pub fn open(path: &Path) -> Result<Self> {
+        let head = numbers::read_head(path)?;
+        let note = |name: &str| {
+            let text = head.note(&format!("{PREFIX}{name}")).and_then(|text| text.parse::<u64>().ok());
+            text.ok_or_else(|| Error::format(format!("{}: it is no part of a rendering: no {name}", path.display())))
+        };
+        let paths = |name: &str| {
+            let text = note(name)?;
+            u32::try_from(text).map_err(|_| Error::format(format!("{}: its {name} is {text}", path.display())))
+        };
+        let ([x, y], [width, height]) = (head.corner, head.size);
+        let part = Part { x, y, width, height, first: paths("first_path")?, samples: paths("paths")? };
+        let discarded = note("discarded")?;
+        Ok(Self { path: path.into(), head, part, discarded })
+    }
+
+    /// The file's name, for messages.
+    pub fn name(&self) -> impl std::fmt::Display {
+        self.path.display()
+    }
+
+    /// Checks that the part is of a render with this identity, and so many numbers for each pixel.
+    pub fn check(&self, identity: &Identity, numbers: usize, params: &Params) -> Result<()> {
+        let differs = |what: &str, theirs: &str, ours: &str| {
+            Err(Error::argument(format!(
+                "{}: its {what} is {theirs}, and {ours} in this rendering; only parts of one rendering can be merged",
+                self.name()
+            )))
+        };
+        let size = |[width, height]: [usize; 2]| format!("{width} x {height}");
+        if self.head.whole != identity.size {
+            return differs("size", &size(self.head.whole), &size(identity.size));
+        }
+        for (what, ours) in &identity.texts {
+            let theirs = self.head.note(&format!("{PREFIX}{what}")).unwrap_or("unknown");
+            if theirs != ours {
+                return differs(what, &format!("{theirs:?}"), &format!("{ours:?}"));
+            }
+        }
+        if self.head.numbers != numbers {
+            let (theirs, ours) = (self.head.numbers, numbers);
+            return Err(Error::format(format!("{}: it has {theirs} sums per pixel, not {ours}", self.name())));
+        }
+        self.part.check(params).map_err(|e| e.within(self.name()))
+    }
+
+    /// Reads the sums of a part that has been checked.
+    pub fn read(&self, layers: Option<&Layers>) -> Result<Sums> {
+        let mut sums = Sums::new(&self.part, layers)?;
+        let Part { x, y, .. } = self.part;
+        let bytes = io::read_file(&self.path)?;
+        numbers::decode(&bytes, &self.head, |at, numbers| {
+            sums.numbers_mut([x + at[0], y + at[1]]).copy_from_slice(numbers);
+        })
+        .map_err(|e| e.within(self.name()))?;
+        sums.set_discarded(self.discarded);
+        Ok(sums)
+    }
+}
+
+pub fn save(path: &Path, sums: &Sums, identity: &Identity, picture: &Image) -> Result<()> {
+    let Part { x, y, width, height, first, samples } = *sums.part();
+    let paths = [
+        ("first_path", first.to_string()),
+        ("paths", samples.to_string()),
+        ("discarded", sums.discarded().to_string()),
+    ];
+    let notes = identity.texts.iter().cloned().chain(paths).map(|(name, text)| (format!("{PREFIX}{name}"), text));
+    let head = Head {
+        whole: identity.size,
+        corner: [x, y],
+        size: [width, height],
+        numbers: sums.width(),
+        notes: notes.collect(),
+    };
+    let bytes = numbers::encode(&head, picture, |at, k| sums.numbers([x + at[0], y + at[1]])[k])?;
+    io::write_file(path, &bytes)
+}
