@@ -2196,6 +2196,98 @@ luxfer_status luxfer_render_write_exr(luxfer_render *render,
                                       const char *path);
 
 /* ====================================================================================================================
+ * Renderings in parts
+ *
+ * A rendering on many machines: each renders parts, rectangles of the image and ranges of its paths, into files, and one
+ * merges the files. The image is that of one machine which renders all of it in a single part, but for the rounding of sums in
+ * double precision, whatever the parts and their order. A part that was lost is rendered again, to the same bits.
+ *
+ * Parts have a fixed number of paths: target_error, pixel_error and time_budget_ms must be 0. The scene, the camera, the
+ * layers and luxfer_render_params must be the same for all parts and for the merge, which checks it.
+ *
+ * The files are OpenEXR: R, G, B show the part in its place in the image, and integer channels keep its sums.
+ * ==================================================================================================================== */
+
+/**
+ * A part of a rendering. Fill it with luxfer_render_part_init, which makes it the whole, or with luxfer_render_split.
+ */
+typedef struct luxfer_render_part {
+    /** sizeof(luxfer_render_part), set by luxfer_render_part_init. */
+    uint32_t struct_size;
+    /** Column of its first pixel; default 0. */
+    uint32_t x;
+    /** Row of its first pixel, from the top; default 0. */
+    uint32_t y;
+    /** Width in pixels; default 0: as far as the image goes. */
+    uint32_t width;
+    /** Height in pixels; default 0: as far as the image goes. */
+    uint32_t height;
+    /** Number of its first path in each pixel; default 0. */
+    uint32_t first_sample;
+    /** Paths per pixel; default 0: all that follow, of luxfer_render_params.samples. */
+    uint32_t samples;
+} luxfer_render_part;
+
+/**
+ * Fills *part with the whole rendering; size is sizeof *part. LUXFER_INVALID_ARGUMENT if part is NULL or size is wrong.
+ */
+luxfer_status luxfer_render_part_init(luxfer_render_part *part,
+                                      size_t size);
+
+/**
+ * Tells what part number index is if a rendering with these params is split into columns x rows rectangles and ranges of
+ * its paths, all of about the same size; columns * rows * ranges are all of it. Rectangles go on row by row, and all of one
+ * range come before the next. params may be NULL for the defaults; set part->struct_size before the call. Any thread.
+ * LUXFER_INVALID_ARGUMENT if there is no such part, or parts without a pixel or a path would have to be made.
+ */
+luxfer_status luxfer_render_split(luxfer_render *render,
+                                  const luxfer_render_params *params,
+                                  uint32_t columns,
+                                  uint32_t rows,
+                                  uint32_t ranges,
+                                  uint32_t index,
+                                  luxfer_render_part *part);
+
+/**
+ * Starts a job that renders a part, NULL for the whole, and writes it into a file; path is UTF-8, and an existing file is
+ * replaced only by a complete one. Then the images of the rendering are those of the part alone. params may be NULL for the
+ * defaults. The caller releases *job. Any thread.
+ * LUXFER_INVALID_OPERATION if the scene is missing or a job runs already; LUXFER_NOT_FOUND if the scene has no such
+ * camera. The job may end with LUXFER_INVALID_ARGUMENT if a setting is out of range or would not fix the paths, or the part
+ * is none of the image's; LUXFER_IO if the file cannot be written.
+ */
+luxfer_status luxfer_render_start_part(luxfer_render *render,
+                                       const luxfer_render_params *params,
+                                       const luxfer_render_part *part,
+                                       const char *path,
+                                       luxfer_job **job);
+
+/**
+ * Adds a file of luxfer_render_start_part to those to be merged; path is UTF-8. It is read when they are merged, its header
+ * also now. Any thread.
+ * LUXFER_IO if it cannot be read; LUXFER_FORMAT if it is no part of a rendering; LUXFER_INVALID_OPERATION while a job runs.
+ */
+luxfer_status luxfer_render_add_part(luxfer_render *render,
+                                     const char *path);
+
+/**
+ * Forgets all files to be merged. Any thread.
+ * LUXFER_INVALID_OPERATION while a job runs.
+ */
+luxfer_status luxfer_render_clear_parts(luxfer_render *render);
+
+/**
+ * Starts a job that merges the files that were added, in any order; then the rendering has its images and layers as after
+ * luxfer_render_start. params may be NULL for the defaults. The caller releases *job. Any thread.
+ * LUXFER_INVALID_OPERATION if the scene is missing or a job runs already; LUXFER_NOT_FOUND if the scene has no such
+ * camera. The job may end with LUXFER_INVALID_ARGUMENT if a file is of another rendering, or of another scene, if parts
+ * overlap, or if some are missing: the message tells which; LUXFER_IO or LUXFER_FORMAT if a file cannot be read.
+ */
+luxfer_status luxfer_render_start_merge(luxfer_render *render,
+                                        const luxfer_render_params *params,
+                                        luxfer_job **job);
+
+/* ====================================================================================================================
  * Illuminance
  *
  * Illuminance in lux on a calculation grid, or over a mesh by its texture coordinates, with the standard error of every

@@ -692,6 +692,20 @@ class luxfer_render_report(Structure):
     result = types.RenderReport
 
 
+class luxfer_render_part(Structure):
+    """A part of a rendering."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("x", c_uint32),
+        ("y", c_uint32),
+        ("width", c_uint32),
+        ("height", c_uint32),
+        ("first_sample", c_uint32),
+        ("samples", c_uint32),
+    ]
+
+
 class luxfer_illuminance_params(Structure):
     """Settings of the calculation."""
 
@@ -1322,6 +1336,12 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_render_find_layer": (c_int32, [("render", POINTER(luxfer_render)), ("name", c_char_p), ("index", POINTER(c_uint32))]),
     "luxfer_render_get_layer": (c_int32, [("render", POINTER(luxfer_render)), ("index", c_uint32), ("image", POINTER(POINTER(luxfer_image)))]),
     "luxfer_render_write_exr": (c_int32, [("render", POINTER(luxfer_render)), ("path", c_char_p)]),
+    "luxfer_render_part_init": (c_int32, [("part", POINTER(luxfer_render_part)), ("size", c_size_t)]),
+    "luxfer_render_split": (c_int32, [("render", POINTER(luxfer_render)), ("params", POINTER(luxfer_render_params)), ("columns", c_uint32), ("rows", c_uint32), ("ranges", c_uint32), ("index", c_uint32), ("part", POINTER(luxfer_render_part))]),
+    "luxfer_render_start_part": (c_int32, [("render", POINTER(luxfer_render)), ("params", POINTER(luxfer_render_params)), ("part", POINTER(luxfer_render_part)), ("path", c_char_p), ("job", POINTER(POINTER(luxfer_job)))]),
+    "luxfer_render_add_part": (c_int32, [("render", POINTER(luxfer_render)), ("path", c_char_p)]),
+    "luxfer_render_clear_parts": (c_int32, [("render", POINTER(luxfer_render))]),
+    "luxfer_render_start_merge": (c_int32, [("render", POINTER(luxfer_render)), ("params", POINTER(luxfer_render_params)), ("job", POINTER(POINTER(luxfer_job)))]),
     "luxfer_illuminance_params_init": (c_int32, [("params", POINTER(luxfer_illuminance_params)), ("size", c_size_t)]),
     "luxfer_illuminance_grid_init": (c_int32, [("grid", POINTER(luxfer_illuminance_grid)), ("size", c_size_t)]),
     "luxfer_illuminance_create": (c_int32, [("context", POINTER(luxfer_context)), ("illuminance", POINTER(POINTER(luxfer_illuminance)))]),

@@ -1179,6 +1179,23 @@ class RenderReport:
     relative to the image's mean, estimated. 0 without a preview."""
 
 
+class RenderPart(TypedDict, total=False):
+    """A part of a rendering."""
+
+    x: int
+    """Column of its first pixel; default 0."""
+    y: int
+    """Row of its first pixel, from the top; default 0."""
+    width: int
+    """Width in pixels; default 0: as far as the image goes."""
+    height: int
+    """Height in pixels; default 0: as far as the image goes."""
+    first_sample: int
+    """Number of its first path in each pixel; default 0."""
+    samples: int
+    """Paths per pixel; default 0: all that follow, of RenderParams.samples."""
+
+
 class IlluminanceParams(TypedDict, total=False):
     """Settings of the calculation."""
 
