@@ -213,7 +213,7 @@ impl<'a> Canvas<'a> {
     }
 }
 
-/// Sum of some paths of a pixel.
+/// Sum of some paths of a pixel. Whoever wants paths comes here: what there is to a path is compiled into this function once.
 fn paths(
     world: &World,
     eye: &Eye,

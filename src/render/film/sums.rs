@@ -7,7 +7,7 @@
 use super::grid::{AREA, Grid, TILE};
 use super::pixel::{REPLICATIONS, share};
 use super::survey::Survey;
-use super::{Eye, radiance};
+use super::{Eye, paths};
 use crate::error::Result;
 use crate::exec;
 use crate::image::try_vec;
@@ -15,12 +15,11 @@ use crate::job::Job;
 use crate::render::layers::Layers;
 use crate::render::parts::Part;
 use crate::render::path::Length;
-use crate::render::sampler::Sampler;
 use crate::render::{Params, World};
 use crate::rng;
 use crate::scene::Camera;
 use glam::DVec3;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::AtomicU64;
 
 /// Numbers of a pixel for its light: three for each replication.
 const LIGHT: usize = 3 * REPLICATIONS as usize;
@@ -78,13 +77,8 @@ impl Sums {
                         if index % SLICE == 0 && job.is_cancelled() {
                             return;
                         }
-                        let path = Sampler::new(seed, index);
-                        let radiance = radiance(world, &eye, at, length, path, recorder.as_mut());
-                        if radiance.is_finite() {
-                            sum += radiance.as_dvec3();
-                        } else {
-                            discarded.fetch_add(1, Ordering::Relaxed);
-                        }
+                        let path = (seed, index..index + 1);
+                        sum += paths(world, &eye, at, length, path, recorder.as_mut(), &discarded);
                         if let Some(recorder) = &mut recorder {
                             recorder.add_to(others);
                         }

@@ -8,18 +8,18 @@ use super::grid::TILE;
 use super::pixel::Pixel;
 use super::plan::coarse_stride;
 use super::worth::{Surroundings, median};
-use super::{Eye, radiance};
+use super::{Eye, paths};
 use crate::error::Result;
 use crate::exec;
 use crate::job::Job;
 use crate::render::path::Length;
-use crate::render::sampler::Sampler;
 use crate::render::{Params, World};
 use crate::rng;
 use glam::{DVec3, Vec3};
+use std::sync::atomic::AtomicU64;
 
 /// Paths of each pixel that is looked at for the brightness of the middling tile.
-const PATHS: u32 = 8;
+const PATHS: u32 = 4;
 /// Distance between the pixels of a tile that are looked at, with one path each.
 const STEP: usize = 2;
 /// Tells the paths of the survey from those of the image.
@@ -55,14 +55,14 @@ impl<'a> Survey<'a> {
     }
 
     /// Some paths of a pixel.
-    fn look(&self, at: [usize; 2], paths: u32) -> Pixel {
+    fn look(&self, at: [usize; 2], count: u32) -> Pixel {
         let seed = rng::hash(self.params.seed ^ SALT, &at.map(|v| v as u64));
         let length = Length { most: self.eye.most, worth: None };
-        let mut pixel = Pixel::default();
-        pixel.extend(paths, |replication, indices| {
+        // What is no number is left out of the survey as of the image, but counted only there.
+        let (mut pixel, discarded) = (Pixel::default(), AtomicU64::new(0));
+        pixel.extend(count, |replication, indices| {
             let seed = rng::mix(seed ^ u64::from(replication));
-            let paths = indices.map(|i| radiance(self.world, self.eye, at, length, Sampler::new(seed, i), None));
-            paths.filter(|r| r.is_finite()).map(|r| r.as_dvec3()).sum()
+            paths(self.world, self.eye, at, length, (seed, indices), None, &discarded)
         });
         pixel
     }
