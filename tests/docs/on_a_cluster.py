@@ -16,7 +16,8 @@ def view(context: luxfer.Context) -> luxfer.Render:
 
 def room(context: luxfer.Context) -> luxfer.Relight:
     scene = luxfer.Scene.demo(context, "target-room")
-    mesh, material = scene.place_emission("Ceiling", np.ones((8, 8, 3)), (100, 100, 100))
+    lamps = np.eye(8).repeat(3).reshape(8, 8, 3)           # eight, in a diagonal
+    mesh, material = scene.place_emission("Ceiling", lamps, (100, 100, 100))
     relight = luxfer.Relight(context)
     relight.set_scene(scene, material, mesh)
     return relight

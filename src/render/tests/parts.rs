@@ -120,7 +120,8 @@ fn a_merged_image_has_the_mean_and_the_error_of_one_rendered_at_once() {
         let rendered = parts::run(&world, &viewer(), &params, &part, Monitor::default().job()).unwrap();
         for (i, film) in [rendered.film, render(&world, &viewer(), &params)].iter().enumerate() {
             let mean = film.beauty.data.iter().map(|&v| f64::from(v)).sum::<f64>() / film.beauty.data.len() as f64;
-            (sums[i], squares[i], errors[i]) = (sums[i] + mean, squares[i] + mean * mean, errors[i] + film.error.powi(2));
+            (sums[i], squares[i], errors[i]) =
+                (sums[i] + mean, squares[i] + mean * mean, errors[i] + film.error.powi(2));
         }
     }
     let n = count as f64;
@@ -217,7 +218,8 @@ fn damaged_files_are_errors_and_a_cancel_leaves_none() {
         }
     }
     assert_eq!(File::open(&folder.0.join("none.exr")).unwrap_err().kind, ErrorKind::Io);
-    std::fs::write(&path, crate::image::io::encode_png(&render(&world, &viewer(), &params).beauty, 1.0).unwrap()).unwrap();
+    std::fs::write(&path, crate::image::io::encode_png(&render(&world, &viewer(), &params).beauty, 1.0).unwrap())
+        .unwrap();
     assert_eq!(File::open(&path).unwrap_err().kind, ErrorKind::Format);
 
     let monitor = Monitor::default();
