@@ -160,7 +160,8 @@ pub fn encode(head: &Head, picture: &Image, number: impl Fn([usize; 2], usize) -
         attributes.other.insert(text(name), ex::AttributeValue::Text(text(note)));
     }
     let channels = ex::AnyChannels::sort(list);
-    let layer = ex::Layer::new((width, height), attributes, ex::Encoding::SMALL_LOSSLESS, channels);
+    // Run lengths: the digits of sums are noise, on which better compression spends as much time as on tracing paths.
+    let layer = ex::Layer::new((width, height), attributes, ex::Encoding::FAST_LOSSLESS, channels);
     let mut file = ex::Image::from_layer(layer);
     file.attributes.display_window = ex::IntegerBounds::new((0, 0), (head.whole[0], head.whole[1]));
     // Room for what no compression could make larger: samples, and for each line its number, size and place; names and notes.
