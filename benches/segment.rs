@@ -41,6 +41,7 @@ fn main() {
     });
     let update = pool.run(|| timing(&cases[0]));
     masks(&pool, &cases, update);
+    pool.run(|| refinement(&cases));
     let rooms: Vec<&Case> = cases.iter().filter(|c| c.plane.is_none()).collect();
     pool.run(|| {
         calibration(&rooms);
@@ -314,6 +315,57 @@ fn masks(pool: &Pool, cases: &[Case], ours_ms: f64) {
         Ok(_) => figure("segment.vs_grabcut", median(&grabcut_ratio), "x"),
         Err(reason) => absent("segment.vs_grabcut", reason),
     }
+}
+
+/// Wrong pixels within four of the true border, as a share of all pixels there.
+fn border_error(mask: &Image, truth: &Image) -> f64 {
+    let [width, height] = [truth.width, truth.height];
+    let is_in = |x: usize, y: usize| truth.data[y * width + x] > 0.5;
+    let border = Image::from_fn(width, height, |x, y| {
+        let differs = |u: usize, v: usize| u < width && v < height && is_in(u, v) != is_in(x, y);
+        [f32::from(differs(x + 1, y) || differs(x, y + 1))]
+    });
+    let near = segment::dilate(&border.unwrap(), 4.0, Monitor::default().job()).unwrap();
+    let at: Vec<usize> = (0..width * height).filter(|&i| near.data[i] > 0.5).collect();
+    let wrong = at.iter().filter(|&&i| (mask.data[i] > 0.5) != (truth.data[i] > 0.5)).count();
+    wrong as f64 / at.len().max(1) as f64
+}
+
+/// The edge-aware refinement, over its knobs.
+fn refinement(cases: &[Case]) {
+    let mut table = Table::new(["radius", "tolerance", "IoU rooms", "photos", "border error % rooms", "photos", "ms"]);
+    let kinds: [Vec<&Case>; 2] = [false, true].map(|photos| cases.iter().filter(|c| c.plane.is_some() == photos).collect());
+    let mut plain = [0.0; 2];
+    for (radius, tolerance) in
+        [(0, 4.0), (1, 4.0), (2, 1.0), (2, 4.0), (2, 16.0), (4, 1.0), (4, 4.0), (4, 16.0), (8, 4.0), (16, 4.0)]
+    {
+        let params = Params { refine_radius: radius, refine_tolerance: tolerance, ..Params::default() };
+        let of_kind = |cases: &[&Case]| {
+            let found: Vec<(f64, f64, f64)> = cases
+                .iter()
+                .map(|case| {
+                    let (seconds, found) = time(Clock::Wall, || segmented(case, &params));
+                    (iou(&found.mask, &case.truth), border_error(&found.mask, &case.truth), seconds)
+                })
+                .collect();
+            let mean = |of: fn(&(f64, f64, f64)) -> f64| found.iter().map(of).sum::<f64>() / found.len().max(1) as f64;
+            [mean(|f| f.0), mean(|f| f.1), mean(|f| f.2)]
+        };
+        let [rooms, photos] = [of_kind(&kinds[0]), of_kind(&kinds[1])];
+        if radius == 0 {
+            plain = [rooms[0], rooms[2]];
+        }
+        let mut cells = vec![radius.to_string(), tolerance.to_string()];
+        cells.extend([rooms[0], photos[0]].map(|v| format!("{v:.4}")));
+        cells.extend([rooms[1], photos[1]].map(|v| format!("{:.2}", 100.0 * v)));
+        cells.push(format!("{:.0}", 1e3 * rooms[2]));
+        table.row(cells);
+        if (radius, tolerance) == (4, 4.0) {
+            figure("segment.refine.iou_gain", rooms[0] - plain[0], "-");
+            figure("segment.refine.ms", 1e3 * (rooms[2] - plain[1]), "ms");
+        }
+    }
+    table.print("Edge-aware refinement");
 }
 
 /// How often pixels of a stated probability are positive, all rooms together.

@@ -11,7 +11,7 @@
 //! [`transfer`] runs the first line in order and passes the data along; stages never know of each other. `ffi` is the C
 //! boundary, and the only place that does. Engines under both: [`scene`] (description, glTF, acceleration), [`render`]
 //! (light transport), `patch` (nearest-neighbour fields), [`image`], [`geometry`], [`photometry`] (colour temperature, glare,
-//! luminaire files). `tests/layering.rs` checks these arrows.
+//! luminaire files), `network` (ONNX files). `tests/layering.rs` checks these arrows.
 //!
 //! Every stage has the same face: `Params` with defaults, ranges and units; an input; an output that carries its own error
 //! estimate; and a function that runs it with a [`job::Job`], which takes progress and gives cancel requests. All parallel
@@ -36,6 +36,8 @@ pub mod exec;
 pub mod geometry;
 pub mod image;
 pub mod job;
+#[cfg(feature = "onnx")]
+pub mod network;
 pub mod photometry;
 pub mod rng;
 pub mod scene;

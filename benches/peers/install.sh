@@ -21,6 +21,8 @@ install python numpy 'setuptools>=70.1'
 install dask numpy distributed
 # What else reads and writes OpenEXR files.
 install exr OpenEXR numpy
+# Another runtime for ONNX files.
+install onnx onnxruntime numpy
 # For the guide.
 install docs -r docs/requirements.txt
 install mitsuba mitsuba numpy

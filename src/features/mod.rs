@@ -18,6 +18,9 @@
 //! a perspective is known its rays replace the paper's 90° frustum: Eq. 1 then takes bounds from the real focal length,
 //! so that planes stay planes. Only ratios of depth matter; the nearest depth (its 2 % quantile) is put on the near plane.
 //!
+//! A depth map may also be made here from the photo alone, by a network that the caller has as an ONNX file (the Cargo feature
+//! `onnx`).
+//!
 //! Not modelled: lens distortion, and anything but one box for the built-in layout (furniture, beams, two-part rooms).
 
 mod assemble;
@@ -25,6 +28,8 @@ mod clean;
 mod depth;
 mod frustum;
 mod layout;
+#[cfg(feature = "onnx")]
+mod monocular;
 mod normals;
 mod plane_fit;
 mod score;
@@ -33,6 +38,8 @@ mod tests;
 
 pub use frustum::Frustum;
 pub use layout::Layout;
+#[cfg(feature = "onnx")]
+pub use monocular::{DepthNetwork, Normalisation, run_with_network};
 
 use crate::error::{Error, Result, check_range};
 use crate::exec;
@@ -107,6 +114,8 @@ impl Params {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DepthSource {
     Caller,
+    /// A network of the caller's.
+    Network,
     /// The box room of [`Features::layout`].
     Layout,
     /// A guess that knows nothing of the photo.
@@ -117,7 +126,7 @@ pub enum DepthSource {
 pub struct Features {
     /// [`CHANNELS`] channels of the photo's size; finite everywhere.
     pub image: Image,
-    /// Trust in the depth of each pixel, in `[0, 1]`: 1 where the caller gave it, 0 in its holes, less than 1 for the
+    /// Trust in the depth of each pixel, in `[0, 1]`: 1 where the caller gave it, 0 in its holes, 0.5 from a network, less than 1 for the
     /// built-in layout, 0.05 without any knowledge.
     pub depth_confidence: Image,
     pub depth_source: DepthSource,

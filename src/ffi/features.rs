@@ -1,8 +1,8 @@
 //! Features
 //!
 //! What segmentation knows of each pixel of a photo: ten channels, L*, a*, b* (CIELAB, D65), depth, position x, y, z and
-//! normal x, y, z. Depth comes from the caller, or is laid out as a room from the lines that luxfer_rectify has found, or is
-//! a neutral guess.
+//! normal x, y, z. Depth comes from the caller, or from a network that the caller has as an ONNX file, or is laid out as a
+//! room from the lines that luxfer_rectify has found, or is a neutral guess.
 
 use super::context::luxfer_context;
 use super::guard::{enter, guard};
@@ -10,15 +10,26 @@ use super::handle::{self, Handle, Owned, tag};
 use super::image::{Pixels, luxfer_image};
 use super::job::luxfer_job;
 use super::params::{self, Report, Versioned};
-use super::pointer::Out;
+use super::pointer::{Out, text};
 use super::rectify::luxfer_rectify;
 use super::stage::{Stage, need};
 use super::status::luxfer_status;
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
+#[cfg(feature = "onnx")]
+use crate::features::DepthNetwork;
 use crate::features::{self, DepthKind, DepthSource, Features};
 use crate::image::Image;
+#[cfg(feature = "onnx")]
+use crate::image::io;
 use crate::rectify::View;
+use std::ffi::c_char;
+#[cfg(feature = "onnx")]
+use std::path::Path;
 use std::sync::Arc;
+
+/// Left out of the build: there never is one.
+#[cfg(not(feature = "onnx"))]
+enum DepthNetwork {}
 
 /// The features of a photo. See luxfer_features_create.
 pub struct luxfer_features {
@@ -38,6 +49,20 @@ pub type luxfer_features_image = i32;
 pub const LUXFER_FEATURES_CHANNELS: luxfer_features_image = 0;
 /// Trust in the depth of each pixel, in [0, 1]; 1 channel.
 pub const LUXFER_FEATURES_DEPTH_CONFIDENCE: luxfer_features_image = 1;
+/// The depth along z that a network has estimated, from near_plane to far_plane; 1 channel. It can be set as the depth map of a
+/// further run, or of luxfer_transfer, without running the network again.
+pub const LUXFER_FEATURES_NETWORK_DEPTH: luxfer_features_image = 2;
+
+/// What the colours of a photo become before a network sees them: a LUXFER_NORMALISATION_ value. The file does not say it.
+pub type luxfer_normalisation = i32;
+/// By the size of the network's input: LUXFER_NORMALISATION_IMAGENET for 256 x 256, else LUXFER_NORMALISATION_HALF.
+pub const LUXFER_NORMALISATION_BY_SIZE: luxfer_normalisation = 0;
+/// sRGB less (0.485, 0.456, 0.406), over (0.229, 0.224, 0.225): MiDaS 2.1, large and small.
+pub const LUXFER_NORMALISATION_IMAGENET: luxfer_normalisation = 1;
+/// sRGB less 0.5, over 0.5: DPT.
+pub const LUXFER_NORMALISATION_HALF: luxfer_normalisation = 2;
+/// sRGB in [0, 1].
+pub const LUXFER_NORMALISATION_NONE: luxfer_normalisation = 3;
 
 /// Where the depth came from: a LUXFER_DEPTH_FROM_ value.
 pub type luxfer_depth_source = i32;
@@ -47,6 +72,8 @@ pub const LUXFER_DEPTH_FROM_CALLER: luxfer_depth_source = 0;
 pub const LUXFER_DEPTH_FROM_LAYOUT: luxfer_depth_source = 1;
 /// A guess that knows nothing of the photo.
 pub const LUXFER_DEPTH_FROM_NOTHING: luxfer_depth_source = 2;
+/// The caller's network.
+pub const LUXFER_DEPTH_FROM_NETWORK: luxfer_depth_source = 3;
 
 /// Settings of the features. Fill them with luxfer_features_params_init.
 #[repr(C)]
@@ -105,11 +132,18 @@ unsafe impl Versioned for luxfer_features_report {
 pub(super) struct Inputs {
     photo: Option<Arc<Pixels>>,
     depth: Option<(Arc<Pixels>, DepthKind)>,
+    network: Option<Arc<DepthNetwork>>,
     view: Option<Arc<View>>,
 }
 
+/// The result, and what a network has estimated on the way.
+pub(super) struct Outcome {
+    pub(super) features: Arc<Features>,
+    network_depth: Option<Image>,
+}
+
 impl Handle for luxfer_features {
-    type Object = Stage<Inputs, Features>;
+    type Object = Stage<Inputs, Outcome>;
     const TAG: u64 = tag(b"lux.feat");
     const NAME: &'static str = "luxfer_features";
 }
@@ -176,6 +210,78 @@ pub unsafe extern "C" fn luxfer_features_set_depth(
     })
 }
 
+/// Sets a network that estimates depth where there is no depth map: an ONNX file; path is UTF-8. Its one input is a photo, a float
+/// tensor [1, 3, rows, columns] of any size up to 4096; its first output is a map of relative inverse depth, as those of MiDaS
+/// and DPT are. The map is normalised by its extremes: the nearest pixel is on near_plane, the farthest on far_plane.
+/// normalisation is a LUXFER_NORMALISATION_ value. path may be NULL: none. The file is read now and not needed afterwards.
+/// Any thread.
+/// LUXFER_IO if the file cannot be read, LUXFER_FORMAT if it is damaged, LUXFER_UNSUPPORTED if it needs what the library does not
+/// do, or if the library was built without the Cargo feature onnx.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_features_set_network(
+    features: *mut luxfer_features,
+    path: *const c_char,
+    normalisation: luxfer_normalisation,
+) -> luxfer_status {
+    enter(features, |stage| {
+        let network = if path.is_null() { None } else { Some(Arc::new(network(text(path, "path")?, normalisation)?)) };
+        stage.change(|inputs| {
+            inputs.network = network;
+            Ok(())
+        })
+    })
+}
+
+#[cfg(feature = "onnx")]
+fn network(path: &str, normalisation: luxfer_normalisation) -> Result<DepthNetwork> {
+    use crate::features::Normalisation;
+    let normalisation = match normalisation {
+        LUXFER_NORMALISATION_BY_SIZE => Normalisation::BySize,
+        LUXFER_NORMALISATION_IMAGENET => Normalisation::ImageNet,
+        LUXFER_NORMALISATION_HALF => Normalisation::Half,
+        LUXFER_NORMALISATION_NONE => Normalisation::None,
+        other => {
+            return Err(Error::argument(format!(
+                "normalisation is {other}; it must be a LUXFER_NORMALISATION_ value"
+            )));
+        }
+    };
+    DepthNetwork::parse(&io::read_file(Path::new(path))?, normalisation).map_err(|error| error.within(path))
+}
+
+#[cfg(not(feature = "onnx"))]
+fn network(path: &str, _: luxfer_normalisation) -> Result<DepthNetwork> {
+    Err(Error::new(
+        ErrorKind::Unsupported,
+        format!("{path}: networks were left out of this build of luxfer; build it with the Cargo feature onnx"),
+    ))
+}
+
+/// The features, with depth from the network if there is one and no depth map.
+#[cfg(feature = "onnx")]
+fn compute(
+    input: &features::Input,
+    network: Option<&DepthNetwork>,
+    params: &features::Params,
+    job: crate::job::Job,
+) -> Result<Outcome> {
+    let Some(network) = network.filter(|_| input.depth.is_none()) else {
+        return Ok(Outcome { features: Arc::new(features::run(input, params, job)?), network_depth: None });
+    };
+    let (features, depth) = features::run_with_network(input, network, params, job)?;
+    Ok(Outcome { features: Arc::new(features), network_depth: Some(depth) })
+}
+
+#[cfg(not(feature = "onnx"))]
+fn compute(
+    input: &features::Input,
+    _: Option<&DepthNetwork>,
+    params: &features::Params,
+    job: crate::job::Job,
+) -> Result<Outcome> {
+    Ok(Outcome { features: Arc::new(features::run(input, params, job)?), network_depth: None })
+}
+
 /// Takes the lines and the camera that a luxfer_rectify has found in the same photo, as they are now. rectify may be NULL:
 /// none. Any thread.
 /// LUXFER_NOT_READY if it has found none yet.
@@ -220,13 +326,13 @@ pub unsafe extern "C" fn luxfer_features_start(
                     .as_ref()
                     .map(|view| features::RoomView { perspective: &view.perspective, segments: &view.segments }),
             };
-            features::run(&input, &params, job)
+            compute(&input, inputs.network.as_deref(), &params, job)
         })
     })
 }
 
 /// Gets an image of the result; which is a LUXFER_FEATURES_ value. The caller releases *image. Any thread.
-/// LUXFER_NOT_READY before a job has succeeded.
+/// LUXFER_NOT_READY before a job has succeeded, and for LUXFER_FEATURES_NETWORK_DEPTH where no network was run.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_features_get_image(
     features: *mut luxfer_features,
@@ -235,12 +341,20 @@ pub unsafe extern "C" fn luxfer_features_get_image(
 ) -> luxfer_status {
     enter(features, |stage| {
         let out = Out::new(image, "image")?;
-        let pick: fn(&Features) -> &Image = match which {
-            LUXFER_FEATURES_CHANNELS => |f| &f.image,
-            LUXFER_FEATURES_DEPTH_CONFIDENCE => |f| &f.depth_confidence,
+        let pick: fn(&Outcome) -> &Image = match which {
+            LUXFER_FEATURES_CHANNELS => |f| &f.features.image,
+            LUXFER_FEATURES_DEPTH_CONFIDENCE => |f| &f.features.depth_confidence,
+            LUXFER_FEATURES_NETWORK_DEPTH => |f| f.network_depth.as_ref().unwrap_or(&f.features.depth_confidence),
             _ => return Err(Error::argument(format!("which is {which}; it must be a LUXFER_FEATURES_ value"))),
         };
-        out.set(handle::give(Pixels::part(stage.context(), stage.output()?, pick)));
+        let output = stage.output()?;
+        if which == LUXFER_FEATURES_NETWORK_DEPTH && output.network_depth.is_none() {
+            return Err(Error::new(
+                ErrorKind::NotReady,
+                "no network has estimated the depth; call luxfer_features_set_network, without a depth map, and start the stage",
+            ));
+        }
+        out.set(handle::give(Pixels::part(stage.context(), output, pick)));
         Ok(())
     })
 }
@@ -254,11 +368,12 @@ pub unsafe extern "C" fn luxfer_features_get_report(
 ) -> luxfer_status {
     enter(features, |stage| {
         let out = Report::new(report)?;
-        let output = stage.output()?;
+        let output = stage.output()?.features.clone();
         let confidence = &output.depth_confidence.data;
         out.set(luxfer_features_report {
             depth_source: match output.depth_source {
                 DepthSource::Caller => LUXFER_DEPTH_FROM_CALLER,
+                DepthSource::Network => LUXFER_DEPTH_FROM_NETWORK,
                 DepthSource::Layout => LUXFER_DEPTH_FROM_LAYOUT,
                 DepthSource::Neutral => LUXFER_DEPTH_FROM_NOTHING,
             },

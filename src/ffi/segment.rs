@@ -52,21 +52,33 @@ pub struct luxfer_segment_params {
     /// and position, colour and normal, or all, whichever does best on strokes held out; of any other number all. For lights
     /// 7, colour only, is best: they share the plane's geometry.
     pub channels: u32,
-    /// Must be 0.
-    pub reserved: u32,
+    /// Half-width in pixels, in [0, 1024], of the windows of an edge-aware refinement, which makes the mask follow the edges of
+    /// the photo: the guided filter, with the first three channels of the features as its guide. 0, the default: none.
+    pub refine_radius: u32,
     /// Strength of the prior that keeps weights small, in [1e-9, 1e3]; default 1e-3.
     pub ridge: f64,
     /// Seed of the samples; default 1.
     pub seed: u64,
+    /// Differences of those channels, in their own units (for colour those of CIELAB), below which neighbours are taken for one
+    /// surface by the refinement, in [1e-3, 1e6]; default 4.
+    pub refine_tolerance: f64,
 }
 
 // SAFETY: plain numbers.
 unsafe impl Versioned for luxfer_segment_params {
     const NAME: &'static str = "luxfer_segment_params";
-    const SIZES: &'static [usize] = &[32];
+    const SIZES: &'static [usize] = &[40];
     fn defaults() -> Self {
-        let segment::Params { samples_per_class, channels, ridge, seed } = segment::Params::default();
-        Self { struct_size: 32, samples_per_class: samples_per_class as u32, channels, reserved: 0, ridge, seed }
+        let defaults = segment::Params::default();
+        Self {
+            struct_size: 40,
+            samples_per_class: defaults.samples_per_class as u32,
+            channels: defaults.channels,
+            refine_radius: defaults.refine_radius as u32,
+            ridge: defaults.ridge,
+            seed: defaults.seed,
+            refine_tolerance: defaults.refine_tolerance,
+        }
     }
 }
 
@@ -77,6 +89,8 @@ impl luxfer_segment_params {
             channels: self.channels,
             ridge: self.ridge,
             seed: self.seed,
+            refine_radius: self.refine_radius as usize,
+            refine_tolerance: self.refine_tolerance,
         }
     }
 }

@@ -465,7 +465,7 @@ pub unsafe extern "C" fn luxfer_transfer_use_features(
     features: *mut luxfer_features,
 ) -> luxfer_status {
     enter(transfer, |stage| {
-        let found = handle::borrow_in(stage.context(), features, "features")?.output()?;
+        let found = handle::borrow_in(stage.context(), features, "features")?.output()?.features.clone();
         stage.replace(|results| results.features = Some(found))
     })
 }

@@ -2,8 +2,9 @@
 
 use super::ellipsoid::Ellipsoid;
 use super::exponential::exp_f32;
+use super::refine::{self, Refinement};
 use super::select::Chosen;
-use super::{MOST_CHANNELS, Model};
+use super::{Input, MOST_CHANNELS, Model, Params};
 use crate::error::Result;
 use crate::exec;
 use crate::image::{Image, deinterleave};
@@ -25,6 +26,23 @@ pub struct Classified {
     pub mean_unseen: f64,
     /// Feature values that are NaN or infinite.
     pub bad: usize,
+}
+
+impl Classified {
+    /// Makes mask and confidence follow the edges of the photo.
+    pub fn refine(&mut self, input: &Input, params: &Params, job: Job) -> Result<()> {
+        let refinement = Refinement {
+            features: input.features,
+            confidence: &self.confidence,
+            within: input.within,
+            radius: params.refine_radius,
+            tolerance: params.refine_tolerance,
+        };
+        self.confidence = refine::run(&refinement, job)?;
+        let is_in = |probability: &f32| f32::from(*probability > 0.5);
+        self.mask.data.iter_mut().zip(&self.confidence.data).for_each(|(mask, p)| *mask = is_in(p));
+        Ok(())
+    }
 }
 
 /// The answers, still black: making room for them takes a while, which training can share.

@@ -20,13 +20,18 @@
 //! Nothing is kept from one run to the next: with one stroke more everything is learnt and judged anew, so that an answer
 //! depends on the strokes alone and not on the order in which they came to be seen.
 //!
-//! Not modelled: neighbourhood. Every pixel is judged alone.
+//! Every pixel is judged alone. As an option ([`Params::refine_radius`]) its neighbours then have a say, those of its
+//! own colour most: masks follow the edges of the photo, and noise and small mistakes go, small lamps with them if the
+//! radius is larger than they are.
+//!
+//! Not modelled: neighbourhood in the learning itself, and shapes.
 
 mod classify;
 mod distance;
 mod ellipsoid;
 mod exponential;
 mod logistic;
+mod refine;
 mod samples;
 mod select;
 mod standardise;
@@ -66,6 +71,12 @@ pub struct Params {
     /// Strength of the prior that keeps weights small, relative to the data, in `[1e-9, 1e3]`.
     pub ridge: f64,
     pub seed: u64,
+    /// Half-width of the windows of the edge-aware refinement, in pixels, in `[0, 1024]`; 0: none. The first three channels
+    /// of the features guide it.
+    pub refine_radius: usize,
+    /// Differences of the guide, in its own units (for colour those of CIELAB), below which neighbours are of one surface,
+    /// in `[1e-3, 1e6]`.
+    pub refine_tolerance: f64,
 }
 
 /// What is chosen from where the caller does not: colour; colour and position; colour and normal; everything. More is not
@@ -74,7 +85,7 @@ pub const SUBSETS: [u32; 4] = [0b111, 0b111_0_111, 0b111_000_0_111, (1 << CHANNE
 
 impl Default for Params {
     fn default() -> Self {
-        Self { samples_per_class: 1000, channels: 0, ridge: 1e-3, seed: 1 }
+        Self { samples_per_class: 1000, channels: 0, ridge: 1e-3, seed: 1, refine_radius: 0, refine_tolerance: 4.0 }
     }
 }
 
@@ -83,6 +94,8 @@ impl Params {
     pub fn check(&self) -> Result<()> {
         check_range("samples_per_class", self.samples_per_class, 1, 1_000_000)?;
         check_range("ridge", self.ridge, 1e-9, 1e3)?;
+        check_range("refine_radius", self.refine_radius, 0, 1024)?;
+        check_range("refine_tolerance", self.refine_tolerance, 1e-3, 1e6)?;
         Ok(())
     }
 
@@ -187,9 +200,13 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Segmentation> {
     let ((samples, chosen), blank) = (learnt?, blank?);
 
     // Every pixel.
-    let classified = classify::run(features, input.within, &channels, &chosen, blank, job.part(0.4, 1.0))?;
+    let done = if params.refine_radius > 0 { 0.5 } else { 1.0 };
+    let mut classified = classify::run(features, input.within, &channels, &chosen, blank, job.part(0.4, done))?;
     if classified.bad > 0 {
         return Err(not_finite(classified.bad));
+    }
+    if params.refine_radius > 0 {
+        classified.refine(input, params, job.part(done, 1.0))?;
     }
     let unseen = classified.mean_unseen;
     let error = chosen.familiar.error * (1.0 - unseen) + chosen.unfamiliar.error * unseen;

@@ -145,6 +145,7 @@ def photo() -> Scenario:
     s.references("features", features)
     s.call("features_set_photo", features, photo)
     s.call("features_set_depth", features, even, 0)
+    s.call("features_set_network", features, None, 0)
     s.call("features_set_view", features, rectify)
     s.run("features_start", features, struct("features_params"))
     channels = s.make("features_get_image", features, 0)

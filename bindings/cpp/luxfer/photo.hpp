@@ -54,6 +54,12 @@ public:
         return call(luxfer_features_set_depth, depth.get(), kind);
     }
 
+    /// An ONNX file that estimates depth where there is no depth map.
+    Result<> set_network(Text path, luxfer_normalisation normalisation = LUXFER_NORMALISATION_BY_SIZE) const {
+        return call(luxfer_features_set_network, path.get(), normalisation);
+    }
+    Result<> clear_network() const { return call(luxfer_features_set_network, nullptr, LUXFER_NORMALISATION_BY_SIZE); }
+
     /// Lines and camera as they are now; may be empty: none.
     Result<> set_view(const Rectify &rectify) const { return call(luxfer_features_set_view, rectify.get()); }
 

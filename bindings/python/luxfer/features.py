@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import os
 from typing import TYPE_CHECKING, cast
 
 from . import _abi, _params
 from .image import Image, image_of
 from .job import Job, Progress, StageBase
-from .types import DepthKind, FeaturesImage, FeaturesReport
+from .types import DepthKind, FeaturesImage, FeaturesReport, Normalisation
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -41,6 +42,16 @@ class Features(StageBase):
         image = None if depth is None else image_of(self._context, depth)
         self._call("set_depth", image, _params.member(DepthKind, kind))
 
+    def set_network(
+        self, path: str | os.PathLike[str] | None, normalisation: Normalisation | str = Normalisation.BY_SIZE
+    ) -> None:
+        """An ONNX file, such as those of MiDaS and DPT, that estimates depth where there is no depth map; None: none.
+
+        normalisation is what its colours were normalised by: "by-size", "imagenet", "half" or "none".
+        """
+        name = None if path is None else _params.text(os.fspath(path), "path")
+        self._call("set_network", name, _params.member(Normalisation, normalisation))
+
     def set_view(self, rectify: Rectify | None) -> None:
         """The lines and the camera found in the same photo; None: none."""
         self._call("set_view", None if rectify is None else rectify)
@@ -54,7 +65,7 @@ class Features(StageBase):
         return self.start(**params).wait(progress)
 
     def image(self, which: FeaturesImage | str = FeaturesImage.CHANNELS) -> Image:
-        """ "channels" or "depth-confidence"."""
+        """ "channels", "depth-confidence" or "network-depth"."""
         return self._get_image("get_image", _params.member(FeaturesImage, which))
 
     @property

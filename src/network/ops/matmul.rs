@@ -1,0 +1,186 @@
+//! Products of matrices: four rows by sixteen columns are summed in registers, in order along the shared axis.
+
+use super::super::tensor::{Tensor, count};
+use super::elementwise::Spread;
+use super::{Call, Settings};
+use crate::error::{Error, Result};
+use crate::exec;
+use crate::simd::widest;
+
+const ROWS: usize = 4;
+const LANES: usize = 16;
+/// Length along the shared axis whose part of the right matrix stays in the cache.
+const DEPTH: usize = 256;
+
+pub struct Gemm {
+    alpha: f32,
+    beta: f32,
+    turns_left: bool,
+    turns_right: bool,
+}
+
+impl Gemm {
+    pub fn read(at: &Settings) -> Self {
+        let is_set = |name: &str| at.integer(name, 0) != 0;
+        let (turns_left, turns_right) = (is_set("transA"), is_set("transB"));
+        Self { alpha: at.float("alpha", 1.0), beta: at.float("beta", 1.0), turns_left, turns_right }
+    }
+
+    /// `α A B + β C`.
+    pub fn run(&self, call: &Call) -> Result<Tensor> {
+        let turned = |k: usize, turns: bool| {
+            let tensor = call.input(k)?;
+            if turns { transposed(tensor, call) } else { Ok(tensor.clone()) }
+        };
+        let (left, right) = (turned(0, self.turns_left)?, turned(1, self.turns_right)?);
+        let [_, _]: [usize; 2] = left.shape_of()?;
+        let [_, _]: [usize; 2] = right.shape_of()?;
+        let mut product = product(&left, &right, call)?;
+        let out_shape = product.shape.clone();
+        if self.alpha != 1.0 {
+            let scaled = product.as_floats()?.iter().map(|v| self.alpha * v).collect();
+            product = Tensor::floats(out_shape.clone(), scaled);
+        }
+        let Some(bias) = call.optional(2) else { return Ok(product) };
+        let spread = Spread::of(&[&product, bias])?;
+        if spread.shape != out_shape {
+            return Err(Error::format(format!("C of shape {:?} does not fit a product of shape {out_shape:?}", bias.shape)));
+        }
+        let bias = spread.all(1, bias.as_floats()?, 0.0, call)?;
+        let sum = product.as_floats()?.iter().zip(bias).map(|(p, c)| p + self.beta * c).collect();
+        Ok(Tensor::floats(out_shape, sum))
+    }
+}
+
+fn transposed(tensor: &Tensor, call: &Call) -> Result<Tensor> {
+    let [rows, columns] = tensor.shape_of()?;
+    let values = tensor.as_floats()?;
+    let mut out = call.room.zeros(&[columns, rows])?;
+    exec::for_rows(&mut out, rows, call.job, |c, out| {
+        out.iter_mut().enumerate().for_each(|(r, out)| *out = values[r * columns + c]);
+    })?;
+    Ok(Tensor::floats(vec![columns, rows], out))
+}
+
+/// The product of two stacks of matrices, as numpy's.
+pub fn run(call: &Call) -> Result<Tensor> {
+    product(call.input(0)?, call.input(1)?, call)
+}
+
+fn product(left: &Tensor, right: &Tensor, call: &Call) -> Result<Tensor> {
+    let wrong = || {
+        Error::format(format!("matrices of shapes {:?} and {:?} cannot be multiplied", left.shape, right.shape))
+    };
+    // A vector is a row on the left and a column on the right.
+    let (mut a, mut b) = (left.clone(), right.clone());
+    if a.shape.len() == 1 {
+        a.shape.insert(0, 1);
+    }
+    if b.shape.len() == 1 {
+        b.shape.push(1);
+    }
+    let (stack_a, stack_b) = (a.shape.len().checked_sub(2).ok_or_else(wrong)?, b.shape.len().checked_sub(2).ok_or_else(wrong)?);
+    let (rows, shared, columns) = (a.shape[stack_a], a.shape[stack_a + 1], b.shape[stack_b + 1]);
+    if b.shape[stack_b] != shared || rows * shared == 0 || columns == 0 || a.len() == 0 || b.len() == 0 {
+        return Err(wrong());
+    }
+
+    // Which matrix of each stack goes with which.
+    let numbered = |shape: &[usize]| -> Result<Tensor> {
+        Ok(Tensor::integers(shape.to_vec(), (0..count(shape)? as i64).collect()))
+    };
+    let (numbers_a, numbers_b) = (numbered(&a.shape[..stack_a])?, numbered(&b.shape[..stack_b])?);
+    let spread = Spread::of(&[&numbers_a, &numbers_b])?;
+    let of_a = spread.all(0, numbers_a.as_integers()?, 0, call)?;
+    let of_b = spread.all(1, numbers_b.as_integers()?, 0, call)?;
+    let (of_a, of_b) = if spread.shape.is_empty() { (vec![0], vec![0]) } else { (of_a, of_b) };
+    let stack = of_a.len();
+
+    let (values_a, values_b) = (a.as_floats()?, b.as_floats()?);
+    let mut shape = spread.shape.clone();
+    shape.extend([rows, columns]);
+    count(&shape)?;
+    // Rows in fours, the last four filled up: they are cut off again.
+    let padded = rows.next_multiple_of(ROWS);
+    let mut out = call.room.zeros(&[stack, padded, columns])?;
+    exec::for_rows(&mut out, ROWS * columns, call.job, |k, out| {
+        if call.job.is_cancelled() {
+            return;
+        }
+        let (m, first) = (k * ROWS / padded, k * ROWS % padded);
+        let b = &values_b[of_b[m] as usize * shared * columns..][..shared * columns];
+        let a = &values_a[(of_a[m] as usize * rows + first) * shared..][..ROWS.min(rows - first) * shared];
+        let block = Block { a, b, shared, columns };
+        if a.len() == ROWS * shared { four(&block, out) } else { rest(&block, out) }
+    })?;
+    call.job.check()?;
+    if padded != rows {
+        for m in 0..stack {
+            out.copy_within(m * padded * columns..(m * padded + rows) * columns, m * rows * columns);
+        }
+        out.truncate(stack * rows * columns);
+    }
+    if right.shape.len() == 1 {
+        shape.pop();
+    }
+    if left.shape.len() == 1 {
+        let axis = shape.len() - if right.shape.len() == 1 { 1 } else { 2 };
+        shape.remove(axis);
+    }
+    Ok(Tensor::floats(shape, out))
+}
+
+/// Some rows of the left matrix, and the right one.
+struct Block<'a> {
+    a: &'a [f32],
+    b: &'a [f32],
+    shared: usize,
+    columns: usize,
+}
+
+widest! {
+    fn four(block: &Block, out: &mut [f32]) {
+        rows_of::<ROWS>(block, out);
+    }
+}
+
+widest! {
+    /// The last rows, fewer than four.
+    fn rest(block: &Block, out: &mut [f32]) {
+        for (a, out) in block.a.chunks_exact(block.shared.max(1)).zip(out.chunks_exact_mut(block.columns)) {
+            rows_of::<1>(&Block { a, ..*block }, out);
+        }
+    }
+}
+
+#[inline(always)]
+fn rows_of<const N: usize>(block: &Block, out: &mut [f32]) {
+    let Block { a, b, shared, columns } = *block;
+    for depth in (0..shared).step_by(DEPTH) {
+        let end = (depth + DEPTH).min(shared);
+        for x in (0..columns).step_by(LANES) {
+            let count = LANES.min(columns - x);
+            let mut sum = [[0.0; LANES]; N];
+            for n in 0..N {
+                sum[n][..count].copy_from_slice(&out[n * columns + x..][..count]);
+            }
+            for k in depth..end {
+                let mut line = [0.0; LANES];
+                if count == LANES {
+                    line.copy_from_slice(&b[k * columns + x..][..LANES]);
+                } else {
+                    line[..count].copy_from_slice(&b[k * columns + x..][..count]);
+                }
+                for n in 0..N {
+                    let factor = a[n * shared + k];
+                    for i in 0..LANES {
+                        sum[n][i] += factor * line[i];
+                    }
+                }
+            }
+            for n in 0..N {
+                out[n * columns + x..][..count].copy_from_slice(&sum[n][..count]);
+            }
+        }
+    }
+}

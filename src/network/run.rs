@@ -1,0 +1,44 @@
+//! A run: node by node in the order of the file, every value dropped after its last use.
+
+use super::graph::Network;
+use super::ops::Call;
+use super::tensor::{Room, Tensor};
+use crate::error::{Error, Result};
+use crate::job::Job;
+
+/// Most bytes of all values at once, beside the network's own weights; what a node needs meanwhile may be as much again.
+pub const MOST_BYTES: usize = 1 << 30;
+
+impl Network {
+    /// The first output for an input. Fails with `Format` where shapes do not fit together, with `OutOfMemory` beyond
+    /// [`MOST_BYTES`].
+    pub fn run(&self, input: Tensor, job: Job) -> Result<Tensor> {
+        let mut values: Vec<Option<Tensor>> = vec![None; self.constants.len()];
+        let mut used = input.bytes();
+        values[self.input] = Some(input);
+        for (k, node) in self.nodes.iter().enumerate() {
+            let job = job.part(k as f64 / self.nodes.len() as f64, (k + 1) as f64 / self.nodes.len() as f64);
+            job.check()?;
+            let value = |&number: &usize| values[number].as_ref().or(self.constants[number].as_ref());
+            let call = Call {
+                inputs: node.inputs.iter().map(|number| number.as_ref().and_then(value)).collect(),
+                room: Room(MOST_BYTES.saturating_sub(used)),
+                outputs: node.outputs.len(),
+                job,
+            };
+            let made = node.op.run(&call).map_err(|error| error.within(format_args!("node {}", node.name)))?;
+            for (number, tensor) in node.outputs.iter().zip(made) {
+                if let Some(number) = number {
+                    used += tensor.bytes();
+                    values[*number] = Some(tensor);
+                }
+            }
+            for &number in &node.last_uses {
+                used -= values[number].take().map_or(0, |tensor| tensor.bytes());
+            }
+            job.report(1.0);
+        }
+        let made = values[self.output].take().or_else(|| self.constants[self.output].clone());
+        made.ok_or_else(|| Error::format("the network does not make its output"))
+    }
+}
