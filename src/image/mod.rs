@@ -16,4 +16,4 @@ pub mod view;
 
 pub(crate) use buffer::no_memory;
 pub use buffer::{Image, MAX_SIDE, try_collect, try_vec, try_with_capacity};
-pub use planes::{deinterleave, interleave};
+pub use planes::{deinterleave, deinterleave_of, interleave};

@@ -21,6 +21,33 @@ pub fn deinterleave<const N: usize>(pixels: &[f32], planes: &mut [[f32; N]]) {
     }
 }
 
+/// The same for a number of channels that is known, of four or more: offsets become constants. What is put on a plane is
+/// `of(channel, four values)`.
+#[inline(always)]
+pub fn deinterleave_of<const C: usize, const N: usize>(
+    pixels: &[f32],
+    planes: &mut [[f32; N]; C],
+    of: impl Fn(usize, Vec4) -> Vec4,
+) {
+    let (whole, rest) = pixels.as_chunks::<C>();
+    let (fours, last) = whole.as_chunks::<4>();
+    for (k, four) in fours.iter().enumerate().take(N / 4) {
+        for c in starts(C) {
+            let [a, b, d, e] = four.each_ref().map(|pixel| Vec4::from_slice(&pixel[c..c + 4]));
+            let columns = Mat4::from_cols(a, b, d, e).transpose();
+            for i in 0..4 {
+                of(c + i, columns.col(i)).write_to_slice(&mut planes[c + i][4 * k..4 * k + 4]);
+            }
+        }
+    }
+    debug_assert!(rest.is_empty());
+    for (k, pixel) in last.iter().enumerate() {
+        for (c, plane) in planes.iter_mut().enumerate() {
+            plane[4 * fours.len() + k] = of(c, Vec4::splat(pixel[c])).x;
+        }
+    }
+}
+
 /// The other way round.
 #[inline(always)]
 pub fn interleave<const N: usize>(planes: &[[f32; N]], pixels: &mut [f32]) {
@@ -59,6 +86,11 @@ mod tests {
                 deinterleave(&pixels, &mut planes);
                 for (c, plane) in planes.iter().enumerate() {
                     assert!((0..64).all(|k| plane[k] == if k < count { (k * channels + c) as f32 } else { -1.0 }));
+                }
+                if channels == 10 {
+                    let mut constant = [[-1.0; 64]; 10];
+                    deinterleave_of(&pixels, &mut constant, |_, v| v);
+                    assert_eq!(constant.as_slice(), planes);
                 }
                 let mut back = vec![0.0; pixels.len()];
                 interleave(&planes, &mut back);

@@ -7,7 +7,8 @@ use super::select::Chosen;
 use super::{Input, MOST_CHANNELS, Model, Params};
 use crate::error::Result;
 use crate::exec;
-use crate::image::{Image, deinterleave};
+use crate::features::CHANNELS;
+use crate::image::{Image, deinterleave, deinterleave_of};
 use crate::job::Job;
 use crate::simd::widest;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
@@ -63,10 +64,12 @@ impl Blank {
 struct Judge<'a> {
     /// The samples' columns.
     channels: &'a [usize],
+    /// Whether they are all channels of an image of [`CHANNELS`].
+    is_usual: bool,
     mean: Vec<f32>,
     scale: Vec<f32>,
     logit: Form,
-    /// The channels that the logit is of.
+    /// Those of them that the logit is of, in order.
     deciding: Vec<usize>,
     /// Of all the samples' columns.
     seen: [Form; 2],
@@ -102,24 +105,23 @@ impl Form {
         Self { a, b: pull.iter().map(|p| -2.0 * *p as f32).collect(), c: c as f32 }
     }
 
+    /// Of planes in the order of the form's features.
     #[inline(always)]
-    fn evaluate(&self, planes: &[Plane], columns: &[usize]) -> Plane {
+    fn evaluate(&self, planes: &[Plane]) -> Plane {
         let mut sum = [self.c; TILE];
         let mut rest = self.a.as_slice();
-        for (i, (&column, &b)) in columns.iter().zip(&self.b).enumerate() {
+        for (i, (x, &b)) in planes.iter().zip(&self.b).enumerate() {
             // x_i (b_i + Σ_{j >= i} a_ij x_j)
             let mut factor = [b; TILE];
             if !rest.is_empty() {
-                let (row, after) = rest.split_at(columns.len() - i);
+                let (row, after) = rest.split_at(planes.len() - i);
                 rest = after;
-                for (a, &column) in row.iter().zip(&columns[i..]) {
-                    let y = &planes[column];
+                for (a, y) in row.iter().zip(&planes[i..]) {
                     for k in 0..TILE {
                         factor[k] += a * y[k];
                     }
                 }
             }
-            let x = &planes[column];
             for k in 0..TILE {
                 sum[k] += factor[k] * x[k];
             }
@@ -137,23 +139,44 @@ struct Answer {
     all_within: bool,
 }
 
+/// The features of a tile.
+struct Tile {
+    /// As they are in the image.
+    raw: [Plane; MOST_CHANNELS],
+    /// The samples' columns, standardised, and those of them that the logit is of.
+    all: [Plane; MOST_CHANNELS],
+    deciding: [Plane; MOST_CHANNELS],
+}
+
 widest! {
     /// Judges at most a tile of pixels; the answers beyond the last mean nothing. `likely` is the region that held a tile
     /// before, and is tried first: which one is does not change the answer.
-    fn judge(judge: &Judge, pixels: &[f32], planes: &mut [Plane], likely: &mut usize) -> Answer {
-        deinterleave(pixels, planes);
-        for (&channel, (mean, scale)) in judge.channels.iter().zip(judge.mean.iter().zip(&judge.scale)) {
-            for v in &mut planes[channel] {
-                *v = (*v - mean) * scale;
+    fn judge(judge: &Judge, pixels: &[f32], count: usize, tile: &mut Tile, likely: &mut usize) -> Answer {
+        if judge.is_usual {
+            // All of the usual channels: standardised on their way.
+            let mean: [f32; CHANNELS] = std::array::from_fn(|c| judge.mean[c]);
+            let scale: [f32; CHANNELS] = std::array::from_fn(|c| judge.scale[c]);
+            if let Some(planes) = tile.all.first_chunk_mut::<CHANNELS>() {
+                deinterleave_of(pixels, planes, |c, v| (v - mean[c]) * scale[c]);
+            }
+        } else {
+            deinterleave(pixels, &mut tile.raw[..count]);
+            for (plane, (&channel, (mean, scale))) in
+                tile.all.iter_mut().zip(judge.channels.iter().zip(judge.mean.iter().zip(&judge.scale)))
+            {
+                for (to, v) in plane.iter_mut().zip(&tile.raw[channel]) {
+                    *to = (v - mean) * scale;
+                }
             }
         }
+        let planes = &tile.all[..judge.channels.len()];
 
         // Nothing is nearer than within: one region that holds all is enough.
         let mut nearest = [f32::INFINITY; TILE];
         let mut all_within = false;
         for turn in 0..judge.seen.len() {
             let region = (*likely + turn) % judge.seen.len();
-            let distance = judge.seen[region].evaluate(planes, judge.channels);
+            let distance = judge.seen[region].evaluate(planes);
             for k in 0..TILE {
                 nearest[k] = nearest[k].min(distance[k]);
             }
@@ -171,7 +194,14 @@ widest! {
             }
         }
 
-        let logit = judge.logit.evaluate(planes, &judge.deciding);
+        let logit = if judge.deciding.len() == planes.len() {
+            judge.logit.evaluate(planes)
+        } else {
+            for (to, &column) in tile.deciding.iter_mut().zip(&judge.deciding) {
+                *to = planes[column];
+            }
+            judge.logit.evaluate(&tile.deciding[..judge.deciding.len()])
+        };
         let [familiar, unfamiliar] = judge.calibration;
         let (mut mask, mut probability) = ([0.0; TILE], [0.0; TILE]);
         for k in 0..TILE {
@@ -196,10 +226,11 @@ pub fn run(
     let single = |values: &[f64]| values.iter().map(|&v| v as f32).collect();
     let judges = Judge {
         channels,
+        is_usual: features.channels == CHANNELS && channels.len() == CHANNELS,
         mean: single(&chosen.standard.mean),
         scale: single(&chosen.standard.scale),
         logit: Form::of_model(chosen),
-        deciding: chosen.columns.iter().map(|&c| channels[c]).collect(),
+        deciding: chosen.columns.clone(),
         seen: chosen.seen.each_ref().map(Form::of_ellipsoid),
         calibration: [chosen.familiar.scale as f32, chosen.unfamiliar.scale as f32],
     };
@@ -211,13 +242,13 @@ pub fn run(
     let images = [&mut mask, &mut confidence, &mut unseen].map(|image| image.data.as_mut_slice());
     exec::for_rows_of_three(images, width, job, |y, [mask, confidence, unseen]| {
         let source = features.row(y);
-        let mut planes = [[0.0; TILE]; MOST_CHANNELS];
-        let planes = &mut planes[..features.channels];
+        let black = [[0.0; TILE]; MOST_CHANNELS];
+        let mut tile = Tile { raw: black, all: black, deciding: black };
         let (mut likely, mut sum) = (0, 0.0);
         for x in (0..width).step_by(TILE) {
             let n = TILE.min(width - x);
             let pixels = &source[x * features.channels..(x + n) * features.channels];
-            let mut answer = judge(&judges, pixels, planes, &mut likely);
+            let mut answer = judge(&judges, pixels, features.channels, &mut tile, &mut likely);
             if !(answer.all_within && looks_at_all) {
                 bad.fetch_add(count_bad(pixels), Ordering::Relaxed);
             }
