@@ -334,7 +334,8 @@ fn border_error(mask: &Image, truth: &Image) -> f64 {
 /// The edge-aware refinement, over its knobs.
 fn refinement(cases: &[Case]) {
     let mut table = Table::new(["radius", "tolerance", "IoU rooms", "photos", "border error % rooms", "photos", "ms"]);
-    let kinds: [Vec<&Case>; 2] = [false, true].map(|photos| cases.iter().filter(|c| c.plane.is_some() == photos).collect());
+    let kinds: [Vec<&Case>; 2] =
+        [false, true].map(|photos| cases.iter().filter(|c| c.plane.is_some() == photos).collect());
     let mut plain = [0.0; 2];
     for (radius, tolerance) in
         [(0, 4.0), (1, 4.0), (2, 1.0), (2, 4.0), (2, 16.0), (4, 1.0), (4, 4.0), (4, 16.0), (8, 4.0), (16, 4.0)]

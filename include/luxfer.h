@@ -1393,8 +1393,8 @@ luxfer_status luxfer_rectify_release(luxfer_rectify *rectify);
  * Features
  *
  * What segmentation knows of each pixel of a photo: ten channels, L*, a*, b* (CIELAB, D65), depth, position x, y, z and
- * normal x, y, z. Depth comes from the caller, or is laid out as a room from the lines that luxfer_rectify has found, or is
- * a neutral guess.
+ * normal x, y, z. Depth comes from the caller, or from a network that the caller has as an ONNX file, or is laid out as a
+ * room from the lines that luxfer_rectify has found, or is a neutral guess.
  * ==================================================================================================================== */
 
 /** The features of a photo. See luxfer_features_create. */
@@ -1414,6 +1414,11 @@ typedef struct luxfer_features_params {
 
 /** What a depth map measures: a LUXFER_DEPTH_ value. */
 typedef int32_t luxfer_depth_kind;
+
+/**
+ * What the colours of a photo become before a network sees them: a LUXFER_NORMALISATION_ value. The file does not say it.
+ */
+typedef int32_t luxfer_normalisation;
 
 /** An image of the features: a LUXFER_FEATURES_ value. */
 typedef int32_t luxfer_features_image;
@@ -1445,6 +1450,24 @@ typedef struct luxfer_features_report {
 /** Trust in the depth of each pixel, in [0, 1]; 1 channel. */
 #define LUXFER_FEATURES_DEPTH_CONFIDENCE 1
 
+/**
+ * The depth along z that a network has estimated, from near_plane to far_plane; 1 channel. It can be set as the depth map of a
+ * further run, or of luxfer_transfer, without running the network again.
+ */
+#define LUXFER_FEATURES_NETWORK_DEPTH 2
+
+/** By the size of the network's input: LUXFER_NORMALISATION_IMAGENET for 256 x 256, else LUXFER_NORMALISATION_HALF. */
+#define LUXFER_NORMALISATION_BY_SIZE 0
+
+/** sRGB less (0.485, 0.456, 0.406), over (0.229, 0.224, 0.225): MiDaS 2.1, large and small. */
+#define LUXFER_NORMALISATION_IMAGENET 1
+
+/** sRGB less 0.5, over 0.5: DPT. */
+#define LUXFER_NORMALISATION_HALF 2
+
+/** sRGB in [0, 1]. */
+#define LUXFER_NORMALISATION_NONE 3
+
 /** The caller's depth map. */
 #define LUXFER_DEPTH_FROM_CALLER 0
 
@@ -1453,6 +1476,9 @@ typedef struct luxfer_features_report {
 
 /** A guess that knows nothing of the photo. */
 #define LUXFER_DEPTH_FROM_NOTHING 2
+
+/** The caller's network. */
+#define LUXFER_DEPTH_FROM_NETWORK 3
 
 /**
  * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
@@ -1475,6 +1501,19 @@ luxfer_status luxfer_features_set_depth(luxfer_features *features,
                                         luxfer_depth_kind kind);
 
 /**
+ * Sets a network that estimates depth where there is no depth map: an ONNX file; path is UTF-8. Its one input is a photo, a float
+ * tensor [1, 3, rows, columns] of any size up to 4096; its first output is a map of relative inverse depth, as those of MiDaS
+ * and DPT are. The map is normalised by its extremes: the nearest pixel is on near_plane, the farthest on far_plane.
+ * normalisation is a LUXFER_NORMALISATION_ value. path may be NULL: none. The file is read now and not needed afterwards.
+ * Any thread.
+ * LUXFER_IO if the file cannot be read, LUXFER_FORMAT if it is damaged, LUXFER_UNSUPPORTED if it needs what the library does not
+ * do, or if the library was built without the Cargo feature onnx.
+ */
+luxfer_status luxfer_features_set_network(luxfer_features *features,
+                                          const char *path,
+                                          luxfer_normalisation normalisation);
+
+/**
  * Takes the lines and the camera that a luxfer_rectify has found in the same photo, as they are now. rectify may be NULL:
  * none. Any thread.
  * LUXFER_NOT_READY if it has found none yet.
@@ -1493,7 +1532,7 @@ luxfer_status luxfer_features_start(luxfer_features *features,
 
 /**
  * Gets an image of the result; which is a LUXFER_FEATURES_ value. The caller releases *image. Any thread.
- * LUXFER_NOT_READY before a job has succeeded.
+ * LUXFER_NOT_READY before a job has succeeded, and for LUXFER_FEATURES_NETWORK_DEPTH where no network was run.
  */
 luxfer_status luxfer_features_get_image(luxfer_features *features,
                                         luxfer_features_image which,
@@ -1534,12 +1573,20 @@ typedef struct luxfer_segment_params {
      * 7, colour only, is best: they share the plane's geometry.
      */
     uint32_t channels;
-    /** Must be 0. */
-    uint32_t reserved;
+    /**
+     * Half-width in pixels, in [0, 1024], of the windows of an edge-aware refinement, which makes the mask follow the edges of
+     * the photo: the guided filter, with the first three channels of the features as its guide. 0, the default: none.
+     */
+    uint32_t refine_radius;
     /** Strength of the prior that keeps weights small, in [1e-9, 1e3]; default 1e-3. */
     double ridge;
     /** Seed of the samples; default 1. */
     uint64_t seed;
+    /**
+     * Differences of those channels, in their own units (for colour those of CIELAB), below which neighbours are taken for one
+     * surface by the refinement, in [1e-3, 1e6]; default 8.
+     */
+    double refine_tolerance;
 } luxfer_segment_params;
 
 /** What strokes are about: a LUXFER_PHASE_ value. */

@@ -135,7 +135,8 @@ const IMAGENET: [[f32; 3]; 2] = [[0.485, 0.456, 0.406], [0.229, 0.224, 0.225]];
 
 fn not_an_image(shape: &[Option<usize>]) -> Error {
     let sizes: Vec<String> = shape.iter().map(|n| n.map_or("?".into(), |n| n.to_string())).collect();
-    let message = format!("the network's input has shape [{}]; one image, [1, 3, rows, columns], is needed", sizes.join(", "));
+    let message =
+        format!("the network's input has shape [{}]; one image, [1, 3, rows, columns], is needed", sizes.join(", "));
     Error::new(ErrorKind::Unsupported, message)
 }
 
@@ -144,12 +145,7 @@ fn not_a_map(shape: &[usize]) -> Error {
 }
 
 /// The features of a photo with depth from a network, and that depth. `input.depth` is not used.
-pub fn run_with_network(
-    input: &Input,
-    network: &DepthNetwork,
-    params: &Params,
-    job: Job,
-) -> Result<(Features, Image)> {
+pub fn run_with_network(input: &Input, network: &DepthNetwork, params: &Params, job: Job) -> Result<(Features, Image)> {
     params.check()?;
     let depth = network.estimate(input.photo, params.near, params.far, job.part(0.0, 0.9))?;
     let map = DepthMap { image: &depth, kind: DepthKind::AlongZ };
@@ -184,7 +180,8 @@ mod tests {
     fn bright_is_near_and_dark_is_far_by_equation_1() {
         let ramp = |x: usize| crate::image::colour::srgb_to_linear(x as f32 / 63.0);
         let photo = Image::from_fn(64, 64, |x, _| [ramp(x); 3]).unwrap();
-        for normalisation in [Normalisation::BySize, Normalisation::ImageNet, Normalisation::Half, Normalisation::None] {
+        for normalisation in [Normalisation::BySize, Normalisation::ImageNet, Normalisation::Half, Normalisation::None]
+        {
             let depth = estimate(&file(64, 64), normalisation, &photo).unwrap();
             for (i, z) in depth.data.iter().enumerate() {
                 let m = (i % 64) as f32 / 63.0;
@@ -196,13 +193,17 @@ mod tests {
     #[test]
     fn sizes_are_those_of_the_file_or_keep_the_shape_of_the_photo() {
         let size = |rows, columns, photo: (usize, usize)| {
-            DepthNetwork::parse(&file(rows, columns), Normalisation::BySize).unwrap().input_size(photo.0, photo.1).unwrap()
+            DepthNetwork::parse(&file(rows, columns), Normalisation::BySize)
+                .unwrap()
+                .input_size(photo.0, photo.1)
+                .unwrap()
         };
         assert_eq!(size(256, 320, (1000, 10)), [256, 320]);
         assert_eq!(size(0, 0, (1200, 800)), [256, 384]);
         assert_eq!(size(0, 0, (800, 1200)), [384, 256]);
         assert_eq!(size(0, 0, (65_536, 1)), [32, 384]);
-        let by_size = |n| DepthNetwork::parse(&file(n, n), Normalisation::BySize).unwrap().mean_and_deviation([n as usize; 2]);
+        let by_size =
+            |n| DepthNetwork::parse(&file(n, n), Normalisation::BySize).unwrap().mean_and_deviation([n as usize; 2]);
         assert_eq!((by_size(256), by_size(384)), (IMAGENET, [[0.5; 3]; 2]));
     }
 
@@ -215,7 +216,8 @@ mod tests {
         }
         let photo = Image::new(8, 8, 3).unwrap();
         for shape in [vec![1, 1, 8, 8], vec![3, 8, 8], vec![2, 3, 8, 8], vec![1, 3, 8, 5000]] {
-            let error = estimate(&Writer::new(13, &shape).node("Relu", &["x"], "y", &[]).file(), Normalisation::None, &photo);
+            let error =
+                estimate(&Writer::new(13, &shape).node("Relu", &["x"], "y", &[]).file(), Normalisation::None, &photo);
             assert_eq!(error.unwrap_err().kind, ErrorKind::Unsupported);
         }
         let three = Writer::new(13, &[1, 3, 8, 8]).node("Relu", &["x"], "y", &[]).file();

@@ -241,9 +241,7 @@ fn network(path: &str, normalisation: luxfer_normalisation) -> Result<DepthNetwo
         LUXFER_NORMALISATION_HALF => Normalisation::Half,
         LUXFER_NORMALISATION_NONE => Normalisation::None,
         other => {
-            return Err(Error::argument(format!(
-                "normalisation is {other}; it must be a LUXFER_NORMALISATION_ value"
-            )));
+            return Err(Error::argument(format!("normalisation is {other}; it must be a LUXFER_NORMALISATION_ value")));
         }
     };
     DepthNetwork::parse(&io::read_file(Path::new(path))?, normalisation).map_err(|error| error.within(path))

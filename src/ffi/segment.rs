@@ -60,7 +60,7 @@ pub struct luxfer_segment_params {
     /// Seed of the samples; default 1.
     pub seed: u64,
     /// Differences of those channels, in their own units (for colour those of CIELAB), below which neighbours are taken for one
-    /// surface by the refinement, in [1e-3, 1e6]; default 4.
+    /// surface by the refinement, in [1e-3, 1e6]; default 8.
     pub refine_tolerance: f64,
 }
 

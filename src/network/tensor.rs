@@ -21,7 +21,8 @@ pub enum Data {
 /// The number of items of a shape, or an error where no memory could hold them.
 pub fn count(shape: &[usize]) -> Result<usize> {
     let all = shape.iter().try_fold(1usize, |n, &d| n.checked_mul(d));
-    all.filter(|&n| n <= usize::MAX / 16).ok_or_else(|| Error::format(format!("a tensor has shape {shape:?}; it is too large")))
+    all.filter(|&n| n <= usize::MAX / 16)
+        .ok_or_else(|| Error::format(format!("a tensor has shape {shape:?}; it is too large")))
 }
 
 impl Tensor {

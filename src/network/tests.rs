@@ -61,7 +61,8 @@ fn convolutions_are_their_definition() {
         let (rows, columns) = (size(height), size(width));
         let (x, w, b) = (x.as_floats().unwrap(), weights.as_floats().unwrap(), bias.as_floats().unwrap());
         close(&got, &[2, out, rows, columns], |i| {
-            let (image, o, y, c) = (i / columns / rows / out, i / columns / rows % out, i / columns % rows, i % columns);
+            let (image, o, y, c) =
+                (i / columns / rows / out, i / columns / rows % out, i / columns % rows, i % columns);
             let per_group = channels / groups;
             let mut sum = f64::from(b[o]);
             for k in 0..per_group {
@@ -122,7 +123,8 @@ fn products_of_stacks_of_matrices() {
         });
     }
     let (x, w, c) = (noise(1, &[3, 4]), noise(2, &[5, 3]), noise(3, &[5]));
-    let got = node("Gemm", &x, &[("w", &w), ("c", &c)], &[I("transA", 1), I("transB", 1), F("alpha", 2.0), F("beta", 0.5)]);
+    let got =
+        node("Gemm", &x, &[("w", &w), ("c", &c)], &[I("transA", 1), I("transB", 1), F("alpha", 2.0), F("beta", 0.5)]);
     let (x, w, c) = (x.as_floats().unwrap(), w.as_floats().unwrap(), c.as_floats().unwrap());
     close(&got, &[4, 5], |i| {
         let (row, column) = (i / 5, i % 5);
@@ -135,7 +137,9 @@ fn products_of_stacks_of_matrices() {
 fn what_goes_item_by_item_is_spread_as_in_numpy() {
     let x = noise(1, &[2, 3, 4]);
     let values = x.as_floats().unwrap().to_vec();
-    for (shape, at) in [(vec![3, 1], (|i: usize| i / 4 % 3) as fn(usize) -> usize), (vec![4], |i| i % 4), (vec![2, 1, 1], |i| i / 12)] {
+    for (shape, at) in
+        [(vec![3, 1], (|i: usize| i / 4 % 3) as fn(usize) -> usize), (vec![4], |i| i % 4), (vec![2, 1, 1], |i| i / 12)]
+    {
         let w = noise(2, &shape);
         let factors = w.as_floats().unwrap().to_vec();
         close(&node("Mul", &x, &[("w", &w)], &[]), &[2, 3, 4], |i| f64::from(values[i]) * f64::from(factors[at(i)]));
@@ -158,7 +162,8 @@ fn what_goes_item_by_item_is_spread_as_in_numpy() {
         close(&node(kind, &x, &[], &[]), &[2, 3, 4], |i| of(f64::from(values[i])));
     }
     let got = node("Softmax", &x, &[], &[I("axis", 1)]);
-    let sums: Vec<f32> = (0..8).map(|i| (0..3).map(|k| got.as_floats().unwrap()[i / 4 * 12 + k * 4 + i % 4]).sum()).collect();
+    let sums: Vec<f32> =
+        (0..8).map(|i| (0..3).map(|k| got.as_floats().unwrap()[i / 4 * 12 + k * 4 + i % 4]).sum()).collect();
     assert!(sums.iter().all(|s| (s - 1.0).abs() < 1e-6), "{sums:?}");
     let one = Tensor::floats(vec![4], vec![1.0; 4]);
     let got = node("LayerNormalization", &x, &[("w", &one)], &[]);
@@ -176,31 +181,65 @@ fn items_are_put_where_they_belong() {
     };
     expect(node("Transpose", &x, &[], &[]), &[3, 2], &[0.0, 3.0, 1.0, 4.0, 2.0, 5.0]);
     expect(
-        node("Slice", &x, &[("s", &ints(&[-1, 0])), ("e", &ints(&[-9, 9])), ("a", &ints(&[1, 0])), ("t", &ints(&[-2, 1]))], &[]),
+        node(
+            "Slice",
+            &x,
+            &[("s", &ints(&[-1, 0])), ("e", &ints(&[-9, 9])), ("a", &ints(&[1, 0])), ("t", &ints(&[-2, 1]))],
+            &[],
+        ),
         &[2, 2],
         &[2.0, 0.0, 5.0, 3.0],
     );
     expect(node("Gather", &x, &[("i", &ints(&[-1, 0]))], &[I("axis", 1)]), &[2, 2], &[2.0, 0.0, 5.0, 3.0]);
     expect(node("Expand", &x, &[("s", &ints(&[2, 1, 3]))], &[]), &[2, 2, 3], &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0].repeat(2));
-    expect(node("Tile", &x, &[("r", &ints(&[1, 2]))], &[]), &[2, 6], &[0.0, 1.0, 2.0, 0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 3.0, 4.0, 5.0]);
+    expect(
+        node("Tile", &x, &[("r", &ints(&[1, 2]))], &[]),
+        &[2, 6],
+        &[0.0, 1.0, 2.0, 0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 3.0, 4.0, 5.0],
+    );
     let pads = ints(&[0, 2, 0, 1]);
-    expect(node("Pad", &x, &[("p", &pads)], &[S("mode", "reflect")]), &[2, 6], &[2.0, 1.0, 0.0, 1.0, 2.0, 1.0, 5.0, 4.0, 3.0, 4.0, 5.0, 4.0]);
-    expect(node("Pad", &x, &[("p", &pads)], &[S("mode", "edge")]), &[2, 6], &[0.0, 0.0, 0.0, 1.0, 2.0, 2.0, 3.0, 3.0, 3.0, 4.0, 5.0, 5.0]);
-    expect(node("Concat", &x, &[("w", &x)], &[I("axis", 1)]), &[2, 6], &[0.0, 1.0, 2.0, 0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 3.0, 4.0, 5.0]);
+    expect(
+        node("Pad", &x, &[("p", &pads)], &[S("mode", "reflect")]),
+        &[2, 6],
+        &[2.0, 1.0, 0.0, 1.0, 2.0, 1.0, 5.0, 4.0, 3.0, 4.0, 5.0, 4.0],
+    );
+    expect(
+        node("Pad", &x, &[("p", &pads)], &[S("mode", "edge")]),
+        &[2, 6],
+        &[0.0, 0.0, 0.0, 1.0, 2.0, 2.0, 3.0, 3.0, 3.0, 4.0, 5.0, 5.0],
+    );
+    expect(
+        node("Concat", &x, &[("w", &x)], &[I("axis", 1)]),
+        &[2, 6],
+        &[0.0, 1.0, 2.0, 0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 3.0, 4.0, 5.0],
+    );
     expect(node("Reshape", &x, &[("s", &ints(&[0, -1, 1]))], &[]), &[2, 3, 1], &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0]);
     expect(node("ReduceMean", &x, &[], &[Is("axes", &[0]), I("keepdims", 0)]), &[3], &[1.5, 2.5, 3.5]);
     expect(node("ReduceMax", &x, &[], &[Is("axes", &[-1])]), &[2, 1], &[2.0, 5.0]);
     let depth = Tensor::floats(vec![1, 4, 1, 2], (0..8).map(|v| v as f32).collect());
-    expect(node("DepthToSpace", &depth, &[], &[I("blocksize", 2)]), &[1, 1, 2, 4], &[0.0, 2.0, 1.0, 3.0, 4.0, 6.0, 5.0, 7.0]);
+    expect(
+        node("DepthToSpace", &depth, &[], &[I("blocksize", 2)]),
+        &[1, 1, 2, 4],
+        &[0.0, 2.0, 1.0, 3.0, 4.0, 6.0, 5.0, 7.0],
+    );
     let image = Tensor::floats(vec![1, 1, 2, 2], vec![0.0, 1.0, 2.0, 3.0]);
     let none = Tensor::floats(vec![0], vec![]);
     let sizes = ints(&[1, 1, 3, 3]);
     expect(
-        node("Resize", &image, &[("r", &none), ("s", &none), ("t", &sizes)], &[S("mode", "linear"), S("coordinate_transformation_mode", "align_corners")]),
+        node(
+            "Resize",
+            &image,
+            &[("r", &none), ("s", &none), ("t", &sizes)],
+            &[S("mode", "linear"), S("coordinate_transformation_mode", "align_corners")],
+        ),
         &[1, 1, 3, 3],
         &[0.0, 0.5, 1.0, 1.0, 1.5, 2.0, 2.0, 2.5, 3.0],
     );
-    expect(node("MaxPool", &image, &[], &[Is("kernel_shape", &[2, 2]), Is("pads", &[1, 1, 0, 0])]), &[1, 1, 2, 2], &[0.0, 1.0, 2.0, 3.0]);
+    expect(
+        node("MaxPool", &image, &[], &[Is("kernel_shape", &[2, 2]), Is("pads", &[1, 1, 0, 0])]),
+        &[1, 1, 2, 2],
+        &[0.0, 1.0, 2.0, 3.0],
+    );
     expect(node("AveragePool", &image, &[], &[Is("kernel_shape", &[2, 2])]), &[1, 1, 1, 1], &[1.5]);
     expect(node("GlobalAveragePool", &image, &[], &[]), &[1, 1, 1, 1], &[1.5]);
 }

@@ -52,7 +52,9 @@ pub fn tensor(name: &str, tensor: &Tensor) -> Message {
     let mut message = tensor.shape.iter().fold(Message::default(), |message, &n| message.integer(1, n as i64));
     message = match &tensor.data {
         Data::Floats(v) => message.integer(2, 1).bytes(9, &v.iter().flat_map(|v| v.to_le_bytes()).collect::<Vec<_>>()),
-        Data::Integers(v) => message.integer(2, 7).bytes(9, &v.iter().flat_map(|v| v.to_le_bytes()).collect::<Vec<_>>()),
+        Data::Integers(v) => {
+            message.integer(2, 7).bytes(9, &v.iter().flat_map(|v| v.to_le_bytes()).collect::<Vec<_>>())
+        }
     };
     message.bytes(8, name.as_bytes())
 }

@@ -85,7 +85,7 @@ pub const SUBSETS: [u32; 4] = [0b111, 0b111_0_111, 0b111_000_0_111, (1 << CHANNE
 
 impl Default for Params {
     fn default() -> Self {
-        Self { samples_per_class: 1000, channels: 0, ridge: 1e-3, seed: 1, refine_radius: 0, refine_tolerance: 4.0 }
+        Self { samples_per_class: 1000, channels: 0, ridge: 1e-3, seed: 1, refine_radius: 0, refine_tolerance: 8.0 }
     }
 }
 

@@ -304,7 +304,8 @@ mod tests {
             let pixels: Vec<[f64; 4]> = (0..9).map(|_| std::array::from_fn(|_| rng.next_f64())).collect();
             let mut sum = [0.0; 16];
             for [r, g, b, p] in &pixels {
-                let add = [1.0, *r, *g, *b, *p, r * p, g * p, b * p, r * r, r * g, r * b, g * g, g * b, b * b, 0.0, 0.0];
+                let add =
+                    [1.0, *r, *g, *b, *p, r * p, g * p, b * p, r * r, r * g, r * b, g * g, g * b, b * b, 0.0, 0.0];
                 sum.iter_mut().zip(add).for_each(|(s, a)| *s += a);
             }
             let a = affine(&sum, 0.01);
@@ -363,8 +364,7 @@ mod tests {
     #[test]
     fn the_bits_do_not_depend_on_the_number_of_threads_and_a_cancelled_job_ends() {
         let (features, confidence) = (noise(50, 200, 1), noise(50, 200, 2));
-        let of =
-            Refinement { features: &features, confidence: &confidence, within: None, radius: 9, tolerance: 0.1 };
+        let of = Refinement { features: &features, confidence: &confidence, within: None, radius: 9, tolerance: 0.1 };
         let with = |threads: usize| Pool::new(threads).unwrap().run(|| refined(&of));
         assert!(with(1) == with(3));
         let monitor = Monitor::default();

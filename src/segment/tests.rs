@@ -219,6 +219,41 @@ fn channels_are_chosen_unless_they_are_given() {
     assert!(iou(&got.mask, is_ceiling) > 0.999);
 }
 
+/// Images of ten channels go by a way of their own; others by the general one.
+#[test]
+fn a_channel_that_is_not_looked_at_changes_no_bit() {
+    let (features, _) = room();
+    let mut wider = Image::new(WIDTH, HEIGHT, CHANNELS + 1).unwrap();
+    for (to, from) in wider.data.chunks_exact_mut(CHANNELS + 1).zip(features.data.chunks_exact(CHANNELS)) {
+        to[..CHANNELS].copy_from_slice(from);
+        to[CHANNELS] = from[0] * 7.0;
+    }
+    let params = Params { channels: (1 << CHANNELS) - 1, ..Params::default() };
+    let [a, b] = [&features, &wider].map(|image| segment(image, &plane_strokes(), None, &params).unwrap());
+    assert!((a.mask, a.confidence, a.unseen) == (b.mask, b.confidence, b.unseen));
+}
+
+#[test]
+fn refinement_smooths_what_is_of_one_colour_and_keeps_to_where_it_looks() {
+    let (features, faces) = room();
+    let is_ceiling = |i: usize| faces[i] == 0 || faces[i] == 5;
+    let by_colour = Params { channels: 0b111, ..Params::default() };
+    let plain = segment(&features, &plane_strokes(), None, &by_colour).unwrap();
+    let refined = Params { refine_radius: 4, refine_tolerance: 8.0, ..by_colour.clone() };
+    let got = segment(&features, &plane_strokes(), None, &refined).unwrap();
+    // By colour alone the noise of single pixels shows; their neighbours know better.
+    let (before, after) = (iou(&plain.mask, is_ceiling), iou(&got.mask, is_ceiling));
+    assert!(after > before + 0.005, "{before} {after}");
+    assert!(got.mask.data.iter().zip(&got.confidence.data).all(|(m, c)| (*m > 0.5) == (*c > 0.5)));
+    let within = Image::from_fn(WIDTH, HEIGHT, |_, y| [f32::from(y < 100)]).unwrap();
+    let got = segment(&features, &plane_strokes(), Some(&within), &refined).unwrap();
+    assert!(got.confidence.data[100 * WIDTH..].iter().all(|c| *c == 0.0));
+    for (radius, tolerance) in [(1025, 1.0), (1, 0.0), (1, f64::NAN)] {
+        let params = Params { refine_radius: radius, refine_tolerance: tolerance, ..Params::default() };
+        assert!(segment(&features, &plane_strokes(), None, &params).unwrap_err().message.contains("refine_"));
+    }
+}
+
 #[test]
 fn the_largest_strokes_and_many_of_them_are_as_the_few() {
     let (features, faces) = room();

@@ -451,6 +451,9 @@ void stages_say_what_they_lack() {
     // Empty objects stand for NULL where that means none, and are errors elsewhere.
     OK(rectify.set_mask(Image()));
     OK(features.set_depth(Image()));
+    OK(features.clear_network());
+    CHECK_ERROR(features.set_network("absent.onnx"), LUXFER_IO);
+    CHECK_ERROR(features.set_network("absent.onnx", 9), LUXFER_INVALID_ARGUMENT);
     OK(emission.clear_photo());
     OK(transfer.clear_camera());
     CHECK_ERROR(rectify.set_photo(Image()), LUXFER_INVALID_ARGUMENT);

@@ -200,7 +200,7 @@ class Networks(Case):
         self.assertIn("Loop", refused(errors.Unsupported, loop.file(loop.add("Loop", "input"))))
         path.write_bytes(file)
         with self.assertRaises(errors.InvalidArgument):
-            features._call("set_network", str(path), 9)
+            features._call("set_network", str(path).encode(), 9)
         # Nothing of this has changed what is set: no network, so depth is a guess.
         self.assertEqual(features.run().report.depth_source, luxfer.types.DepthSource.NOTHING)
 

@@ -74,9 +74,15 @@ LUXFER_DEPTH_ALONG_Z = 0
 LUXFER_DEPTH_ALONG_RAY = 1
 LUXFER_FEATURES_CHANNELS = 0
 LUXFER_FEATURES_DEPTH_CONFIDENCE = 1
+LUXFER_FEATURES_NETWORK_DEPTH = 2
+LUXFER_NORMALISATION_BY_SIZE = 0
+LUXFER_NORMALISATION_IMAGENET = 1
+LUXFER_NORMALISATION_HALF = 2
+LUXFER_NORMALISATION_NONE = 3
 LUXFER_DEPTH_FROM_CALLER = 0
 LUXFER_DEPTH_FROM_LAYOUT = 1
 LUXFER_DEPTH_FROM_NOTHING = 2
+LUXFER_DEPTH_FROM_NETWORK = 3
 LUXFER_PHASE_PLANE = 0
 LUXFER_PHASE_LIGHTS = 1
 LUXFER_SEGMENT_MASK = 0
@@ -588,9 +594,10 @@ class luxfer_segment_params(Structure):
         ("struct_size", c_uint32),
         ("samples_per_class", c_uint32),
         ("channels", c_uint32),
-        ("reserved", c_uint32),
+        ("refine_radius", c_uint32),
         ("ridge", c_double),
         ("seed", c_uint64),
+        ("refine_tolerance", c_double),
     ]
 
 
@@ -1283,6 +1290,7 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_features_create": (c_int32, [("context", POINTER(luxfer_context)), ("features", POINTER(POINTER(luxfer_features)))]),
     "luxfer_features_set_photo": (c_int32, [("features", POINTER(luxfer_features)), ("photo", POINTER(luxfer_image))]),
     "luxfer_features_set_depth": (c_int32, [("features", POINTER(luxfer_features)), ("depth", POINTER(luxfer_image)), ("kind", c_int32)]),
+    "luxfer_features_set_network": (c_int32, [("features", POINTER(luxfer_features)), ("path", c_char_p), ("normalisation", c_int32)]),
     "luxfer_features_set_view": (c_int32, [("features", POINTER(luxfer_features)), ("rectify", POINTER(luxfer_rectify))]),
     "luxfer_features_start": (c_int32, [("features", POINTER(luxfer_features)), ("params", POINTER(luxfer_features_params)), ("job", POINTER(POINTER(luxfer_job)))]),
     "luxfer_features_get_image": (c_int32, [("features", POINTER(luxfer_features)), ("which", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),

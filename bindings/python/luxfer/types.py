@@ -177,6 +177,19 @@ class DepthKind(IntEnum):
     """Distance along the ray of each pixel."""
 
 
+class Normalisation(IntEnum):
+    """What the colours of a photo become before a network sees them."""
+
+    BY_SIZE = 0
+    """By the size of the network's input: Normalisation.IMAGENET for 256 x 256, else Normalisation.HALF."""
+    IMAGENET = 1
+    """sRGB less (0.485, 0.456, 0.406), over (0.229, 0.224, 0.225): MiDaS 2.1, large and small."""
+    HALF = 2
+    """sRGB less 0.5, over 0.5: DPT."""
+    NONE = 3
+    """sRGB in [0, 1]."""
+
+
 class FeaturesImage(IntEnum):
     """An image of the features."""
 
@@ -184,6 +197,9 @@ class FeaturesImage(IntEnum):
     """The ten channels; luxfer_image_read takes them apart."""
     DEPTH_CONFIDENCE = 1
     """Trust in the depth of each pixel, in [0, 1]; 1 channel."""
+    NETWORK_DEPTH = 2
+    """The depth along z that a network has estimated, from near_plane to far_plane; 1 channel. It can be set as
+    the depth map of a further run, or of luxfer_transfer, without running the network again."""
 
 
 class DepthSource(IntEnum):
@@ -195,6 +211,8 @@ class DepthSource(IntEnum):
     """A room laid out from the lines of the photo."""
     NOTHING = 2
     """A guess that knows nothing of the photo."""
+    NETWORK = 3
+    """The caller's network."""
 
 
 class Phase(IntEnum):
@@ -1033,10 +1051,17 @@ class SegmentParams(TypedDict, total=False):
     """Which channels of the features to use, bit i for channel i. 0, the default: of the ten of luxfer_features
     colour, colour and position, colour and normal, or all, whichever does best on strokes held out; of any
     other number all. For lights 7, colour only, is best: they share the plane's geometry."""
+    refine_radius: int
+    """Half-width in pixels, in [0, 1024], of the windows of an edge-aware refinement, which makes the mask
+    follow the edges of the photo: the guided filter, with the first three channels of the features as its
+    guide. 0, the default: none."""
     ridge: float
     """Strength of the prior that keeps weights small, in [1e-9, 1e3]; default 1e-3."""
     seed: int
     """Seed of the samples; default 1."""
+    refine_tolerance: float
+    """Differences of those channels, in their own units (for colour those of CIELAB), below which neighbours
+    are taken for one surface by the refinement, in [1e-3, 1e6]; default 8."""
 
 
 @dataclass(frozen=True)

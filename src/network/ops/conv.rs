@@ -69,7 +69,8 @@ impl Conv {
             let first = image * channels + channel / of_group * per_group;
             let source = Planes { values: &padded.values[first * plane..], height: padded.height, width: padded.width };
             let size = per_group * rows * columns;
-            let mine = Weights { taps: &weights[channel * size..][..together * size], bias: &bias[channel..][..together] };
+            let mine =
+                Weights { taps: &weights[channel * size..][..together * size], bias: &bias[channel..][..together] };
             for y in 0..out_height {
                 if call.job.is_cancelled() {
                     return;
@@ -103,7 +104,8 @@ impl Conv {
             return Err(unsupported("ConvTranspose with output_shape"));
         }
         let out_size = |axis: usize, size: usize, kernel: usize| {
-            let whole = strides[axis] * size.saturating_sub(1) + self.output_padding[axis] + (kernel - 1) * dilations[axis] + 1;
+            let whole =
+                strides[axis] * size.saturating_sub(1) + self.output_padding[axis] + (kernel - 1) * dilations[axis] + 1;
             let cut = pads[axis] + pads[axis + 2];
             whole.checked_sub(cut).ok_or_else(|| Error::format(format!("pads of {cut} leave nothing of {whole}")))
         };

@@ -71,8 +71,20 @@ impl Unary {
         match self {
             Self::Identity | Self::Not => x,
             Self::Relu => x.max(0.0),
-            Self::LeakyRelu(slope) => if x < 0.0 { slope * x } else { x },
-            Self::Elu(scale) => if x < 0.0 { scale * x.exp_m1() } else { x },
+            Self::LeakyRelu(slope) => {
+                if x < 0.0 {
+                    slope * x
+                } else {
+                    x
+                }
+            }
+            Self::Elu(scale) => {
+                if x < 0.0 {
+                    scale * x.exp_m1()
+                } else {
+                    x
+                }
+            }
             Self::Sigmoid => 1.0 / (1.0 + (-x).exp()),
             Self::HardSigmoid(slope, offset) => (slope * x + offset).clamp(0.0, 1.0),
             Self::HardSwish => x * (x / 6.0 + 0.5).clamp(0.0, 1.0),
@@ -197,7 +209,13 @@ impl Binary {
             Self::Pow => a.wrapping_pow(u32::try_from(b).unwrap_or(0)),
             Self::Min => a.min(b),
             Self::Max => a.max(b),
-            Self::PRelu => if a < 0 { a.wrapping_mul(b) } else { a },
+            Self::PRelu => {
+                if a < 0 {
+                    a.wrapping_mul(b)
+                } else {
+                    a
+                }
+            }
             Self::Equal => i64::from(a == b),
             Self::Less => i64::from(a < b),
             Self::LessOrEqual => i64::from(a <= b),
@@ -335,7 +353,9 @@ impl Spread {
             return Ok(out);
         }
         if a.len() == total && b.len() == 1 {
-            by_rows(&mut out, job, |start, row| row.iter_mut().zip(&a[start..]).for_each(|(out, &a)| *out = of(a, b[0])))?;
+            by_rows(&mut out, job, |start, row| {
+                row.iter_mut().zip(&a[start..]).for_each(|(out, &a)| *out = of(a, b[0]))
+            })?;
             return Ok(out);
         }
         let length = self.shape.last().copied().unwrap_or(1);

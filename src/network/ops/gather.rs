@@ -23,7 +23,9 @@ fn picked(
     let maps: Vec<Vec<Option<usize>>> = if total == 0 {
         Vec::new()
     } else {
-        (0..rank).map(|axis| (0..shape[axis]).map(|i| index(axis, i).filter(|&i| i < x.shape[axis])).collect()).collect()
+        (0..rank)
+            .map(|axis| (0..shape[axis]).map(|i| index(axis, i).filter(|&i| i < x.shape[axis])).collect())
+            .collect()
     };
     let rows = Rows { from: &x.shape, to: &shape, maps: &maps };
     let data = match data {

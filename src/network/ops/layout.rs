@@ -70,7 +70,8 @@ pub fn concat(axis: i64, call: &Call) -> Result<Tensor> {
     let mut shape = first.shape.clone();
     shape[axis] = 0;
     for tensor in &tensors {
-        let fits = tensor.shape.len() == shape.len() && (0..shape.len()).all(|k| k == axis || tensor.shape[k] == shape[k]);
+        let fits =
+            tensor.shape.len() == shape.len() && (0..shape.len()).all(|k| k == axis || tensor.shape[k] == shape[k]);
         if !fits {
             return Err(Error::format(format!("shapes {:?} and {:?} cannot be joined", first.shape, tensor.shape)));
         }

@@ -44,7 +44,10 @@ impl Gemm {
         let Some(bias) = call.optional(2) else { return Ok(product) };
         let spread = Spread::of(&[&product, bias])?;
         if spread.shape != out_shape {
-            return Err(Error::format(format!("C of shape {:?} does not fit a product of shape {out_shape:?}", bias.shape)));
+            return Err(Error::format(format!(
+                "C of shape {:?} does not fit a product of shape {out_shape:?}",
+                bias.shape
+            )));
         }
         let bias = spread.all(1, bias.as_floats()?, 0.0, call)?;
         let sum = product.as_floats()?.iter().zip(bias).map(|(p, c)| p + self.beta * c).collect();
@@ -68,9 +71,8 @@ pub fn run(call: &Call) -> Result<Tensor> {
 }
 
 fn product(left: &Tensor, right: &Tensor, call: &Call) -> Result<Tensor> {
-    let wrong = || {
-        Error::format(format!("matrices of shapes {:?} and {:?} cannot be multiplied", left.shape, right.shape))
-    };
+    let wrong =
+        || Error::format(format!("matrices of shapes {:?} and {:?} cannot be multiplied", left.shape, right.shape));
     // A vector is a row on the left and a column on the right.
     let (mut a, mut b) = (left.clone(), right.clone());
     if a.shape.len() == 1 {
@@ -79,7 +81,8 @@ fn product(left: &Tensor, right: &Tensor, call: &Call) -> Result<Tensor> {
     if b.shape.len() == 1 {
         b.shape.push(1);
     }
-    let (stack_a, stack_b) = (a.shape.len().checked_sub(2).ok_or_else(wrong)?, b.shape.len().checked_sub(2).ok_or_else(wrong)?);
+    let (stack_a, stack_b) =
+        (a.shape.len().checked_sub(2).ok_or_else(wrong)?, b.shape.len().checked_sub(2).ok_or_else(wrong)?);
     let (rows, shared, columns) = (a.shape[stack_a], a.shape[stack_a + 1], b.shape[stack_b + 1]);
     if b.shape[stack_b] != shared || rows * shared == 0 || columns == 0 || a.len() == 0 || b.len() == 0 {
         return Err(wrong());

@@ -110,7 +110,8 @@ impl<'a> Settings<'a, '_> {
     pub fn sizes<const N: usize>(&self, name: &str, default: usize) -> Result<[usize; N]> {
         let Some(values) = self.integers(name).filter(|values| !values.is_empty()) else { return Ok([default; N]) };
         let wrong = || Error::format(format!("{name} is {values:?}; {N} numbers from 0 to 65536 are needed"));
-        let sizes: Vec<usize> = values.iter().filter_map(|&v| usize::try_from(v).ok().filter(|v| *v <= 65536)).collect();
+        let sizes: Vec<usize> =
+            values.iter().filter_map(|&v| usize::try_from(v).ok().filter(|v| *v <= 65536)).collect();
         sizes.try_into().map_err(|_| wrong())
     }
 
@@ -168,7 +169,9 @@ impl Op {
             // Before opset 13 all axes from this one on are one.
             "Softmax" if opset < 13 => Self::Softmax { axis: at.integer("axis", 1), flattens: true },
             "Softmax" => Self::Softmax { axis: at.integer("axis", -1), flattens: false },
-            "ReduceMean" | "ReduceSum" | "ReduceMax" | "ReduceMin" => Self::Reduce(reduce::Reduce::read(node.kind, &at)),
+            "ReduceMean" | "ReduceSum" | "ReduceMax" | "ReduceMin" => {
+                Self::Reduce(reduce::Reduce::read(node.kind, &at))
+            }
             "Resize" | "Upsample" => Self::Resize(resize::Resize::read(node.kind, &at, opset, constants)?),
             "Pad" => Self::Pad {
                 mode: gather::Pad::read(at.text("mode", "constant"))?,
@@ -186,10 +189,9 @@ impl Op {
             "Gather" => Self::Gather { axis: at.integer("axis", 0) },
             "Expand" => Self::Expand,
             "Tile" => Self::Tile,
-            "Shape" => Self::Shape {
-                start: at.integer("start", 0),
-                end: node.attributes.get("end").and_then(|a| a.integer),
-            },
+            "Shape" => {
+                Self::Shape { start: at.integer("start", 0), end: node.attributes.get("end").and_then(|a| a.integer) }
+            }
             "ConstantOfShape" => {
                 let value = at.tensor("value").cloned();
                 Self::ConstantOfShape(value.unwrap_or_else(|| Tensor::floats(vec![1], vec![0.0])))

@@ -58,7 +58,9 @@ impl Window {
                 }
             };
             let Some(steps) = (n + before + after).checked_sub(extent) else {
-                return Err(Error::format(format!("a window of {extent} is larger than the {n} pixels it is moved over")));
+                return Err(Error::format(format!(
+                    "a window of {extent} is larger than the {n} pixels it is moved over"
+                )));
             };
             let mut last = if rounds_up { steps.div_ceil(stride) } else { steps / stride };
             // No window may begin in the padding behind the image.
@@ -109,8 +111,9 @@ impl Pool {
         // Where the taps of the window at `k` along an axis lie inside the image.
         let inside = |axis: usize, k: usize, size: usize| {
             let start = k * strides[axis];
-            (0..self.kernel[axis])
-                .filter_map(move |i| (start + i * dilations[axis]).checked_sub(place.before[axis]).filter(|p| *p < size))
+            (0..self.kernel[axis]).filter_map(move |i| {
+                (start + i * dilations[axis]).checked_sub(place.before[axis]).filter(|p| *p < size)
+            })
         };
         exec::for_rows(&mut out, out_width, call.job, |k, out| {
             let plane = &values[k / out_height * height * width..][..height * width];

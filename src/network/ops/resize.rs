@@ -111,7 +111,11 @@ impl Resize {
             (x.shape.iter().zip(given).map(scaled).collect(), given.iter().map(|&s| f64::from(s)).collect())
         };
         if shape.len() != rank || scales.len() != rank || rank < 2 || shape[..rank - 2] != x.shape[..rank - 2] {
-            return Err(if shape.len() == rank { unsupported("resizing of other axes than the last two") } else { wrong() });
+            return Err(if shape.len() == rank {
+                unsupported("resizing of other axes than the last two")
+            } else {
+                wrong()
+            });
         }
         if count(&shape)? == 0 || x.len() == 0 {
             return Err(Error::format(format!("shape {:?} cannot be resized to {shape:?}", x.shape)));
@@ -164,8 +168,20 @@ fn taps(axis: Axis, filter: Filter, place: Place, room: Room) -> Result<Vec<[(us
         let k = k as f64;
         let x = match place {
             Place::HalfPixel => (k + 0.5) / axis.scale - 0.5,
-            Place::PytorchHalfPixel => if axis.to > 1 { (k + 0.5) / axis.scale - 0.5 } else { 0.0 },
-            Place::AlignCorners => if axis.to > 1 { k * last as f64 / (axis.to - 1) as f64 } else { 0.0 },
+            Place::PytorchHalfPixel => {
+                if axis.to > 1 {
+                    (k + 0.5) / axis.scale - 0.5
+                } else {
+                    0.0
+                }
+            }
+            Place::AlignCorners => {
+                if axis.to > 1 {
+                    k * last as f64 / (axis.to - 1) as f64
+                } else {
+                    0.0
+                }
+            }
             Place::Asymmetric => k / axis.scale,
         };
         match filter {
