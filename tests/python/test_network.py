@@ -113,7 +113,7 @@ def cubic(image: np.ndarray, rows: int, columns: int) -> np.ndarray:
                 out[k, min(max(i, 0), size - 1)] += w
         return out
 
-    return np.einsum("ri,...ij,cj->...rc", weights(image.shape[-2], rows), image, weights(image.shape[-1], columns))
+    return weights(image.shape[-2], rows) @ image @ weights(image.shape[-1], columns).T
 
 
 def expected(file: bytes, photo: np.ndarray, size: tuple[int, int], mean, deviation, near=1.0, far=10.0) -> np.ndarray:
