@@ -134,9 +134,10 @@ impl Form {
 struct Answer {
     mask: [f32; TILE],
     probability: [f32; TILE],
-    /// How far beyond what was seen, and whether no pixel is: then all their features are finite.
+    /// How far beyond what was seen.
     beyond: [f32; TILE],
-    all_within: bool,
+    /// Whether all of the samples' columns are known to be finite: then so are the distances.
+    all_finite: bool,
 }
 
 /// The features of a tile.
@@ -186,6 +187,7 @@ widest! {
                 break;
             }
         }
+        let all_finite = nearest.iter().fold(true, |finite, &v| finite & (v < f32::INFINITY));
         let mut beyond = [0.0; TILE];
         if !all_within {
             for k in 0..TILE {
@@ -209,7 +211,7 @@ widest! {
             probability[k] = 1.0 / (1.0 + exp_f32(-calibration * logit[k]));
             mask[k] = if probability[k] > 0.5 { 1.0 } else { 0.0 };
         }
-        Answer { mask, probability, beyond, all_within }
+        Answer { mask, probability, beyond, all_finite }
     }
 }
 
@@ -249,7 +251,7 @@ pub fn run(
             let n = TILE.min(width - x);
             let pixels = &source[x * features.channels..(x + n) * features.channels];
             let mut answer = judge(&judges, pixels, features.channels, &mut tile, &mut likely);
-            if !(answer.all_within && looks_at_all) {
+            if !(answer.all_finite && looks_at_all) {
                 bad.fetch_add(count_bad(pixels), Ordering::Relaxed);
             }
             if let Some(within) = within {

@@ -106,7 +106,9 @@ pub fn choose(question: &Question, job: Job) -> Result<Chosen> {
 
     // How much of the image is unlike what was painted, by each subset of the features.
     let probe = standard.apply(question.probe)?;
-    let spreads = [false, true].map(|class| Spread::of(&trial.x, |i| trial.positive[i] == class));
+    let spread = |class: bool| Spread::of(&trial.x, |i| trial.positive[i] == class);
+    let (negative, positive) = exec::both(|| spread(false), || spread(true));
+    let spreads = [negative, positive];
     let unseen = exec::map(subsets.len(), job.part(0.0, 0.1), |k| {
         let columns = &subsets[k];
         ellipsoid::mean_beyond(&probe, columns, &spreads.each_ref().map(|spread| spread.ellipsoid(columns)))
