@@ -336,10 +336,21 @@ fn refinement(cases: &[Case]) {
     let mut table = Table::new(["radius", "tolerance", "IoU rooms", "photos", "border error % rooms", "photos", "ms"]);
     let kinds: [Vec<&Case>; 2] =
         [false, true].map(|photos| cases.iter().filter(|c| c.plane.is_some() == photos).collect());
-    let mut plain = [0.0; 2];
-    for (radius, tolerance) in
-        [(0, 4.0), (1, 4.0), (2, 1.0), (2, 4.0), (2, 16.0), (4, 1.0), (4, 4.0), (4, 16.0), (8, 4.0), (16, 4.0)]
-    {
+    let mut plain = [[0.0; 3]; 2];
+    let knobs = [
+        (0, 8.0),
+        (1, 8.0),
+        (2, 4.0),
+        (2, 8.0),
+        (2, 16.0),
+        (4, 2.0),
+        (4, 4.0),
+        (4, 8.0),
+        (4, 16.0),
+        (8, 8.0),
+        (16, 8.0),
+    ];
+    for (radius, tolerance) in knobs {
         let params = Params { refine_radius: radius, refine_tolerance: tolerance, ..Params::default() };
         let of_kind = |cases: &[&Case]| {
             let found: Vec<(f64, f64, f64)> = cases
@@ -354,16 +365,21 @@ fn refinement(cases: &[Case]) {
         };
         let [rooms, photos] = [of_kind(&kinds[0]), of_kind(&kinds[1])];
         if radius == 0 {
-            plain = [rooms[0], rooms[2]];
+            plain = [rooms, photos];
         }
         let mut cells = vec![radius.to_string(), tolerance.to_string()];
         cells.extend([rooms[0], photos[0]].map(|v| format!("{v:.4}")));
         cells.extend([rooms[1], photos[1]].map(|v| format!("{:.2}", 100.0 * v)));
         cells.push(format!("{:.0}", 1e3 * rooms[2]));
         table.row(cells);
-        if (radius, tolerance) == (4, 4.0) {
-            figure("segment.refine.iou_gain", rooms[0] - plain[0], "-");
-            figure("segment.refine.ms", 1e3 * (rooms[2] - plain[1]), "ms");
+        if (radius, tolerance) == (4, 8.0) {
+            figure("segment.refine.rooms.iou_gain", rooms[0] - plain[0][0], "-");
+            figure("segment.refine.ms", 1e3 * (rooms[2] - plain[0][2]), "ms");
+            if kinds[1].is_empty() {
+                absent("segment.refine.photos.iou_gain", "the photos are not there");
+            } else {
+                figure("segment.refine.photos.iou_gain", photos[0] - plain[1][0], "-");
+            }
         }
     }
     table.print("Edge-aware refinement");
