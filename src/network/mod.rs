@@ -10,6 +10,9 @@
 //! [`MOST_BYTES`] beside its own weights. Every loop is in units that do not depend on the number of threads: equal input gives
 //! equal bits. A cancel request is answered within a row of the largest layer.
 //!
+//! It is here because what there is does not fit into a host's process: runtimes that keep threads of their own for good, print,
+//! end the process when memory runs out, or cannot be cancelled.
+//!
 //! Computes in `f32`; doubles and halves of a file become that, all integers and booleans `i64`. Opsets 7 to 21.
 //!
 //! Not modelled: training, control flow, recurrence, quantised and sparse tensors, strings, weights in files of their own.
