@@ -19,7 +19,7 @@ const LEAST_SHARE: f64 = 0.3;
 const LATTICE_SLACK: f64 = 0.2;
 
 /// By how much, relatively, lamps of a kind may differ in area and in both sides.
-const LIKE: f64 = 0.12;
+const LIKE: f64 = 0.25;
 /// A lamp is shown sharply if it covers this share of the photo pixels that the largest of its kind does.
 const SHARP: f64 = 0.4;
 
