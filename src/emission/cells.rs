@@ -81,7 +81,7 @@ pub fn place(
 }
 
 /// The cells whose place, from that of the first, is between two corners; and some around them.
-fn between(to_cells: DMat2, low: DVec2, high: DVec2) -> impl Iterator<Item = Cell> {
+pub fn between(to_cells: DMat2, low: DVec2, high: DVec2) -> impl Iterator<Item = Cell> {
     let corners = [low, DVec2::new(high.x, low.y), DVec2::new(low.x, high.y), high].map(|c| to_cells * c);
     let first = corners.iter().fold(DVec2::INFINITY, |m, c| m.min(*c)).floor();
     let last = corners.iter().fold(DVec2::NEG_INFINITY, |m, c| m.max(*c)).ceil();

@@ -4,6 +4,7 @@
 //! lamp, because the lamp is wider than the overlap, would leave part of it; instead a lamp is shown whole where most of it
 //! lies in patches of its own shift, and not at all where less does or where another lamp took the place.
 
+use super::cells;
 use super::exemplar::Exemplar;
 use super::layout::Layout;
 use crate::error::Result;
@@ -111,17 +112,12 @@ pub fn repeat(exemplar: &Exemplar, [a, b]: [DVec2; 2], offset: DVec2, size: DVec
     for (component, lamp) in exemplar.pieces() {
         // The shifts that bring some of it into the texture, and the cells around those.
         let (low, high) = if wraps { (DVec2::ZERO, size) } else { (-point(lamp.max) - 1.0, size - point(lamp.min)) };
-        let corners = [low, DVec2::new(high.x, low.y), DVec2::new(low.x, high.y), high].map(|c| inverse * (c - offset));
-        let first = corners.iter().fold(DVec2::INFINITY, |m, c| m.min(*c)).floor();
-        let last = corners.iter().fold(DVec2::NEG_INFINITY, |m, c| m.max(*c)).ceil();
-        for j in first.y as i64..=last.y as i64 {
-            for i in first.x as i64..=last.x as i64 {
-                let shift = offset + a * i as f64 + b * j as f64;
-                // A cell that begins on the far side is the one that begins on this.
-                let slack = if wraps { DVec2::splat(1e-6) } else { DVec2::ZERO };
-                if shift.cmpge(low - slack).all() && shift.cmplt(high - slack).all() {
-                    instances.push(Instance { component, shift });
-                }
+        for [i, j] in cells::between(inverse, low - offset, high - offset) {
+            let shift = offset + a * i as f64 + b * j as f64;
+            // A cell that begins on the far side is the one that begins on this.
+            let slack = if wraps { DVec2::splat(1e-6) } else { DVec2::ZERO };
+            if shift.cmpge(low - slack).all() && shift.cmplt(high - slack).all() {
+                instances.push(Instance { component, shift });
             }
         }
     }

@@ -123,9 +123,8 @@ pub(super) fn exr_headers(bytes: &[u8]) -> Result<exr::meta::Headers> {
     Ok(meta.headers)
 }
 
-/// The first layer that has R, G and B (and A), or one with a single channel.
-fn decode_exr(bytes: &[u8]) -> Result<Image> {
-    exr_headers(bytes)?;
+/// The first layer of a file whose headers have been looked at, with all of its channels.
+pub(super) fn first_exr_layer(bytes: &[u8]) -> Result<ex::Layer<ex::AnyChannels<ex::FlatSamples>>> {
     use ex::{ReadChannels, ReadLayers};
     let file = ex::read()
         .no_deep_data()
@@ -134,9 +133,14 @@ fn decode_exr(bytes: &[u8]) -> Result<Image> {
         .first_valid_layer()
         .all_attributes()
         .non_parallel()
-        .from_buffered(Cursor::new(bytes))
-        .map_err(broken_exr)?;
-    let layer = file.layer_data;
+        .from_buffered(Cursor::new(bytes));
+    Ok(file.map_err(broken_exr)?.layer_data)
+}
+
+/// The first layer that has R, G and B (and A), or one with a single channel.
+fn decode_exr(bytes: &[u8]) -> Result<Image> {
+    exr_headers(bytes)?;
+    let layer = first_exr_layer(bytes)?;
     let list = &layer.channel_data.list;
     let find = |name: &str| list.iter().find(|c| c.name.eq_case_insensitive(name));
     let channels: Vec<_> = match (find("R"), find("G"), find("B"), find("A")) {

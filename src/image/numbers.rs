@@ -4,7 +4,7 @@
 //! window lies in the whole, its display window. A double is two channels of 32-bit integers, `number.K.high` and
 //! `number.K.low`: floating-point channels have 32 bits at most. What else there is to say stands in texts of the header.
 
-use super::io::{broken_exr, exr_headers};
+use super::io::{broken_exr, exr_headers, first_exr_layer};
 use super::{Image, try_vec, try_with_capacity};
 use crate::error::{Error, ErrorKind, Result};
 use exr::meta::header::Header;
@@ -107,18 +107,9 @@ pub fn decode(bytes: &[u8], head: &Head, mut pixel: impl FnMut([usize; 2], &[f64
     if 4 * channels * width * height > bytes.len().saturating_mul(DENSEST) {
         return Err(Error::format("its header promises more than so short a file can hold"));
     }
-    use ex::{ReadChannels, ReadLayers};
-    let file = ex::read()
-        .no_deep_data()
-        .largest_resolution_level()
-        .all_channels()
-        .first_valid_layer()
-        .all_attributes()
-        .non_parallel()
-        .from_buffered(Cursor::new(bytes))
-        .map_err(broken_exr)?;
+    let layer = first_exr_layer(bytes)?;
     let mut halves: Vec<&[u32]> = try_with_capacity(2 * head.numbers)?;
-    for channel in file.layer_data.channel_data.list.iter().skip(3) {
+    for channel in layer.channel_data.list.iter().skip(3) {
         match &channel.sample_data {
             ex::FlatSamples::U32(samples) if samples.len() == width * height => halves.push(samples),
             _ => return Err(Error::format(format!("its channel {} is incomplete", channel.name))),
