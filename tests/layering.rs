@@ -14,9 +14,9 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("geometry", &["error", "rng"]),
     ("network", &["error", "job", "exec", "simd", "image"]),
     ("photometry", &["error", "image"]),
-    ("scene", &["error", "job", "exec", "rng", "image", "geometry", "photometry"]),
+    ("scene", &["simd", "error", "job", "exec", "rng", "image", "geometry", "photometry"]),
     ("render", &["error", "job", "exec", "rng", "image", "geometry", "photometry", "scene"]),
-    ("patch", &["error", "job", "exec", "rng", "image"]),
+    ("patch", &["simd", "error", "job", "exec", "rng", "image"]),
     // Stages: never each other. Segmentation knows how many channels the features have.
     ("features", &["simd", "error", "job", "exec", "rng", "image", "geometry", "network"]),
     ("segment", &["simd", "error", "job", "exec", "rng", "image", "geometry", "features"]),

@@ -5,13 +5,11 @@
 //!
 //! [`Quantiser`]: super::Quantiser
 
+use crate::simd::Level;
+
 /// The instructions to compute with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kernel {
-    Portable,
-    #[cfg(target_arch = "x86_64")]
-    Avx2,
-}
+pub struct Kernel(Level);
 
 /// One patch: samples of its image from its top-left pixel on, and the samples from one row to the next.
 #[derive(Clone, Copy)]
@@ -23,27 +21,21 @@ pub struct Patch<'a> {
 impl Kernel {
     /// The fastest kernel of this machine.
     pub fn detect() -> Self {
-        #[cfg(target_arch = "x86_64")]
-        if std::arch::is_x86_feature_detected!("avx2") {
-            return Self::Avx2;
-        }
-        Self::Portable
+        Self(Level::widest())
     }
 
     /// Sum of squared differences over `rows` rows of `run` samples (a multiple of 8). Stops after a row that brings it
     /// to `limit` or more.
     #[inline]
     pub fn distance(self, a: Patch, b: Patch, run: usize, rows: usize, limit: u32) -> u32 {
-        match self {
-            Self::Portable => portable(a, b, run, rows, limit),
+        let end = |p: &Patch| (rows - 1) * p.row_len + run;
+        assert!(rows > 0 && run % 8 == 0 && end(&a) <= a.samples.len() && end(&b) <= b.samples.len());
+        match self.0 {
+            Level::Baseline => portable(a, b, run, rows, limit),
+            // SAFETY: the processor has the instructions of its level and of those below, and the line above keeps every
+            // load inside its slice. (Rows are short: wider registers, masked at their ends, are slower by a tenth or more.)
             #[cfg(target_arch = "x86_64")]
-            Self::Avx2 => {
-                let end = |p: &Patch| (rows - 1) * p.row_len + run;
-                assert!(rows > 0 && run % 8 == 0 && end(&a) <= a.samples.len() && end(&b) <= b.samples.len());
-                // SAFETY: `Avx2` is only made by `detect`, after it found AVX2 (a caller can name the variant, but has
-                // no reason to); the line above keeps every load inside its slice.
-                unsafe { avx2(a, b, run, rows, limit) }
-            }
+            Level::Avx2 | Level::Avx512 => unsafe { avx2(a, b, run, rows, limit) },
         }
     }
 }
@@ -101,9 +93,10 @@ unsafe fn avx2(a: Patch, b: Patch, run: usize, rows: usize, limit: u32) -> u32 {
 mod tests {
     use super::*;
     use crate::rng::Rng;
+    use crate::simd::forced;
 
     #[test]
-    fn simd_and_portable_agree_to_the_bit_with_and_without_early_exit() {
+    fn all_levels_agree_to_the_bit_with_and_without_early_exit() {
         let mut rng = Rng::new(3, &[]);
         for case in 0..200 {
             let (lanes, w, width) = (8 * (1 + case % 5), 1 + case % 9, 12);
@@ -114,7 +107,9 @@ mod tests {
             let full = portable(a, b, w * lanes, w, u32::MAX);
             for limit in [0, full / 2, full, full + 1, u32::MAX] {
                 let want = portable(a, b, w * lanes, w, limit);
-                assert_eq!(Kernel::detect().distance(a, b, w * lanes, w, limit), want);
+                for level in forced::levels() {
+                    assert_eq!(Kernel(level).distance(a, b, w * lanes, w, limit), want, "{level:?}");
+                }
                 assert_eq!(want < limit, full < limit);
             }
         }
@@ -126,6 +121,8 @@ mod tests {
         let mut b = vec![0i16; 25 * 16];
         b.iter_mut().enumerate().for_each(|(i, v)| *v = if i % 16 == 0 { 0 } else { 9267 });
         let (a, b) = (Patch { samples: &a, row_len: 80 }, Patch { samples: &b, row_len: 80 });
-        assert_eq!(Kernel::detect().distance(a, b, 80, 5, u32::MAX), 25 * 9267 * 9267);
+        for level in forced::levels() {
+            assert_eq!(Kernel(level).distance(a, b, 80, 5, u32::MAX), 25 * 9267 * 9267, "{level:?}");
+        }
     }
 }

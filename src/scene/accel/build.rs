@@ -9,6 +9,7 @@ use super::tree::Tree;
 use super::{Accel, SHORT_STACK, cluster, collapse};
 use crate::error::{Error, Result};
 use crate::job::Job;
+use crate::simd::Level;
 use glam::{Vec3, Vec4};
 
 /// Rounds of reinsertion: the share of all nodes, the largest, that each tries to move. More of either gain little.
@@ -27,7 +28,7 @@ pub(super) fn build(triangles: &[[Vec3; 3]], job: Job) -> Result<Accel> {
         largest: Vec4::ZERO,
         stack_need: SHORT_STACK,
         dropped: leaves.dropped,
-        wide_vectors: has_wide_vectors(),
+        level: Level::widest(),
     };
     if leaves.list.is_empty() {
         return Ok(accel);
@@ -36,26 +37,14 @@ pub(super) fn build(triangles: &[[Vec3; 3]], job: Job) -> Result<Accel> {
     accel.largest = leaves.low.abs().max(leaves.high.abs()).extend(0.0);
     job.report(0.1);
     let scale = leaves.scale;
-    let tree = binary_tree(leaves, accel.wide_vectors, job.part(0.1, 0.8))?;
+    let tree = binary_tree(leaves, accel.level, job.part(0.1, 0.8))?;
     collapse::run(&Source { triangles, tree: &tree, scale }, &mut accel, job)?;
     job.report(1.0);
     Ok(accel)
 }
 
-fn has_wide_vectors() -> bool {
-    #[cfg(target_arch = "x86_64")]
-    return std::arch::is_x86_feature_detected!("avx2")
-        && std::arch::is_x86_feature_detected!("fma")
-        && std::arch::is_x86_feature_detected!("bmi1")
-        && std::arch::is_x86_feature_detected!("bmi2")
-        && std::arch::is_x86_feature_detected!("lzcnt")
-        && std::arch::is_x86_feature_detected!("popcnt");
-    #[cfg(not(target_arch = "x86_64"))]
-    return false;
-}
-
-fn binary_tree(leaves: Leaves, wide: bool, job: Job) -> Result<Tree> {
-    let mut tree = cluster::binary_tree(&leaves, wide, job)?;
+fn binary_tree(leaves: Leaves, level: Level, job: Job) -> Result<Tree> {
+    let mut tree = cluster::binary_tree(&leaves, level, job)?;
     drop(leaves);
     job.report(0.4);
     let mut reinsertion = Reinsertion::new(&mut tree)?;

@@ -15,6 +15,7 @@ use super::pages;
 use super::tree::{Pair, Tree};
 use crate::error::Result;
 use crate::job::Job;
+use crate::simd::Level;
 use obvhs::bvh2::node::Bvh2Node;
 
 /// Clusters that a range is merged down to before it is joined with its neighbour.
@@ -28,15 +29,15 @@ const LANES: usize = 8;
 const PARTNER: u32 = 2 * FEW as u32 - 1;
 
 /// The tree over all leaves, of which there is one at least.
-pub(super) fn binary_tree(leaves: &Leaves, wide: bool, job: Job) -> Result<Tree> {
+pub(super) fn binary_tree(leaves: &Leaves, level: Level, job: Job) -> Result<Tree> {
     let mut clusters = pages::filled(leaves.order.len(), Cluster::default())?;
     // The first pair is the root's.
     let len = leaves.order.len() + 1;
     let mut tree = Tree { pairs: pages::filled(len, Pair::default())?, parents: pages::filled(len, Tree::ROOT)? };
     let new = New { pairs: &mut tree.pairs[1..], parents: &mut tree.parents[1..], first: 1 };
-    let mut all = Range { leaves: &leaves.list, order: &leaves.order, clusters: &mut clusters, new, wide };
+    let mut all = Range { leaves: &leaves.list, order: &leaves.order, clusters: &mut clusters, new, level };
     let left = all.merge(job)?;
-    let left = merge_nearest(&mut all.clusters[..left], &mut all.new, 1, wide);
+    let left = merge_nearest(&mut all.clusters[..left], &mut all.new, 1, level);
     debug_assert_eq!(left, 1);
     tree.pairs[0].0[1] = clusters[0].node;
     tree.pairs.pop();
@@ -87,8 +88,7 @@ struct Range<'a> {
     order: &'a [(u64, u32)],
     clusters: &'a mut [Cluster],
     new: New<'a>,
-    /// Whether the processor has wide vectors.
-    wide: bool,
+    level: Level,
 }
 
 impl Range<'_> {
@@ -111,7 +111,7 @@ impl Range<'_> {
         };
         let (left, right) = (left?, right?);
         self.clusters.copy_within(middle..middle + right, left);
-        Ok(merge_nearest(&mut self.clusters[..left + right], &mut self.new, FEW, self.wide))
+        Ok(merge_nearest(&mut self.clusters[..left + right], &mut self.new, FEW, self.level))
     }
 
     /// Where the highest bit changes in which codes differ.
@@ -125,24 +125,24 @@ impl Range<'_> {
     }
 
     fn halves(&mut self, middle: usize) -> (Range<'_>, Range<'_>) {
-        let Self { leaves, wide, .. } = *self;
+        let Self { leaves, level, .. } = *self;
         let (left_order, order) = self.order.split_at(middle);
         let (left_clusters, clusters) = self.clusters.split_at_mut(middle);
         let (left_new, new) = self.new.split_at(middle);
-        let left = Range { leaves, order: left_order, clusters: left_clusters, new: left_new, wide };
-        (left, Range { leaves, order, clusters, new, wide })
+        let left = Range { leaves, order: left_order, clusters: left_clusters, new: left_new, level };
+        (left, Range { leaves, order, clusters, new, level })
     }
 }
 
 /// Merges neighbours until few are left, at the front; tells how many.
-fn merge_nearest(clusters: &mut [Cluster], new: &mut New, few: usize, wide: bool) -> usize {
+fn merge_nearest(clusters: &mut [Cluster], new: &mut New, few: usize, level: Level) -> usize {
     let mut len = clusters.len();
     if len <= few {
         return len;
     }
     let mut boxes = Boxes::of(clusters);
     while len > few {
-        let choices = boxes.choose(len, wide);
+        let choices = boxes.choose(len, level);
         let partner = |i: usize| i ^ (choices[i].to_bits() & PARTNER) as usize;
         let mut kept = 0;
         for i in 0..len {
@@ -209,15 +209,13 @@ impl Boxes {
 
     /// For each box the neighbour with which it has the smallest box together: bits of that box's area (as it is not
     /// negative they sort as it does), the lowest of which are replaced by those in which the two places differ.
-    fn choose(&self, len: usize, wide: bool) -> [f32; 2 * FEW] {
-        #[cfg(target_arch = "x86_64")]
-        if wide {
-            // SAFETY: `wide` is set only where the processor reports these.
-            return unsafe { self.choose_avx2(len) };
+    fn choose(&self, len: usize, level: Level) -> [f32; 2 * FEW] {
+        match level {
+            // SAFETY: the processor has the instructions of its level, and of those below.
+            #[cfg(target_arch = "x86_64")]
+            Level::Avx2 | Level::Avx512 => unsafe { self.choose_avx2(len) },
+            Level::Baseline => self.choose_with::<Baseline>(len),
         }
-        #[cfg(not(target_arch = "x86_64"))]
-        let _ = wide;
-        self.choose_with::<Baseline>(len)
     }
 
     #[cfg(target_arch = "x86_64")]
@@ -253,6 +251,7 @@ mod tests {
     use super::*;
     use crate::job::Monitor;
     use crate::scene::accel::leaves;
+    use crate::simd::forced;
     use glam::Vec3;
 
     fn depth(tree: &Tree, node: u32) -> u32 {
@@ -273,11 +272,10 @@ mod tests {
         let monitor = Monitor::default();
         let leaves = leaves::gather(&triangles, monitor.job()).unwrap();
         assert_eq!(leaves.list.len(), 64 * 64);
-        let tree = binary_tree(&leaves, false, monitor.job()).unwrap();
+        let tree = binary_tree(&leaves, Level::Baseline, monitor.job()).unwrap();
         assert!((12..=14).contains(&depth(&tree, Tree::ROOT)), "{}", depth(&tree, Tree::ROOT));
-        #[cfg(target_arch = "x86_64")]
-        if std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma") {
-            assert!(binary_tree(&leaves, true, monitor.job()).unwrap().parents == tree.parents);
+        for level in forced::levels() {
+            assert!(binary_tree(&leaves, level, monitor.job()).unwrap().parents == tree.parents, "{level:?}");
         }
     }
 }

@@ -2,6 +2,7 @@ use super::*;
 use crate::exec::Pool;
 use crate::job::Monitor;
 use crate::rng::Rng;
+use crate::simd::forced;
 
 fn build(triangles: &[[Vec3; 3]]) -> Accel {
     Accel::build(triangles, Monitor::default().job()).unwrap()
@@ -72,8 +73,8 @@ fn hits_are_those_of_testing_every_triangle_on_every_kind_of_vector_unit() {
             }
             let ray = Ray::new(origin * scale + Vec3::splat(offset), direction);
             let expected = brute_force(&triangles, &ray);
-            for wide in [has_wide(), false] {
-                accel.wide_vectors = wide;
+            for level in forced::levels() {
+                accel.level = level;
                 assert_eq!(accel.closest(&ray, |_| true), expected, "scale {scale}, offset {offset}, ray {i}");
                 assert_eq!(accel.occluded(&ray, |_| true), expected.is_some());
             }
@@ -83,10 +84,6 @@ fn hits_are_those_of_testing_every_triangle_on_every_kind_of_vector_unit() {
             }
         }
     }
-}
-
-fn has_wide() -> bool {
-    build(&[]).wide_vectors
 }
 
 #[test]
@@ -222,8 +219,8 @@ fn ten_thousand_copies_of_one_triangle_are_each_met_once() {
     let triangle = [Vec3::ZERO, Vec3::X, Vec3::Y];
     let mut accel = build(&[triangle; 10_000]);
     let ray = Ray::new(Vec3::new(0.2, 0.3, 1.0), Vec3::NEG_Z);
-    for wide in [has_wide(), false] {
-        accel.wide_vectors = wide;
+    for level in forced::levels() {
+        accel.level = level;
         let mut met = vec![0; 10_000];
         let refuse = |hit: &Hit| {
             met[hit.triangle as usize] += 1;
@@ -266,8 +263,8 @@ fn rays_of_any_numbers_are_survived() {
         let mut number = || extremes[rng.below(extremes.len())];
         let [origin, direction] = [0; 2].map(|_| Vec3::from([0; 3].map(|_| number())));
         let ray = Ray { t_max: number(), ..Ray::new(origin, direction) };
-        for wide in [has_wide(), false] {
-            accel.wide_vectors = wide;
+        for level in forced::levels() {
+            accel.level = level;
             if let Some(hit) = accel.closest(&ray, |_| true) {
                 assert!(hit.t > 0.0 && hit.t < ray.t_max, "{ray:?}: {hit:?}");
             }
