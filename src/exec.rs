@@ -126,9 +126,19 @@ pub fn both<A: Send, B: Send>(a: impl FnOnce() -> A + Send, b: impl FnOnce() -> 
     rayon::join(a, b)
 }
 
-/// Sorts in parallel. Equal elements must be the same to the bit, or their order depends on the number of threads.
-pub fn sort<T: Ord + Send>(data: &mut [T]) {
-    data.par_sort_unstable();
+/// Elements sorted without a look at the job: a few milliseconds' worth.
+const SORTED: usize = 1 << 16;
+
+/// Sorts in parallel, checking for a cancel request, after which the order is any.
+pub fn sort<T: Ord + Send>(data: &mut [T], job: Job) -> Result<()> {
+    job.check()?;
+    if data.len() <= SORTED {
+        data.sort_unstable();
+        return Ok(());
+    }
+    let (low, _, high) = data.select_nth_unstable(data.len() / 2);
+    let (low, high) = rayon::join(|| sort(low, job), || sort(high, job));
+    low.and(high)
 }
 
 #[cfg(test)]
@@ -157,6 +167,18 @@ mod tests {
         for (image, start) in [(a, 0), (b, 1), (c, 2)] {
             assert!(image.iter().enumerate().all(|(i, &v)| v == start + 10 * (i / 4)));
         }
+    }
+
+    #[test]
+    fn sorting_is_that_of_the_standard_library() {
+        let monitor = Monitor::default();
+        let mut numbers: Vec<u64> = (0..3 * SORTED as u64).map(|i| crate::rng::mix(i) % 100_000).collect();
+        let mut sorted = numbers.clone();
+        sorted.sort();
+        Pool::new(2).unwrap().run(|| sort(&mut numbers, monitor.job())).unwrap();
+        assert!(numbers == sorted);
+        monitor.cancel();
+        assert_eq!(sort(&mut numbers, monitor.job()).unwrap_err().kind, ErrorKind::Cancelled);
     }
 
     #[test]

@@ -12,6 +12,9 @@ pub struct Monitor {
     cancelled: AtomicBool,
     /// Bits of an `f64`: among non-negative floats they sort as integers do, so `fetch_max` keeps progress monotone.
     progress: AtomicU64,
+    /// Called whenever a job asks whether to go on.
+    #[cfg(test)]
+    pub at_check: Option<Box<dyn Fn() + Send + Sync>>,
 }
 
 impl Monitor {
@@ -59,6 +62,10 @@ impl<'a> Job<'a> {
     }
 
     pub fn is_cancelled(self) -> bool {
+        #[cfg(test)]
+        if let Some(call) = &self.monitor.at_check {
+            call();
+        }
         self.monitor.is_cancelled()
     }
 }

@@ -33,7 +33,7 @@ impl Kernel {
         match self.0 {
             Level::Baseline => portable(a, b, run, rows, limit),
             // SAFETY: the processor has the instructions of its level and of those below, and the line above keeps every
-            // load inside its slice. (Rows are short: wider registers, masked at their ends, are slower by a tenth or more.)
+            // load inside its slice. (Rows are short: wider registers, masked at their ends, are slower.)
             #[cfg(target_arch = "x86_64")]
             Level::Avx2 | Level::Avx512 => unsafe { avx2(a, b, run, rows, limit) },
         }

@@ -68,7 +68,7 @@ pub(super) fn retrieve(
         let lost: Vec<bool> = reverse.error.iter().map(|&e| e == u32::MAX).collect();
         let index = 2000 * round + passes.len() as u64;
         nearest.reverse(&mut reverse, &free, index, job, |i| lost[i] && level.allowed.contains_index(i))?;
-        let (knee, gained) = accept(&mut matched, &mut free, &mut reverse, params.mode);
+        let (knee, gained) = accept(&mut matched, &mut free, &mut reverse, params.mode, job)?;
         let coverage = (wanted - free.len()) as f64 / wanted as f64;
         passes.push(Pass { knee, gained, coverage });
         if (gained as f64) < LEAST_GAIN * wanted as f64 {
@@ -92,13 +92,13 @@ pub(super) fn retrieve(
 
 /// Gives target patches to exemplar patches in order of rising error until the budget is spent; returns the knee and the
 /// number given.
-fn accept(matched: &mut Field, free: &mut Domain, reverse: &mut Field, mode: Mode) -> (f64, usize) {
+fn accept(matched: &mut Field, free: &mut Domain, reverse: &mut Field, mode: Mode, job: Job) -> Result<(f64, usize)> {
     // Sort by error, then by position.
     let mut order: Vec<u64> = (reverse.error.iter().enumerate())
         .filter(|(_, e)| **e != u32::MAX)
         .map(|(i, &e)| u64::from(e) << 32 | i as u64)
         .collect();
-    exec::sort(&mut order);
+    exec::sort(&mut order, job)?;
     let errors: Vec<u32> = order.iter().map(|o| (o >> 32) as u32).collect();
     let budget = budget(&errors);
     let total = if mode == Mode::Uniform { f64::INFINITY } else { budget.total };
@@ -132,5 +132,5 @@ fn accept(matched: &mut Field, free: &mut Domain, reverse: &mut Field, mode: Mod
             }
         }
     }
-    (budget.knee, gained)
+    Ok((budget.knee, gained))
 }

@@ -39,6 +39,7 @@ pub(super) fn build(triangles: &[[Vec3; 3]], job: Job) -> Result<Accel> {
     let scale = leaves.scale;
     let tree = binary_tree(leaves, accel.level, job.part(0.1, 0.8))?;
     collapse::run(&Source { triangles, tree: &tree, scale }, &mut accel, job)?;
+    job.check()?;
     job.report(1.0);
     Ok(accel)
 }
@@ -47,7 +48,7 @@ fn binary_tree(leaves: Leaves, level: Level, job: Job) -> Result<Tree> {
     let mut tree = cluster::binary_tree(&leaves, level, job)?;
     drop(leaves);
     job.report(0.4);
-    let mut reinsertion = Reinsertion::new(&mut tree)?;
+    let mut reinsertion = Reinsertion::new(&mut tree, job)?;
     for least in reinsertion.areas_of_largest(ROUNDS) {
         reinsertion.round(least, job)?;
     }

@@ -30,10 +30,11 @@ const PARTNER: u32 = 2 * FEW as u32 - 1;
 
 /// The tree over all leaves, of which there is one at least.
 pub(super) fn binary_tree(leaves: &Leaves, level: Level, job: Job) -> Result<Tree> {
-    let mut clusters = pages::filled(leaves.order.len(), Cluster::default())?;
+    let mut clusters = pages::filled(leaves.order.len(), Cluster::default(), job)?;
     // The first pair is the root's.
     let len = leaves.order.len() + 1;
-    let mut tree = Tree { pairs: pages::filled(len, Pair::default())?, parents: pages::filled(len, Tree::ROOT)? };
+    let mut tree =
+        Tree { pairs: pages::filled(len, Pair::default(), job)?, parents: pages::filled(len, Tree::ROOT, job)? };
     let new = New { pairs: &mut tree.pairs[1..], parents: &mut tree.parents[1..], first: 1 };
     let mut all = Range { leaves: &leaves.list, order: &leaves.order, clusters: &mut clusters, new, level };
     let left = all.merge(job)?;

@@ -29,15 +29,15 @@ const PAGE_LINES: usize = 64;
 pub(super) fn run(source: &Source, accel: &mut Accel, job: Job) -> Result<()> {
     // Costs: of the parts in parallel, then of what lies above them.
     let cut = source.cut();
-    let part = |&root: &u32| job.check().and_then(|()| Binary::new(source, root, &HashMap::new(), &[]));
+    let part = |&root: &u32| Binary::new(source, root, &HashMap::new(), &[], job);
     let mut binaries: Vec<Binary> = cut.par_iter().map(part).collect::<Result<_>>()?;
     let places: HashMap<u32, u32> = cut.iter().enumerate().map(|(i, &node)| (node, i as u32)).collect();
-    binaries.push(Binary::new(source, Tree::ROOT, &places, &binaries)?);
+    binaries.push(Binary::new(source, Tree::ROOT, &places, &binaries, job)?);
     // Choices: those above the parts first; they leave subtrees of parts, which are done in parallel.
-    let choice = Choice { source, binaries: &binaries };
+    let choice = Choice { source, binaries: &binaries, job };
     let mut top = choice.widen((cut.len(), 0), true)?;
     let tasks = std::mem::take(&mut top.left);
-    let below = |task: &Left| job.check().and_then(|()| choice.widen(task.at, false));
+    let below = |task: &Left| choice.widen(task.at, false);
     let mut done: Vec<Wide> = tasks.par_iter().map(below).collect::<Result<_>>()?;
     drop(binaries);
 
@@ -59,7 +59,7 @@ pub(super) fn run(source: &Source, accel: &mut Accel, job: Job) -> Result<()> {
     accel.stack_need = accel.stack_need.max(top.stack_need);
     done.insert(0, top);
     let drafts: Vec<Draft> = done.into_iter().map(|wide| wide.lines).collect();
-    accel.lines = Lines::join(&drafts)?;
+    accel.lines = Lines::join(&drafts, job)?;
     Ok(())
 }
 
@@ -137,6 +137,7 @@ struct Left {
 struct Choice<'a> {
     source: &'a Source<'a>,
     binaries: &'a [Binary],
+    job: Job<'a>,
 }
 
 impl Choice<'_> {
@@ -156,6 +157,7 @@ impl Choice<'_> {
         let mut roots = vec![Open { place: root, area: 0.0, parent: None, waiting: 0 }];
         let mut open = Vec::new();
         while let Some(next) = roots.pop() {
+            self.job.check()?;
             let end = wide.lines.len() + PAGE_LINES;
             open.push(next);
             while wide.lines.len() < end

@@ -7,6 +7,7 @@ use super::packet::WIDTH;
 use super::pages;
 use super::tree::{Tree, half_area};
 use crate::error::Result;
+use crate::job::Job;
 use glam::Vec3;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::node::Bvh2Node;
@@ -15,6 +16,9 @@ use std::ops::Range;
 
 /// Expected cost of testing a packet of triangles, in units of that of testing a node.
 const PACKET_COST: f32 = 1.0;
+
+/// Branches made or weighed between two looks at the job: a part may hold nearly the whole tree.
+const CHUNK: usize = 1 << 14;
 
 pub(super) struct Source<'a> {
     pub triangles: &'a [[Vec3; 3]],
@@ -71,13 +75,16 @@ pub(super) struct Binary {
 }
 
 impl Binary {
-    pub fn new(source: &Source, root: u32, cut: &HashMap<u32, u32>, parts: &[Binary]) -> Result<Self> {
+    pub fn new(source: &Source, root: u32, cut: &HashMap<u32, u32>, parts: &[Binary], job: Job) -> Result<Self> {
         let mut branches = Vec::new();
         // Nodes lie all over memory. Level by level it is known early which will be needed, so that memory can be asked for
         // many at once.
         let mut indices = vec![root];
         let mut at = 0;
         while at < indices.len() {
+            if at % CHUNK == 0 {
+                job.check()?;
+            }
             pages::make_room(&mut branches, 1)?;
             pages::make_room(&mut indices, 2)?;
             let index = indices[at];
@@ -96,6 +103,9 @@ impl Binary {
         }
         let mut this = Self { branches };
         for at in (0..this.branches.len()).rev() {
+            if at % CHUNK == 0 {
+                job.check()?;
+            }
             if let Content::Halves(first) = this.branches[at].content {
                 this.weigh(at, first as usize);
             }

@@ -51,8 +51,8 @@ pub(super) fn gather(triangles: &[[Vec3; 3]], job: Job) -> Result<Leaves> {
     let len = chunks.iter().map(|chunk| chunk.leaves.len()).sum();
     let grid = Grid::over(low, high);
 
-    let mut list = pages::filled(len, Bvh2Node::default())?;
-    let mut order = pages::filled(len, (0, 0))?;
+    let mut list = pages::filled(len, Bvh2Node::default(), job)?;
+    let mut order = pages::filled(len, (0, 0), job)?;
     let (mut leaves_left, mut order_left, mut first) = (&mut list[..], &mut order[..], 0);
     let mut targets = Vec::with_capacity(chunks.len());
     for chunk in chunks {
@@ -64,14 +64,16 @@ pub(super) fn gather(triangles: &[[Vec3; 3]], job: Job) -> Result<Leaves> {
         targets.push((first, chunk, leaves, order));
         first += len as u32;
     }
-    targets.into_par_iter().for_each(|(first, chunk, leaves, order)| {
+    targets.into_par_iter().try_for_each(|(first, chunk, leaves, order)| {
+        job.check()?;
         for (i, ((leaf, place), &unscaled)) in leaves.iter_mut().zip(order).zip(&chunk.leaves).enumerate() {
             *leaf = unscaled;
             leaf.set_aabb(Aabb::new(unscaled.aabb().min * grid.scale, unscaled.aabb().max * grid.scale));
             *place = (grid.code(leaf.aabb()), first + i as u32);
         }
-    });
-    exec::sort(&mut order);
+        Ok(())
+    })?;
+    exec::sort(&mut order, job)?;
     Ok(Leaves { list, order, scale: grid.scale, low, high, dropped })
 }
 

@@ -8,6 +8,7 @@ use super::packet::Packet;
 use super::pages::{self, Pages};
 use crate::error::Result;
 use crate::image::try_with_capacity;
+use crate::job::Job;
 use std::ops::DerefMut;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,9 +54,9 @@ impl Draft {
 }
 
 impl Lines {
-    pub fn join(drafts: &[Draft]) -> Result<Self> {
+    pub fn join(drafts: &[Draft], job: Job) -> Result<Self> {
         let parts: Vec<&[Line]> = drafts.iter().map(Draft::as_slice).collect();
-        Ok(Self { list: Pages::join(&parts)? })
+        Ok(Self { list: Pages::join(&parts, job)? })
     }
 }
 

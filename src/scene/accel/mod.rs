@@ -148,7 +148,7 @@ impl Accel {
     }
 
     /// The same instructions in the encoding of AVX-512, with its 32 registers and operands that are spread as they are
-    /// read: a few per cent faster. Its wider registers and its masks are not: both bounds of a node's boxes in one register
+    /// read: a little faster. Its wider registers and its masks are not: both bounds of a node's boxes in one register
     /// of sixteen, leaves of sixteen triangles, and children sorted in a register have all been slower than this.
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt,avx512f,avx512bw,avx512cd,avx512dq,avx512vl")]

@@ -7,6 +7,7 @@
 use crate::error::Result;
 use crate::image::pages::{HUGE, prefer_huge};
 use crate::image::{no_memory, try_with_capacity};
+use crate::job::Job;
 use rayon::prelude::*;
 use std::mem::MaybeUninit;
 use std::ops::{Deref, DerefMut};
@@ -29,7 +30,7 @@ impl<T> Default for Pages<T> {
 
 impl<T: Send + Sync + Copy> Pages<T> {
     /// All parts one after the other, copied in parallel.
-    pub fn join(parts: &[&[T]]) -> Result<Self> {
+    pub fn join(parts: &[&[T]], job: Job) -> Result<Self> {
         let len = parts.iter().map(|part| part.len()).sum();
         let (mut room, first) = room_on_huge_pages(len)?;
         let mut rest = &mut room[first..first + len];
@@ -39,7 +40,11 @@ impl<T: Send + Sync + Copy> Pages<T> {
             targets.push((part, target));
             rest = after;
         }
-        targets.into_par_iter().for_each(|(part, target)| _ = target.write_copy_of_slice(part));
+        targets.into_par_iter().try_for_each(|(part, target)| {
+            job.check()?;
+            target.write_copy_of_slice(part);
+            Ok(())
+        })?;
         Ok(Self { room, first, len })
     }
 }
@@ -80,14 +85,17 @@ fn room_on_huge_pages<T>(len: usize) -> Result<(Vec<MaybeUninit<T>>, usize)> {
     Ok((room, first))
 }
 
-/// Copies of an item, written in parallel: it is the first writing of a page that takes time.
-pub(super) fn filled<T: Copy + Send + Sync>(len: usize, item: T) -> Result<Vec<T>> {
+/// Copies of an item, written in parallel: it is the first writing of a page that takes time, and may take much of it.
+pub(super) fn filled<T: Copy + Send + Sync>(len: usize, item: T, job: Job) -> Result<Vec<T>> {
     let mut list = try_with_capacity(len)?;
-    if len * size_of::<T>() < HUGE {
-        list.resize(len, item);
-    } else {
-        rayon::iter::repeat_n(item, len).with_min_len(HUGE / 4 / size_of::<T>()).collect_into_vec(&mut list);
-    }
+    let room = &mut list.spare_capacity_mut()[..len];
+    room.par_chunks_mut(HUGE / size_of::<T>()).try_for_each(|room| {
+        job.check()?;
+        room.fill(MaybeUninit::new(item));
+        Ok(())
+    })?;
+    // SAFETY: all of it was just written.
+    unsafe { list.set_len(len) };
     Ok(list)
 }
 

@@ -15,7 +15,7 @@ use obvhs::bvh2::node::Bvh2Node;
 use rayon::prelude::*;
 use std::cmp::Reverse;
 
-/// Pairs of nodes looked at by one piece of parallel work.
+/// Pairs of nodes looked at by one piece of parallel work, and moves made between two looks at the job.
 const CHUNK: usize = 256;
 /// Pairs counted by one piece of parallel work.
 const COUNTED: usize = 1 << 15;
@@ -49,8 +49,8 @@ fn sibling(node: u32) -> u32 {
 }
 
 impl<'a> Reinsertion<'a> {
-    pub fn new(tree: &'a mut Tree) -> Result<Self> {
-        let touched = pages::filled(tree.len(), false)?;
+    pub fn new(tree: &'a mut Tree, job: Job) -> Result<Self> {
+        let touched = pages::filled(tree.len(), false, job)?;
         Ok(Self { tree, touched })
     }
 
@@ -94,8 +94,9 @@ impl<'a> Reinsertion<'a> {
         let found: Vec<Vec<Move>> = self.tree.pairs.par_chunks(CHUNK).enumerate().map(search).collect::<Result<_>>()?;
         let mut moves = try_collect(found.into_iter().flatten())?;
         moves.par_sort_unstable_by_key(|m| (Reverse(m.gain.to_bits()), m.from));
-        for &this in &moves {
-            self.make(this);
+        for moves in moves.chunks(CHUNK) {
+            job.check()?;
+            moves.iter().for_each(|&this| self.make(this));
         }
         self.touched.fill(false);
         Ok(())
@@ -266,9 +267,10 @@ mod tests {
         let before = area_of_all(&peer.nodes);
         // The implementation of obvhs, which does not order its search, on the same nodes.
         ReinsertionOptimizer::default().run(&mut peer, 0.5, Some(vec![1.0, 0.2, 0.1, 0.0]));
-        let mut reinsertion = Reinsertion::new(&mut tree).unwrap();
+        let monitor = Monitor::default();
+        let mut reinsertion = Reinsertion::new(&mut tree, monitor.job()).unwrap();
         for least in reinsertion.areas_of_largest([0.5, 0.1, 0.05, 0.0]) {
-            reinsertion.round(least, Monitor::default().job()).unwrap();
+            reinsertion.round(least, monitor.job()).unwrap();
         }
         let nodes: Vec<Bvh2Node> = tree.pairs.iter().flat_map(|pair| pair.0).collect();
         let (after, after_peer) = (area_of_all(&nodes), area_of_all(&peer.nodes));

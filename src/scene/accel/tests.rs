@@ -3,6 +3,7 @@ use crate::exec::Pool;
 use crate::job::Monitor;
 use crate::rng::Rng;
 use crate::simd::forced;
+use std::sync::{Arc, Mutex};
 
 fn build(triangles: &[[Vec3; 3]]) -> Accel {
     Accel::build(triangles, Monitor::default().job()).unwrap()
@@ -285,4 +286,38 @@ fn many_small_triangles_in_a_huge_scene_take_no_longer_than_elsewhere() {
     assert!(start.elapsed().as_secs() < 20, "{:?}", start.elapsed());
     let ray = Ray::new(place + Vec3::Z * 9.0, Vec3::NEG_Z);
     assert_eq!(accel.closest(&ray, |_| true), brute_force(&triangles, &ray));
+}
+
+/// Three million triangles in a room, and the same with one far away, from where they all lie in one cell of space.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_cancel_is_heard_within_50_ms_while_three_million_triangles_are_built() {
+    /// Nanoseconds this thread has run, to a few milliseconds; what else the machine does does not count.
+    fn now() -> u64 {
+        let told = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap();
+        told.split_whitespace().next().unwrap().parse().unwrap()
+    }
+    #[derive(Default)]
+    struct Silence {
+        since: Option<u64>,
+        longest: u64,
+    }
+    for far in [None, Some(1e5)] {
+        let mut triangles = tessellated_box(500, Vec3::ZERO, Vec3::new(4.0, 3.0, 5.0));
+        triangles.extend(far.map(|at| [Vec3::X, Vec3::Y, Vec3::Z].map(|p| (Vec3::ONE + p) * at)));
+        let silence = Arc::new(Mutex::new(Silence::default()));
+        let shared = silence.clone();
+        let at_check = move || {
+            let mut silence = shared.lock().unwrap();
+            let now = now();
+            silence.longest = silence.longest.max(now - silence.since.unwrap_or(now));
+            silence.since = Some(now);
+        };
+        let mut monitor = Monitor::default();
+        monitor.at_check = Some(Box::new(at_check));
+        // One thread, which does all, is silent the longest.
+        Pool::new(1).unwrap().run(|| Accel::build(&triangles, monitor.job())).unwrap();
+        let longest = silence.lock().unwrap().longest as f64 * 1e-6;
+        assert!(longest > 0.0 && longest < 50.0, "{longest} ms");
+    }
 }
