@@ -42,7 +42,7 @@ impl<T: Send + Sync + Copy> Pages<T> {
         }
         targets.into_par_iter().try_for_each(|(part, target)| {
             job.check()?;
-            target.write_copy_of_slice(part);
+            target.iter_mut().zip(part).for_each(|(target, item)| _ = target.write(*item));
             Ok(())
         })?;
         Ok(Self { room, first, len })
