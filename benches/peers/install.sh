@@ -31,7 +31,7 @@ install bpy 'bpy==5.0.*' 'numpy<2'
 
 # Normals from point clouds.
 install open3d open3d numpy
-# grabCut, a random forest and a support vector machine, for masks from strokes.
+# grabCut, a random forest and a support vector machine, for masks from strokes; a detector of line segments.
 install segment opencv-python-headless scikit-learn numpy
 
 # What `stylit_judge.py` beside the test data runs on.

@@ -6,7 +6,7 @@ use crate::image::{Image, colour, pyramid};
 use crate::job::Job;
 
 /// Standard deviation of the Gaussian in pixels: enough for JPEG blocks and sensor noise, little enough for thin lines.
-pub const SIGMA: f32 = 0.8;
+pub const SIGMA: f32 = 1.2;
 
 /// Offset inside the square root that encodes luma: it ends the steep slope near black as sRGB's linear toe does.
 const TOE: f32 = 0.003;
@@ -83,11 +83,11 @@ mod tests {
     #[test]
     fn a_ramp_has_its_slope_everywhere_inside() {
         let monitor = Monitor::default();
-        let luma = Image::from_fn(16, 12, |x, y| [0.02 * x as f32 - 0.01 * y as f32]).unwrap();
+        let luma = Image::from_fn(20, 16, |x, y| [0.02 * x as f32 - 0.01 * y as f32]).unwrap();
         let g = gradients(&luma, monitor.job()).unwrap();
-        for y in 4..8 {
-            for x in 4..12 {
-                let [dx, dy] = g.derivative[y * 16 + x];
+        for y in 5..11 {
+            for x in 5..15 {
+                let [dx, dy] = g.derivative[y * 20 + x];
                 assert!((dx - 0.02).abs() < 1e-6 && (dy + 0.01).abs() < 1e-6);
             }
         }

@@ -4,13 +4,12 @@
 use super::gradient::Gradients;
 use crate::error::Result;
 use crate::geometry::Segment;
-use crate::image::try_vec;
+use crate::image::{try_collect, try_vec};
 use crate::job::Job;
 use glam::DVec2;
 
-/// Weakest gradient that counts, in encoded luma per pixel: an edge of about 9 of 255 grey levels. Weaker ones are the
-/// texture of floors and plaster, whose chance lines outvote the few real ones of a poorly seen direction.
-const WEAKEST: f32 = 0.015;
+/// Weakest gradient that counts, in encoded luma per pixel: an edge of about 9 of 255 grey levels.
+const WEAKEST: f32 = 0.01;
 
 /// Half-angle within which a pixel joins a region, as in LSD: π / 8.
 const TOLERANCE: f64 = std::f64::consts::FRAC_PI_8;
@@ -18,14 +17,15 @@ const TOLERANCE: f64 = std::f64::consts::FRAC_PI_8;
 /// Length in pixels of each end of a region that the fit leaves out.
 const END: f64 = 2.0;
 
-/// Least share of a region's rectangle that its pixels cover.
-const DENSITY: f64 = 0.7;
+/// Least share of a region's rectangle that its pixels cover: noise leaves gaps in what is straight.
+const DENSITY: f64 = 0.6;
 
 /// The straight edges of a photo, longest chance-free regions of like gradient direction.
 pub fn detect(gradients: &Gradients, job: Job) -> Result<Vec<Segment>> {
     let Gradients { width, height, magnitude, .. } = gradients;
     let seeds = by_falling_magnitude(magnitude)?;
-    let mut grower = Grower { gradients, used: try_vec(width * height, false)?, region: Vec::new() };
+    let used = try_collect(magnitude.iter().map(|m| !(*m >= WEAKEST)))?;
+    let mut grower = Grower { gradients, used, region: Vec::new() };
     let log_tests = 2.5 * ((width * height) as f64).ln();
     let mut segments = Vec::new();
     for (done, &seed) in seeds.iter().enumerate() {
@@ -67,11 +67,29 @@ fn by_falling_magnitude(magnitude: &[f32]) -> Result<Vec<u32>> {
     Ok(order)
 }
 
+/// A pixel of the region being grown.
+#[derive(Clone, Copy)]
+struct Pixel {
+    index: u32,
+    column: u32,
+    row: u32,
+}
+
+impl Pixel {
+    fn new(width: usize, index: u32) -> Self {
+        Self { index, column: index % width as u32, row: index / width as u32 }
+    }
+
+    fn centre(self) -> DVec2 {
+        DVec2::new(f64::from(self.column) + 0.5, f64::from(self.row) + 0.5)
+    }
+}
+
 struct Grower<'a> {
     gradients: &'a Gradients,
+    /// Pixels of some region, and those that are too weak for any: among them the outermost.
     used: Vec<bool>,
-    /// Pixels of the region being grown.
-    region: Vec<u32>,
+    region: Vec<Pixel>,
 }
 
 /// A region with the rectangle around it.
@@ -87,12 +105,12 @@ impl Found {
     }
 
     /// Minus the logarithm of the probability that at least this many pixels of the rectangle agree by chance
-    /// (Chernoff's bound of the binomial tail; smoothing makes neighbours agree, so only every second one counts).
+    /// (Chernoff's bound of the binomial tail).
     fn log_surprise(&self) -> f64 {
         let share = self.density().min(1.0 - 1e-9);
         let chance = TOLERANCE / std::f64::consts::PI;
         let divergence = share * (share / chance).ln() + (1.0 - share) * ((1.0 - share) / (1.0 - chance)).ln();
-        if share > chance { self.pixels as f64 / share / 2.0 * divergence } else { 0.0 }
+        if share > chance { self.pixels as f64 / share * divergence } else { 0.0 }
     }
 }
 
@@ -106,14 +124,14 @@ impl Grower<'_> {
             self.grow(seed, TOLERANCE / 2.0);
             found = self.fit()?;
         }
-        let origin = self.position(seed);
+        let origin = Pixel::new(self.gradients.width, seed).centre();
         let mut radius = found.segment.a.distance(origin).max(found.segment.b.distance(origin));
         while found.density() < DENSITY {
             radius *= 0.75;
-            let Self { gradients, used, region } = self;
-            region.retain(|&i| {
-                let near = position(gradients.width, i).distance(origin) <= radius;
-                used[i as usize] = near;
+            let Self { used, region, .. } = self;
+            region.retain(|p| {
+                let near = p.centre().distance(origin) <= radius;
+                used[p.index as usize] = near;
                 near
             });
             found = self.fit()?;
@@ -122,41 +140,39 @@ impl Grower<'_> {
     }
 
     fn release(&mut self) {
-        for &i in &self.region {
-            self.used[i as usize] = false;
+        for p in &self.region {
+            self.used[p.index as usize] = false;
         }
-    }
-
-    fn position(&self, index: u32) -> DVec2 {
-        position(self.gradients.width, index)
     }
 
     /// Collects the pixels connected with the seed whose gradients point the way the region does on average.
     fn grow(&mut self, seed: u32, tolerance: f64) {
-        let Gradients { width, height, derivative, magnitude } = self.gradients;
+        let Gradients { width, derivative, magnitude, .. } = self.gradients;
         let least = tolerance.cos() as f32;
-        let unit = |i: usize| [derivative[i][0] / magnitude[i], derivative[i][1] / magnitude[i]];
+        let unit = |i: usize| derivative[i].map(|d| d / magnitude[i]);
         self.region.clear();
-        self.region.push(seed);
+        self.region.push(Pixel::new(*width, seed));
         self.used[seed as usize] = true;
         let mut sum = unit(seed as usize);
+        let mut least_along = least;
         let mut next = 0;
         while next < self.region.len() {
-            let i = self.region[next] as usize;
+            let Pixel { index, column, row } = self.region[next];
             next += 1;
-            let (x, y) = (i % width, i / width);
-            for ny in y.saturating_sub(1)..(y + 2).min(*height) {
-                for nx in x.saturating_sub(1)..(x + 2).min(*width) {
-                    let n = ny * width + nx;
-                    if self.used[n] || magnitude[n] < WEAKEST {
+            for (row, first) in
+                [(row - 1, index as usize - width), (row, index as usize), (row + 1, index as usize + width)]
+            {
+                for (column, n) in (column - 1..).zip(first - 1..=first + 1) {
+                    if self.used[n] {
                         continue;
                     }
-                    let d = unit(n);
-                    let length = (sum[0] * sum[0] + sum[1] * sum[1]).sqrt();
-                    if d[0] * sum[0] + d[1] * sum[1] >= least * length {
+                    let d = derivative[n];
+                    if d[0] * sum[0] + d[1] * sum[1] >= least_along * magnitude[n] {
                         self.used[n] = true;
-                        self.region.push(n as u32);
-                        sum = [sum[0] + d[0], sum[1] + d[1]];
+                        self.region.push(Pixel { index: n as u32, column, row });
+                        let unit = unit(n);
+                        sum = [sum[0] + unit[0], sum[1] + unit[1]];
+                        least_along = least * (sum[0] * sum[0] + sum[1] * sum[1]).sqrt();
                     }
                 }
             }
@@ -185,12 +201,12 @@ impl Grower<'_> {
 
     /// Centroid and principal direction of the pixels that a condition admits.
     fn axis(&self, admits: impl Fn(DVec2) -> bool) -> Option<(DVec2, DVec2)> {
-        let origin = self.position(*self.region.first()?);
+        let origin = self.region.first()?.centre();
         let (mut mass, mut sum, mut squares) = (0.0, DVec2::ZERO, [0.0; 3]);
-        for &i in &self.region {
-            let p = self.position(i);
+        for pixel in &self.region {
+            let p = pixel.centre();
             if admits(p) {
-                let (d, w) = (p - origin, f64::from(self.gradients.magnitude[i as usize]));
+                let (d, w) = (p - origin, f64::from(self.gradients.magnitude[pixel.index as usize]));
                 mass += w;
                 sum += d * w;
                 squares = [squares[0] + w * d.x * d.x, squares[1] + w * d.x * d.y, squares[2] + w * d.y * d.y];
@@ -207,16 +223,10 @@ impl Grower<'_> {
 
     /// Least and greatest coordinates of the region along a direction and across it.
     fn extent(&self, centre: DVec2, direction: DVec2) -> (DVec2, DVec2) {
-        self.region.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), &i| {
-            let d = self.position(i) - centre;
+        self.region.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), p| {
+            let d = p.centre() - centre;
             let at = DVec2::new(direction.dot(d), direction.perp_dot(d));
             (low.min(at), high.max(at))
         })
     }
-}
-
-/// Centre of a pixel.
-fn position(width: usize, index: u32) -> DVec2 {
-    let (x, y) = (index as usize % width, index as usize / width);
-    DVec2::new(x as f64 + 0.5, y as f64 + 0.5)
 }
