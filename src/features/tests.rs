@@ -278,6 +278,12 @@ fn any_photo_has_finite_features() {
         let features = run_with(&photo, Some(DepthMap { image: &depth, kind: DepthKind::AlongRay }), None).unwrap();
         assert_eq!(features.image.count_non_finite(), 0);
     }
+    // One bit to a pixel.
+    let bit = |x: usize, y: usize| f32::from(Rng::new(6, &[x as u64, y as u64]).next_f32() < 0.5);
+    let features = run_with(&Image::from_fn(31, 23, |x, y| [bit(x, y)]).unwrap(), None, None).unwrap();
+    for (i, p) in features.image.data.chunks_exact(CHANNELS).enumerate() {
+        assert!((p[0] - 100.0 * bit(i % 31, i / 31)).abs() < 1e-3 && p[1].abs() < 1e-3 && p[2].abs() < 1e-3, "{p:?}");
+    }
     let bright = Image::from_fn(4, 4, |_, _| [3e38; 3]).unwrap();
     assert_eq!(run_with(&bright, None, None).unwrap().non_finite, 16);
 }

@@ -126,4 +126,29 @@ mod tests {
             assert!(Homography::from_corners(square, bad).is_err());
         }
     }
+
+    #[test]
+    fn corners_across_and_behind_the_horizon_are_told_by_the_sign() {
+        let square = [DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y];
+        let signs = |to: [DVec2; 4]| {
+            let h = Homography::from_corners(square, to).unwrap();
+            (0..4).for_each(|i| assert!(h.apply(square[i]).distance(to[i]) < 1e-9));
+            square.map(|p| h.apply_homogeneous(p).z > 0.0)
+        };
+        let quad = [DVec2::ZERO, DVec2::new(3.0, 0.2), DVec2::new(2.0, 1.5), DVec2::new(-0.5, 1.2)];
+        let [a, b, c, d] = quad;
+        let one_side = |s: [bool; 4]| s.iter().all(|&v| v == s[0]);
+        assert!(one_side(signs(quad)));
+        // A quad that crosses itself, or that is not convex, is one that the horizon cuts.
+        let crossed = signs([a, b, d, c]);
+        assert!(crossed[0] == crossed[1] && crossed[2] == crossed[3] && crossed[0] != crossed[2], "{crossed:?}");
+        let dented = signs([a, b, DVec2::new(0.8, 0.3), d]);
+        assert_eq!(dented.iter().filter(|&&v| v).count() % 2, 1, "{dented:?}");
+        // A corner on the horizon itself has no image.
+        let h = Homography(
+            DMat3::from_cols(DVec3::X, DVec3::Y, DVec3::Z) + DMat3::from_cols(-DVec3::Z, DVec3::ZERO, DVec3::ZERO),
+        );
+        assert_eq!(h.apply_homogeneous(DVec2::X).z, 0.0);
+        assert!(!h.apply(DVec2::ONE).is_finite());
+    }
 }

@@ -14,6 +14,9 @@ const ENDPOINT_LIMIT: f64 = 0.006;
 /// Largest sine of the angle between a segment and the line to its vanishing point, which short segments need besides.
 const SINE_LIMIT: f64 = 0.06;
 
+/// Squared distance of a point from the middle of a line below which there is nothing but rounding between them.
+const COINCIDENT: f64 = 1e-18;
+
 /// Endpoint noise assumed before any residual is seen, in the same unit, and the number of segments that is worth.
 const PRIOR_NOISE: f64 = 0.001;
 const PRIOR_COUNT: f64 = 2.0;
@@ -72,12 +75,12 @@ impl Evidence {
         Self { line, weight: 2.0 * line.half, stiffness }
     }
 
-    /// Squared residual; beyond 1 the line does not belong to the point.
+    /// Squared residual; beyond 1 the line does not belong to the point. A line whose middle is the point belongs to it.
     pub fn residual(&self, p: DVec3) -> f64 {
         let away = p.truncate() - self.line.centre * p.z;
         let distance = away.length_squared();
         let across = self.line.direction.perp_dot(away);
-        if distance > 0.0 { self.stiffness * across * across / distance } else { 0.0 }
+        if distance > COINCIDENT { self.stiffness * across * across / distance } else { 0.0 }
     }
 
     /// Agreement in `[0, 1]`.

@@ -272,6 +272,18 @@ fn the_largest_strokes_and_many_of_them_are_as_the_few() {
 }
 
 #[test]
+fn features_of_one_bit_are_told_apart() {
+    let (features, faces) = room();
+    let is_ceiling = |i: usize| faces[i] == 0 || faces[i] == 5;
+    // The class itself, and bits that are as often set in both classes.
+    let bits = Image::from_fn(WIDTH, HEIGHT, |x, y| {
+        [f32::from(is_ceiling(y * WIDTH + x)), f32::from(features.pixel(x, y)[0] > 75.0), f32::from((x + y) % 2 == 0)]
+    });
+    let got = segment(&bits.unwrap(), &plane_strokes(), None, &Params::default()).unwrap();
+    assert!(iou(&got.mask, is_ceiling) == 1.0 && got.error < 0.01, "{}", got.error);
+}
+
+#[test]
 fn infinite_and_saturated_features_are_refused_or_used() {
     let (features, faces) = room();
     // All pixels saturated: colour says nothing, geometry still does.
