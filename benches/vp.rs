@@ -46,6 +46,7 @@ fn given_segments(sets: &[Option<GivenSet>; 2]) {
         table.row([format!("{name}: {method}"), share(10.0), share(5.0), share(3.0), median, format!("{ms:.1}")]);
         100.0 * area(&angles, 10.0)
     };
+    let mut bound = Table::new(["set and directions", "labels", "AUC@10", "AUC@5", "AUC@3", "median deg"]);
     let mut headline = Vec::new();
     for (name, set) in ["nyu_dev", "yud_dev"].iter().zip(sets) {
         let Some(set) = set else {
@@ -70,7 +71,22 @@ fn given_segments(sets: &[Option<GivenSet>; 2]) {
         let auc = row("yud_dev", "default, its first three directions only", &set.first_three(), &Params::default());
         headline.push(("vp.yud_dev.first_three.auc10".into(), auc));
     }
+    for (name, set) in ["nyu_dev", "yud_dev"].iter().zip(sets).filter_map(|(n, s)| Some((n, s.as_ref()?))) {
+        let told = set.told_which_lines();
+        let angles = |from: usize, to: usize| {
+            let mut all: Vec<f64> = told.iter().flat_map(|i| &i[from.min(i.len())..to.min(i.len())]).copied().collect();
+            all.sort_by(f64::total_cmp);
+            all
+        };
+        for (part, from, to) in [("all", 0, usize::MAX), ("first three", 0, 3), ("further ones", 3, usize::MAX)] {
+            let angles = angles(from, to);
+            let share = |limit: f64| format!("{:.1}", 100.0 * area(&angles, limit));
+            let [count, median] = [angles.len().to_string(), format!("{:.2}", quantile(&angles, 0.5))];
+            bound.row([format!("{name}: {part}"), count, share(10.0), share(5.0), share(3.0), median]);
+        }
+    }
     table.print("From given segments, focal length unknown");
+    bound.print("What lines can say at most: told which of them run along each labelled direction, the camera known");
     headline.iter().for_each(|(name, auc)| figure(name, *auc, "%"));
 
     let Some(set) = &sets[0] else { return absent("vp.ms", "the labelled segments are not there") };

@@ -11,6 +11,7 @@ use luxfer::geometry::Segment;
 use luxfer::image::Image;
 use luxfer::image::io::{self, Encoding};
 use luxfer::job::Monitor;
+use luxfer::rectify::metric::Line;
 use luxfer::rectify::{Params, vanishing};
 use serde_json::Value;
 use std::path::PathBuf;
@@ -147,6 +148,33 @@ impl GivenSet {
         }
         all.sort_by(f64::total_cmp);
         all
+    }
+
+    /// What lines can say at most: each true direction found anew, with the camera known, from the segments that run along it
+    /// more nearly than along the others. Angles in degrees of each image, in the order of its directions.
+    pub fn told_which_lines(&self) -> Vec<Vec<f64>> {
+        let (monitor, k) = (Monitor::default(), self.intrinsics);
+        let params = Params { focal: Some(k.x_axis.x), principal: Some(k.z_axis.truncate()), ..Params::default() };
+        let of_image = |(segments, truth): &(Vec<Segment>, Vec<DVec3>)| {
+            let points: Vec<DVec3> = truth.iter().map(|&d| k * d).collect();
+            let own = |index: usize| {
+                let is_own = |s: &&Segment| {
+                    // Within 2 pixels at the ends, and 3.5 degrees.
+                    let Some(line) = Line::new(s) else { return false };
+                    let sines = points.iter().map(|&p| line.sine(p));
+                    let nearest = sines.enumerate().min_by(|a, b| a.1.total_cmp(&b.1));
+                    nearest.is_some_and(|(i, sine)| i == index && sine < 0.06 && line.half * sine < 2.0)
+                };
+                segments.iter().filter(is_own).copied().collect::<Vec<_>>()
+            };
+            (0..truth.len())
+                .map(|i| {
+                    let found = vanishing::from_segments(&own(i), self.width, self.height, 1, &params, monitor.job());
+                    found.map_or(90.0, |f| errors(&truth[i..=i], &[f.points[0].point], k)[0])
+                })
+                .collect()
+        };
+        self.images.iter().map(of_image).collect()
     }
 
     /// The images with their first three directions only, which in York Urban are those of the published labels.
