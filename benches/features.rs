@@ -1,4 +1,5 @@
-//! Features: the time of a megapixel, and normals against Open3D's, on rooms whose normals are known and on RGB-D pairs.
+//! Features: the time of a megapixel, normals against Open3D's, on rooms whose normals are known and on RGB-D pairs, and the
+//! room laid out from the lines of those pairs.
 
 mod harness;
 
@@ -11,6 +12,7 @@ use luxfer::geometry::{FocalSource, Perspective};
 use luxfer::image::Image;
 use luxfer::image::io::{Encoding, load};
 use luxfer::job::Monitor;
+use luxfer::rectify;
 use luxfer::rng::Rng;
 use std::path::{Path, PathBuf};
 
@@ -35,6 +37,78 @@ fn main() {
     if let Err(reason) = pool.run(|| normals(&cases)) {
         absent("normals.vs_open3d", &reason);
     }
+    let pairs: Vec<&Case> = cases.iter().filter(|c| c.truth.is_none()).collect();
+    pool.run(|| layouts(&pairs));
+}
+
+/// The built-in depth, from the lines of the photo and without them, beside the measured one. Its scale is free.
+fn layouts(pairs: &[&Case]) {
+    if pairs.is_empty() {
+        return absent("features.layout.depth_error", "the RGB-D pairs are not there");
+    }
+    let head =
+        ["pair", "depth from", "off by %, half", "within 25 %", "trusted half: off by %", "other half", "normals deg"];
+    let mut table = Table::new(head);
+    let mut errors = Vec::new();
+    let monitor = Monitor::default();
+    for case in pairs {
+        let camera = rectify::Params {
+            focal: Some(case.camera.focal),
+            principal: Some(case.camera.principal),
+            ..Default::default()
+        };
+        let Ok(view) = rectify::find_view(&case.photo, &camera, monitor.job()) else { continue };
+        let lines = RoomView { perspective: &view.perspective, segments: &view.segments };
+        let of = |depth, segments| {
+            let room = Some(RoomView { segments, ..lines });
+            let input = Input { photo: &case.photo, depth, room };
+            features::run(&input, &Params::default(), monitor.job()).unwrap()
+        };
+        let map = DepthMap { image: &case.depth, kind: DepthKind::AlongZ };
+        let normal = |image: &Image, i: usize| Vec3::from_slice(&image.data[i * 10 + 7..i * 10 + 10]);
+        let measured = of(Some(map), &view.segments).image;
+        for (name, segments) in [("lines", &view.segments[..]), ("nothing seen", &[])] {
+            let found = of(None, segments);
+            // Eq. 1 undone: screen depth to inverse depth.
+            let Params { near, far, .. } = Params::default();
+            let inverse = |i: usize| (1.0 - found.image.data[i * 10 + 3] * (far - near) / far) / near;
+            let pixels = case.measured();
+            let mut logs: Vec<f64> =
+                pixels.iter().map(|&i| -f64::from(inverse(i).max(1e-6) * case.depth.data[i]).ln()).collect();
+            let middle = median(&logs);
+            logs.iter_mut().for_each(|l| *l = (*l - middle).abs());
+            let trust = |i: usize| f64::from(found.depth_confidence.data[i]);
+            let typical = median(&pixels.iter().map(|&i| trust(i)).collect::<Vec<_>>());
+            let half = |trusted: bool| -> Vec<f64> {
+                let of_half = pixels.iter().zip(&logs).filter(|p| (trust(*p.0) > typical) == trusted);
+                of_half.map(|p| *p.1).collect()
+            };
+            // Where nothing is seen all pixels are trusted alike.
+            let percent = |values: &[f64]| match values.is_empty() {
+                true => "-".into(),
+                false => format!("{:.0}", 100.0 * (median(values).exp() - 1.0)),
+            };
+            let within = logs.iter().filter(|l| **l < 1.25f64.ln()).count() as f64 / logs.len() as f64;
+            let angles: Vec<f64> = pixels
+                .iter()
+                .map(|&i| f64::from(normal(&found.image, i).angle_between(normal(&measured, i)).to_degrees()))
+                .collect();
+            if name == "lines" {
+                errors.push(100.0 * (median(&logs).exp() - 1.0));
+            }
+            table.row([
+                case.name.clone(),
+                name.into(),
+                percent(&logs),
+                format!("{:.0} %", 100.0 * within),
+                percent(&half(true)),
+                percent(&half(false)),
+                format!("{:.0}", median(&angles)),
+            ]);
+        }
+    }
+    table.print("The room laid out from its lines, beside the measured depth, but for its scale");
+    figure("features.layout.depth_error", median(&errors), "%");
 }
 
 fn looking(focal: f64, principal: DVec2, axes: DMat3) -> Perspective {
