@@ -1,0 +1,190 @@
+//! Warping through homographies beside OpenCV's `warpPerspective`: time, and the difference from the exact picture where
+//! the source is magnified and where it is minified.
+
+mod harness;
+
+use glam::{DMat3, DVec2, DVec3};
+use harness::peer::Peer;
+use harness::{Clock, Table, absent, figure, median, time};
+use luxfer::exec::Pool;
+use luxfer::geometry::Homography;
+use luxfer::image::Image;
+use luxfer::job::Monitor;
+use luxfer::rectify::warp;
+use std::path::{Path, PathBuf};
+
+const SOURCE: [usize; 2] = [2048, 1536];
+const OUT: [usize; 2] = [1024, 768];
+const ROUNDS: usize = 7;
+const INTERPOLATIONS: [&str; 2] = ["linear", "cubic"];
+
+/// Source pixels to a pixel, along a side, from which on a pixel counts as minified, and up to which as magnified.
+const MINIFIED: f64 = 1.5;
+const MAGNIFIED: f64 = 1.0;
+
+fn main() {
+    let pool = Pool::new(2).unwrap();
+    if let Err(reason) = run(&pool) {
+        for name in ["warp.vs_opencv", "warp.minified.psnr_gain"] {
+            absent(name, &reason);
+        }
+    }
+}
+
+/// A ceiling of square lamps and thin gaps between its tiles.
+fn picture(p: DVec2) -> [f32; 3] {
+    let tile = DVec2::new(p.x.rem_euclid(36.0), p.y.rem_euclid(36.0));
+    let is_lamp = tile.min_element() > 8.0 && tile.max_element() < 24.0;
+    if is_lamp {
+        [0.95, 0.9, 0.8]
+    } else if tile.min_element() < 2.5 {
+        [0.1; 3]
+    } else {
+        [0.4, 0.4, 0.42]
+    }
+}
+
+/// The mean of the picture over the pixel at (x, y) of what a map shows of it.
+fn exact(to_picture: &Homography, x: usize, y: usize, sub: usize) -> [f32; 3] {
+    let mut sum = [0.0f32; 3];
+    for k in 0..sub * sub {
+        let at = DVec2::new((k % sub) as f64 + 0.5, (k / sub) as f64 + 0.5) / sub as f64;
+        let value = picture(to_picture.apply(DVec2::new(x as f64, y as f64) + at));
+        sum.iter_mut().zip(value).for_each(|(s, v)| *s += v);
+    }
+    sum.map(|s| s / (sub * sub) as f32)
+}
+
+/// Planes seen aslant, and one that shrinks everywhere.
+fn maps() -> [(&'static str, Homography); 3] {
+    let [w, h] = OUT.map(|v| v as f64);
+    let [sw, sh] = SOURCE.map(|v| v as f64);
+    let from = [DVec2::ZERO, DVec2::new(w, 0.0), DVec2::new(w, h), DVec2::new(0.0, h)];
+    let to = |top: f64, bottom: f64, low: f64| {
+        let corner = |x: f64, y: f64| DVec2::new(sw / 2.0 + x / 2.0, y);
+        [corner(-top, 8.0), corner(top, 8.0), corner(bottom, low), corner(-bottom, low)]
+    };
+    let map = |corners| Homography::from_corners(from, corners).unwrap();
+    [
+        ("magnified 1 to 4 times", map(to(1000.0, 260.0, 500.0))),
+        ("from a half to twice the size", map(to(sw - 16.0, 512.0, sh - 8.0))),
+        ("minified 2 to 4 times", Homography(DMat3::from_scale(DVec2::splat(4.0)).mul_mat3(&keystone(w, h)))),
+    ]
+}
+
+/// Shrinks a rectangle to a half of its size, and its lower side to a quarter.
+fn keystone(w: f64, h: f64) -> DMat3 {
+    let from = [DVec2::ZERO, DVec2::new(w, 0.0), DVec2::new(w, h), DVec2::new(0.0, h)];
+    let size = DVec2::new(w, h) / 2.0;
+    let to =
+        [DVec2::ZERO, DVec2::new(size.x, 0.0), DVec2::new(0.75 * size.x, size.y), DVec2::new(0.25 * size.x, size.y)];
+    Homography::from_corners(from, to).unwrap().0
+}
+
+/// Source pixels to a pixel of the result, along a side.
+fn minification(map: &Homography, p: DVec2) -> f64 {
+    let at = |d: DVec2| map.apply(p + d);
+    let [u, v] = [DVec2::X, DVec2::Y].map(|d| at(d / 2.0) - at(-d / 2.0));
+    u.perp_dot(v).abs().sqrt()
+}
+
+/// Peak signal-to-noise ratio in dB of the pixels that a condition admits.
+fn psnr(found: &[f32], truth: &[f32], admitted: &[bool]) -> f64 {
+    let mut squares = (0.0, 0.0);
+    for ((a, b), _) in found.chunks_exact(3).zip(truth.chunks_exact(3)).zip(admitted).filter(|p| *p.1) {
+        squares.0 += a.iter().zip(b).map(|(a, b)| f64::from(a - b).powi(2)).sum::<f64>();
+        squares.1 += 3.0;
+    }
+    -10.0 * (squares.0 / squares.1).log10()
+}
+
+fn write(path: &Path, image: &Image) -> Result<(), String> {
+    std::fs::write(path, image.data.iter().flat_map(|v| v.to_le_bytes()).collect::<Vec<u8>>())
+        .map_err(|e| e.to_string())
+}
+
+fn run(pool: &Pool) -> Result<(), String> {
+    let folder: PathBuf = Path::new(env!("CARGO_MANIFEST_DIR")).join("out/bench");
+    std::fs::create_dir_all(&folder).map_err(|e| e.to_string())?;
+    let [image, out] = ["warp_image.bin", "warp_result.bin"].map(|name| folder.join(name));
+    let mut peer = Peer::start("segment", "warp.py")?;
+    let identity = Homography(DMat3::IDENTITY);
+    let source = Image::from_fn(SOURCE[0], SOURCE[1], |x, y| exact(&identity, x, y, 6)).map_err(|e| e.to_string())?;
+    write(&image, &source)?;
+
+    let head = ["map and pixels", "ours dB", "linear dB", "cubic dB", "ours ms", "linear ms", "cubic ms"];
+    let mut table = Table::new(head);
+    let mut ratios = Vec::new();
+    let mut gains = Vec::new();
+    for (name, map) in maps() {
+        let half = DMat3::from_translation(DVec2::splat(0.5));
+        let matrix = half.inverse() * map.0 * half;
+        let rows: Vec<f64> = (0..9).map(|k| matrix.col(k % 3)[k / 3]).collect();
+        let job = |interpolation: &str| {
+            serde_json::json!({
+                "image": image, "width": SOURCE[0], "height": SOURCE[1], "map": rows, "out_width": OUT[0],
+                "out_height": OUT[1], "interpolation": interpolation, "out": out,
+            })
+            .to_string()
+        };
+        let monitor = Monitor::default();
+        let mut seconds: [Vec<f64>; 3] = Default::default();
+        let mut found: [Vec<f32>; 3] = Default::default();
+        for round in 0..=ROUNDS {
+            let warped = || warp(&source, &map, OUT[0], OUT[1], monitor.job()).unwrap();
+            let (taken, warped) = pool.run(|| time(Clock::Wall, warped));
+            seconds[0].push(taken);
+            found[0] = warped.data;
+            for (k, interpolation) in INTERPOLATIONS.iter().enumerate() {
+                let answer = peer.ask(&job(interpolation))?;
+                seconds[k + 1].push(answer["seconds"].as_f64().ok_or("no time in the answer")?);
+                if round == 0 {
+                    let bytes = std::fs::read(&out).map_err(|e| e.to_string())?;
+                    let float = |b: &[u8]| f32::from_le_bytes([b[0], b[1], b[2], b[3]]);
+                    found[k + 1] = bytes.chunks_exact(4).map(float).collect();
+                }
+            }
+            if round == 0 {
+                seconds.iter_mut().for_each(Vec::clear);
+            }
+        }
+        let truth = Image::from_fn(OUT[0], OUT[1], |x, y| exact(&map, x, y, 8)).map_err(|e| e.to_string())?;
+        // Pixels whose surroundings lie wholly inside the source.
+        let place = |i: usize| DVec2::new((i % OUT[0]) as f64 + 0.5, (i / OUT[0]) as f64 + 0.5);
+        let limit = DVec2::new(SOURCE[0] as f64, SOURCE[1] as f64) - 16.0;
+        let inside = |p: DVec2| {
+            let DVec3 { x, y, z } = map.apply_homogeneous(p);
+            let q = DVec2::new(x, y) / z;
+            q.min_element() > 16.0 && q.cmple(limit).all()
+        };
+        let sizes: Vec<f64> = (0..OUT[0] * OUT[1])
+            .map(|i| if inside(place(i)) { minification(&map, place(i)) } else { f64::NAN })
+            .collect();
+        let ms = seconds.each_ref().map(|s| format!("{:.1}", 1e3 * median(s)));
+        for (kind, admits) in
+            [("magnified", &(|s: f64| s < MAGNIFIED) as &dyn Fn(f64) -> bool), ("minified", &|s| s > MINIFIED)]
+        {
+            let admitted: Vec<bool> = sizes.iter().map(|&s| admits(s)).collect();
+            if admitted.iter().filter(|&&a| a).count() < 1000 {
+                continue;
+            }
+            let each = found.each_ref().map(|f| psnr(f, &truth.data, &admitted));
+            if kind == "minified" {
+                gains.push(each[0] - each[1].max(each[2]));
+            }
+            let mut cells = vec![format!("{name}: {kind}")];
+            cells.extend(each.map(|v| format!("{v:.2}")));
+            cells.extend(ms.clone());
+            table.row(cells);
+        }
+        ratios.push(median(&seconds[2].iter().zip(&seconds[0]).map(|(t, o)| t / o).collect::<Vec<_>>()));
+    }
+    table.print("Warps of three channels, and their PSNR beside the exact picture");
+    for path in [image, out] {
+        let _ = std::fs::remove_file(path);
+    }
+    println!("time of OpenCV's cubic over ours: {ratios:.2?}");
+    figure("warp.vs_opencv", median(&ratios), "x");
+    figure("warp.minified.psnr_gain", gains.iter().copied().fold(f64::INFINITY, f64::min), "dB");
+    Ok(())
+}
