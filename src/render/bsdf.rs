@@ -14,6 +14,9 @@ use std::f32::consts::FRAC_1_PI;
 /// Below this perceptual roughness a surface is a perfect mirror.
 pub const MIRROR_ROUGHNESS: f32 = 1e-3;
 
+/// From this perceptual roughness on, light found for one viewer serves others.
+const SHAREABLE_ROUGHNESS: f32 = 0.25;
+
 /// What a material is at one point.
 #[derive(Clone, Copy, Debug)]
 pub struct Substance {
@@ -143,6 +146,26 @@ impl<'a> Bsdf<'a> {
     pub fn colour(&self) -> Vec3 {
         let above = self.layers.as_ref().map(|l| l.substance.f0 + l.substance.transmission);
         self.diffuse + above.unwrap_or(Vec3::ZERO)
+    }
+
+    /// Whether most of what it sends back goes everywhere, so that light found for one direction serves for others. It
+    /// depends on the place alone, not on the viewer.
+    #[inline]
+    pub fn is_shareable(&self) -> bool {
+        match &self.layers {
+            None => self.diffuse != Vec3::ZERO,
+            Some(Layers { substance: s, .. }) => {
+                let is_rough = s.f90 == 0.0 || s.roughness >= SHAREABLE_ROUGHNESS;
+                let is_diffuse = s.diffuse.max_element() >= s.f0.max_element().max(f32::MIN_POSITIVE);
+                is_rough && is_diffuse && s.transmission == Vec3::ZERO
+            }
+        }
+    }
+
+    /// Whether it is the same for all viewers on its side.
+    #[inline]
+    pub fn looks_alike(&self) -> bool {
+        self.layers.is_none() && self.normal == self.geometric
     }
 
     /// Whether any light but that of single directions is scattered.

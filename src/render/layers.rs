@@ -8,6 +8,7 @@ use super::aov::{Aov, Surfaces};
 use super::bsdf::{Kind, Lobes};
 use super::lpe::{EmitterAs, Expression, Table, Trail};
 use super::path::{Found, Observer, Seen};
+use super::shared::MOST;
 use super::world::{Pane, World};
 use crate::error::{Error, Result};
 use crate::exec;
@@ -73,7 +74,7 @@ pub struct Layer {
 
 /// The sums of all layers so far, tile by tile as those of the main image.
 pub struct Layers<'a> {
-    world: &'a World,
+    pub(super) world: &'a World,
     outputs: &'a Outputs,
     /// The camera's place in the world's coordinates, and its unit viewing direction.
     eye: Vec3,
@@ -155,9 +156,15 @@ impl<'a> Layers<'a> {
             layers: self,
             beauty: Vec3::ZERO,
             trail: Trail::new(&self.table),
+            helper: Trail::new(&self.table),
             sums: vec![DVec3::ZERO; self.table.lists().len()],
             surfaces: Surfaces::default(),
         }
+    }
+
+    /// One for each path of those that share what they find.
+    pub fn recorders(&self) -> Vec<Recorder<'_>> {
+        (0..MOST).map(|_| self.recorder()).collect()
     }
 
     /// The images so far; `places` has for each pixel its tile, its number there, and its samples.
@@ -208,10 +215,12 @@ impl<'a> Layers<'a> {
 
 /// Follows paths, pixel by pixel.
 pub struct Recorder<'a> {
-    layers: &'a Layers<'a>,
+    pub(super) layers: &'a Layers<'a>,
     /// Sum of the contributions of one path, as the main image has it.
-    beauty: Vec3,
-    trail: Trail<'a>,
+    pub(super) beauty: Vec3,
+    pub(super) trail: Trail<'a>,
+    /// For paths that are told of afterwards.
+    pub(super) helper: Trail<'a>,
     /// Sums over the paths of a pixel, for each list of expressions that accept the same.
     sums: Vec<DVec3>,
     surfaces: Surfaces,

@@ -32,6 +32,8 @@ mod path;
 mod preview;
 mod requirements;
 mod sampler;
+mod shared;
+mod tape;
 mod vertex;
 mod world;
 

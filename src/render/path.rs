@@ -4,7 +4,7 @@
 //! power heuristic (Veach 1997, 9.2.4). Clear panes are no vertices of a path in that sense: shadow rays pass through them
 //! with their share, and paths keep the density of the vertex before. Nothing is clamped: the estimate is unbiased.
 
-use super::bsdf::{Bsdf, Kind, Lobes};
+use super::bsdf::{Bsdf, Kind, Lobes, Scattered};
 use super::environment;
 use super::light::{LightEnd, LightSample, Receiver};
 use super::sampler::Sampler;
@@ -57,6 +57,20 @@ pub struct Seen {
     pub distance: f32,
 }
 
+impl Seen {
+    #[inline]
+    pub(super) fn new(vertex: &Vertex, bsdf: &Bsdf, distance: f32) -> Self {
+        Self {
+            mesh: vertex.mesh,
+            position: vertex.position,
+            normal: bsdf.normal(),
+            geometric_normal: bsdf.geometric_normal(),
+            colour: bsdf.colour(),
+            distance,
+        }
+    }
+}
+
 /// How a light was found.
 #[derive(Clone, Copy)]
 pub enum Found {
@@ -77,16 +91,23 @@ impl<S: PathSink> Observer for Contributions<'_, S> {
 }
 
 /// A path about to leave a vertex or the eye.
-struct Leg {
-    ray: Ray,
+pub(super) struct Leg {
+    pub ray: Ray,
     /// The triangle it leaves.
-    from: u32,
-    throughput: Vec3,
+    pub from: u32,
+    pub throughput: Vec3,
     /// For what the light was last sampled, and the density of the direction then chosen; none if only scattering could
     /// find what lies ahead.
-    rival: Option<(Receiver, f32)>,
+    pub rival: Option<(Receiver, f32)>,
     /// Uniform in the unit square: chooses the light for the next vertex.
-    lighting: (f64, f32),
+    pub lighting: (f64, f32),
+}
+
+impl Leg {
+    /// From the eye along a ray of unit direction.
+    pub fn from_eye(ray: Ray, lighting: (f64, f32)) -> Self {
+        Self { ray, from: NONE, throughput: Vec3::ONE, rival: None, lighting }
+    }
 }
 
 /// What decides how long paths are.
@@ -109,7 +130,7 @@ pub fn trace<O: Observer>(
     sampler: &mut Sampler,
     observer: &mut O,
 ) {
-    walk(world, Leg { ray, from: NONE, throughput: Vec3::ONE, rival: None, lighting }, length, sampler, observer);
+    walk(world, Leg::from_eye(ray, lighting), 0, length, sampler, observer);
 }
 
 /// Makes one estimate of the irradiance at a point.
@@ -120,53 +141,81 @@ pub fn gather<O: Observer>(world: &World, vertex: &Vertex, front: bool, sampler:
     let lighting = (block.fine(0), block.get(1));
     if let Some(leg) = scatter(world, vertex, &receiver, Vec3::ONE, None, lighting, sampler, observer) {
         let length = Length { most: MOST_SCATTERINGS, worth: Some(reciprocal(leg.throughput)) };
-        walk(world, leg, length, sampler, observer);
+        walk(world, leg, 0, length, sampler, observer);
     }
 }
 
-/// Follows a path to its end.
-fn walk<O: Observer>(world: &World, mut leg: Leg, length: Length, sampler: &mut Sampler, observer: &mut O) {
-    let Length { most, mut worth } = length;
-    for bounce in 0.. {
-        let Some(hit) = world.closest(&leg.ray, leg.from, || sampler.ray_seed()) else {
-            return add_environment(world, &leg, observer);
-        };
-        let vertex = Vertex::of_hit(world, &hit);
-        add_emission(world, &leg, &vertex, observer);
-        if bounce == most {
-            return;
+/// Follows a path that has scattered so often to its end.
+pub(super) fn walk<O: Observer>(
+    world: &World,
+    mut leg: Leg,
+    scattered: u32,
+    mut length: Length,
+    sampler: &mut Sampler,
+    observer: &mut O,
+) {
+    for bounce in scattered.. {
+        let Some((vertex, distance)) = arrive(world, &leg, sampler, observer) else { return };
+        match go_on(world, &leg, &vertex, distance, bounce, &mut length, sampler, observer) {
+            Some(next) => leg = next,
+            None => return,
         }
-        // End by chance what can no longer add much (Vorba and Křivánek 2016, "Adjoint-driven Russian roulette and
-        // splitting in light transport simulation", with a single value for the light that may still be found).
-        let mut throughput = leg.throughput;
-        if bounce >= ROULETTE_FROM
-            && let Some(worth) = worth
-        {
-            // Of little promise, more go on than it says: where bright light is rare, it says too little.
-            let promise = (throughput * worth).max_element();
-            let survival = (promise / ENOUGH).max(promise.sqrt()).min(SUREST);
-            if !(sampler.chance() < survival) {
-                return;
-            }
-            throughput /= survival;
-        }
-        let bsdf = vertex.bsdf(world, -leg.ray.direction);
-        if bounce == 0 && leg.from == NONE {
-            observer.meet(|| Seen {
-                mesh: vertex.mesh,
-                position: vertex.position,
-                normal: bsdf.normal(),
-                geometric_normal: bsdf.geometric_normal(),
-                colour: bsdf.colour(),
-                distance: hit.t,
-            });
-        }
-        let Some(next) = scatter(world, &vertex, &bsdf, throughput, leg.rival, leg.lighting, sampler, observer) else {
-            return;
-        };
-        leg = next;
-        worth.get_or_insert_with(|| reciprocal(leg.throughput));
     }
+}
+
+/// Where a path comes to a surface, and how far that is. Adds the light that comes from there, or from around the scene.
+#[inline(always)]
+pub(super) fn arrive<O: Observer>(
+    world: &World,
+    leg: &Leg,
+    sampler: &Sampler,
+    observer: &mut O,
+) -> Option<(Vertex, f32)> {
+    let Some(hit) = world.closest(&leg.ray, leg.from, || sampler.ray_seed()) else {
+        add_environment(world, leg, observer);
+        return None;
+    };
+    let vertex = Vertex::of_hit(world, &hit);
+    add_emission(world, leg, &vertex, observer);
+    Some((vertex, hit.t))
+}
+
+/// How a path that has scattered so often leaves a vertex, if it does. Adds the light chosen for it.
+#[inline(always)]
+pub(super) fn go_on<O: Observer>(
+    world: &World,
+    leg: &Leg,
+    vertex: &Vertex,
+    distance: f32,
+    bounce: u32,
+    length: &mut Length,
+    sampler: &mut Sampler,
+    observer: &mut O,
+) -> Option<Leg> {
+    if bounce == length.most {
+        return None;
+    }
+    // End by chance what can no longer add much (Vorba and Křivánek 2016, "Adjoint-driven Russian roulette and
+    // splitting in light transport simulation", with a single value for the light that may still be found).
+    let mut throughput = leg.throughput;
+    if bounce >= ROULETTE_FROM
+        && let Some(worth) = length.worth
+    {
+        // Of little promise, more go on than it says: where bright light is rare, it says too little.
+        let promise = (throughput * worth).max_element();
+        let survival = (promise / ENOUGH).max(promise.sqrt()).min(SUREST);
+        if !(sampler.chance() < survival) {
+            return None;
+        }
+        throughput /= survival;
+    }
+    let bsdf = vertex.bsdf(world, -leg.ray.direction);
+    if bounce == 0 && leg.from == NONE {
+        observer.meet(|| Seen::new(vertex, &bsdf, distance));
+    }
+    let next = scatter(world, vertex, &bsdf, throughput, leg.rival, leg.lighting, sampler, observer)?;
+    length.worth.get_or_insert_with(|| reciprocal(next.throughput));
+    Some(next)
 }
 
 /// Adds the light chosen for a vertex and chooses where the path goes on.
@@ -181,13 +230,10 @@ fn scatter<O: Observer>(
     observer: &mut O,
 ) -> Option<Leg> {
     let receiver = Receiver { position: vertex.position, normal: bsdf.normal() };
-    if bsdf.spreads()
-        && let Some(light) = world.lights().sample(world.scene(), &receiver, lighting)
-    {
+    if let Some(light) = choose_light(world, &receiver, bsdf, lighting) {
         add_light(world, vertex, bsdf, throughput, &light, observer);
     }
-    let block = sampler.next();
-    let scattered = bsdf.sample(Vec2::new(block.get(0), block.get(1)))?;
+    let (scattered, lighting) = choose_direction(bsdf, sampler)?;
     let throughput = throughput * scattered.weight;
     if throughput == Vec3::ZERO || !throughput.is_finite() {
         return None;
@@ -198,11 +244,31 @@ fn scatter<O: Observer>(
         Kind::Mirrored => None,
         Kind::Through => rival,
     };
-    let lighting = (block.fine(2), block.get(3));
     Some(Leg { ray: vertex.ray(scattered.direction), from: vertex.id, throughput, rival, lighting })
 }
 
-fn add_light<O: Observer>(
+/// A light for what scatters any.
+#[inline(always)]
+pub(super) fn choose_light(
+    world: &World,
+    receiver: &Receiver,
+    bsdf: &Bsdf,
+    lighting: (f64, f32),
+) -> Option<LightSample> {
+    if bsdf.spreads() { world.lights().sample(world.scene(), receiver, lighting) } else { None }
+}
+
+/// Where a path goes on, and the point of the unit square that chooses the light where that leads.
+#[inline(always)]
+pub(super) fn choose_direction(bsdf: &Bsdf, sampler: &mut Sampler) -> Option<(Scattered, (f64, f32))> {
+    let block = sampler.next();
+    let scattered = bsdf.sample(Vec2::new(block.get(0), block.get(1)))?;
+    Some((scattered, (block.fine(2), block.get(3))))
+}
+
+/// Adds the light chosen for a vertex.
+#[inline(always)]
+pub(super) fn add_light<O: Observer>(
     world: &World,
     vertex: &Vertex,
     bsdf: &Bsdf,
@@ -215,8 +281,23 @@ fn add_light<O: Observer>(
     if value == Vec3::ZERO || light.emission == Vec3::ZERO {
         return;
     }
+    let importance = throughput * value * reach(world, vertex, light, density, observer.panes());
+    if importance != Vec3::ZERO {
+        observer.add(light.source, importance, light.emission, Found::Chosen { mesh: vertex.mesh, lobes });
+    }
+}
+
+/// What a chosen light's emission counts for at a vertex, before it scatters: as much of it as nothing stands in the way of,
+/// weighed against meeting the light by scattering with a density, over the probability of its choice.
+#[inline(always)]
+pub(super) fn reach(
+    world: &World,
+    vertex: &Vertex,
+    light: &LightSample,
+    density: f32,
+    panes: Option<&mut Vec<Pane>>,
+) -> Vec3 {
     let weight = light.solid_angle_density.map_or(1.0, |d| power_heuristic(d, density));
-    // Nothing may stand between the point and the light.
     let origin = vertex.off_surface(light.direction);
     let (ray, end) = match light.end {
         None => (Ray::new(origin, light.direction), NONE),
@@ -228,11 +309,7 @@ fn add_light<O: Observer>(
             (Ray { origin, direction: p - origin, t_max: 1.0 }, emitter.id)
         }
     };
-    let transmittance = world.transmittance(&ray, [vertex.id, end], observer.panes());
-    if transmittance != Vec3::ZERO {
-        let importance = throughput * value * transmittance * (weight / light.density);
-        observer.add(light.source, importance, light.emission, Found::Chosen { mesh: vertex.mesh, lobes });
-    }
+    world.transmittance(&ray, [vertex.id, end], panes) * (weight / light.density)
 }
 
 /// What a path meets by scattering, weighed against having chosen it as a light.
@@ -270,7 +347,7 @@ fn add_environment<O: Observer>(world: &World, leg: &Leg, observer: &mut O) {
 }
 
 /// Of each channel; 0 where there is nothing.
-fn reciprocal(v: Vec3) -> Vec3 {
+pub(super) fn reciprocal(v: Vec3) -> Vec3 {
     Vec3::select(v.cmpgt(Vec3::ZERO), v.recip(), Vec3::ZERO)
 }
 

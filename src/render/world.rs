@@ -232,6 +232,20 @@ impl World {
         if blocked { Vec3::ZERO } else { share.as_vec3() }
     }
 
+    /// Whether light passes through any surface.
+    #[inline]
+    pub(super) fn is_see_through(&self) -> bool {
+        self.any_see_through
+    }
+
+    /// Whether nothing at all stands between the start of a ray and its end, neither of the two triangles counted: nothing
+    /// that a path could meet.
+    #[inline]
+    pub(super) fn is_clear(&self, ray: &Ray, ends: [u32; 2]) -> bool {
+        let is_met = |hit: &Hit| !self.any_see_through || self.pane(hit, ray.direction).beside < 1.0;
+        !self.accel.occluded(ray, |hit| !ends.contains(&hit.triangle) && is_met(hit))
+    }
+
     fn pane(&self, hit: &Hit, direction: Vec3) -> Pane {
         let facet = self.facet(hit.triangle);
         let finish = self.finish(facet);

@@ -1,6 +1,7 @@
 //! The image under way: which paths each pixel has had, their means, and how sure they are.
 //!
-//! `pixel` adds up the paths of one pixel → `plan` decides between passes where the next ones go, `worth` how long they are
+//! `tile` makes the paths of a tile, `block` those of the pixels that share what they find → `pixel` adds up those of one
+//! pixel → `plan` decides between passes where the next ones go, `worth` how long they are
 //! → `interval` says how far off the image may be. A pass only ever extends the paths of each pixel up to a count. So one that is cut short
 //! leaves a valid image with fewer paths here and there; and as the counts follow from the pixels of the pass before,
 //! they are the same for any number of threads.
@@ -8,6 +9,7 @@
 //! For renders that are done in parts, `sums` adds up the paths of some pixels apart from all others, by the light of a
 //! `survey` instead of the passes before.
 
+mod block;
 mod clock;
 mod grid;
 mod interval;
@@ -15,6 +17,7 @@ mod pixel;
 mod plan;
 mod sums;
 mod survey;
+mod tile;
 mod worth;
 
 pub use clock::Clock;
@@ -24,15 +27,16 @@ pub use plan::{Pass, Plan};
 pub use sums::Sums;
 
 use super::layers::{Layers, Recorder};
-use super::path::{self, Contributions, Length, MOST_SCATTERINGS};
+use super::path::{self, Length, MOST_SCATTERINGS};
 use super::sampler::Sampler;
+use super::shared::Start;
+use super::tape::Sum;
 use super::world::World;
-use super::{Film, LightSource, Params, PathSink};
+use super::{Film, Params};
 use crate::error::Result;
 use crate::exec;
 use crate::image::{Image, try_vec};
 use crate::job::Job;
-use crate::rng;
 use crate::scene::Camera;
 use glam::{DVec3, Vec3};
 use grid::{AREA, Grid};
@@ -40,10 +44,7 @@ use pixel::Pixel;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
-use worth::Surroundings;
-
-/// Paths of a pixel between two looks at the clock.
-const SLICE: u32 = 64;
+use tile::{Setting, Tile};
 
 /// Sums of the paths so far.
 pub struct Canvas<'a> {
@@ -96,31 +97,11 @@ impl<'a> Canvas<'a> {
         let layers = layers.as_ref();
         let level = worth::level(pixels, job.part(0.0, 0.0))?;
         let is_over = || job.is_cancelled() || deadline.is_some_and(|d| Instant::now() >= d);
+        let setting = Setting { world, eye, seed: *seed, grid: *grid, level, discarded };
         exec::for_rows(pixels, AREA, job, |tile, pixels| {
             // Coarse passes leave most tiles alone.
-            if pass.passes_over(grid.corner(tile)) {
-                return;
-            }
-            let (mut recorder, mut kept) = layers.map(|l| (l.recorder(), l.kept(tile))).unzip();
-            let surroundings = level.map(|level| Surroundings::of(pixels, level));
-            for (i, pixel) in pixels.iter_mut().enumerate() {
-                let Some((x, y)) = grid.place(tile, i) else { continue };
-                let wanted = pass.count(tile, x, y);
-                while pixel.count() < wanted {
-                    if is_over() {
-                        return;
-                    }
-                    let seed = rng::hash(*seed, &[x as u64, y as u64]);
-                    let worth = surroundings.as_ref().map(|s| s.worth(pixel));
-                    let length = Length { most: eye.most, worth };
-                    pixel.extend(wanted.min(pixel.count() + SLICE), |replication, indices| {
-                        let seed = rng::mix(seed ^ u64::from(replication));
-                        paths(world, eye, [x, y], length, (seed, indices), recorder.as_mut(), discarded)
-                    });
-                    if let (Some(recorder), Some(kept)) = (&mut recorder, &mut kept) {
-                        recorder.keep(kept, i);
-                    }
-                }
+            if !pass.passes_over(grid.corner(tile)) {
+                Tile::new(setting, tile, pixels, layers).extend(pass, is_over);
             }
         })?;
         job.check()
@@ -235,24 +216,20 @@ fn paths(
     sum
 }
 
-/// One sample of a pixel's radiance; the first block of numbers places it in the pixel (box filter) and chooses the light
-/// for what is seen there.
+/// One sample of a pixel's radiance.
 fn radiance(
     world: &World,
     eye: &Eye,
     at: [usize; 2],
     length: Length,
-    mut sampler: Sampler,
+    sampler: Sampler,
     recorder: Option<&mut Recorder>,
 ) -> Vec3 {
-    let place = sampler.next();
-    let lighting = (place.fine(2), place.get(3));
-    let direction = eye.direction(at[0] as f64 + place.fine(0), at[1] as f64 + place.fine(1));
-    let ray = world.ray(eye.position, direction);
+    let Start { ray, lighting, length, mut sampler } = eye.start(world, at, length, sampler);
     match recorder {
         None => {
-            let mut sum = Sum(Vec3::ZERO);
-            path::trace(world, ray, lighting, length, &mut sampler, &mut Contributions(&mut sum));
+            let mut sum = Sum::default();
+            path::trace(world, ray, lighting, length, &mut sampler, &mut sum);
             sum.0
         }
         Some(recorder) => {
@@ -284,17 +261,16 @@ impl Eye {
         Self { position: camera.position, corner, right, down, most }
     }
 
+    /// A path's beginning: the first block of numbers places it in the pixel (box filter) and chooses the light for what is
+    /// seen there.
+    fn start(&self, world: &World, at: [usize; 2], length: Length, mut sampler: Sampler) -> Start {
+        let place = sampler.next();
+        let direction = self.direction(at[0] as f64 + place.fine(0), at[1] as f64 + place.fine(1));
+        Start { ray: world.ray(self.position, direction), lighting: (place.fine(2), place.get(3)), length, sampler }
+    }
+
     /// The direction through a point of the image, in pixels.
     fn direction(&self, x: f64, y: f64) -> Vec3 {
         (self.corner + self.right * x as f32 + self.down * y as f32).normalize_or_zero()
-    }
-}
-
-/// Adds contributions up.
-struct Sum(Vec3);
-
-impl PathSink for Sum {
-    fn add(&mut self, _: LightSource, importance: Vec3, emission: Vec3) {
-        self.0 += importance * emission;
     }
 }

@@ -45,6 +45,16 @@ impl Pixel {
         self.count = count;
     }
 
+    /// Adds the sum of a replication's paths up to `count` of all.
+    pub fn add(&mut self, replication: u32, sum: DVec3) {
+        self.sums[replication as usize] += sum.as_vec3();
+    }
+
+    /// All replications have their paths up to `count`.
+    pub fn set_count(&mut self, count: u32) {
+        self.count = count;
+    }
+
     /// Mean radiance; black without paths.
     pub fn mean(&self) -> DVec3 {
         self.sums.iter().map(|s| s.as_dvec3()).sum::<DVec3>() / f64::from(self.count.max(1))

@@ -44,6 +44,11 @@ impl Pass {
         if (x | y) & (self.stride - 1) == 0 { self.counts[tile] } else { 0 }
     }
 
+    /// Whether all pixels are meant.
+    pub fn is_dense(&self) -> bool {
+        self.stride == 1
+    }
+
     /// Whether no pixel of the tile with this corner is meant: those of a coarse pass are the first of theirs.
     pub fn passes_over(&self, (left, top): (usize, usize)) -> bool {
         self.stride >= TILE && (left | top) & (self.stride - 1) != 0

@@ -4,10 +4,11 @@
 //! sequence. Its light is added in f64: a sum of so few numbers in f32 loses at most its last bits, so that it hardly ever
 //! matters for an image in f32 in which order, or in how many parts, it was added up.
 
+use super::Eye;
+use super::block::{Maker, Member, blocks};
 use super::grid::{AREA, Grid, TILE};
 use super::pixel::{REPLICATIONS, share};
 use super::survey::Survey;
-use super::{Eye, paths};
 use crate::error::Result;
 use crate::exec;
 use crate::image::try_vec;
@@ -16,10 +17,9 @@ use crate::render::layers::Layers;
 use crate::render::parts::Part;
 use crate::render::path::Length;
 use crate::render::{Params, World};
-use crate::rng;
 use crate::scene::Camera;
 use glam::DVec3;
-use std::sync::atomic::AtomicU64;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Numbers of a pixel for its light: three for each replication.
 const LIGHT: usize = 3 * REPLICATIONS as usize;
@@ -61,29 +61,44 @@ impl Sums {
         exec::for_rows(numbers, AREA * *width, job.part(0.01, 1.0), |tile, numbers| {
             let (left, top) = grid.corner(tile);
             let length = Length { most: eye.most, worth: survey.worth([corner[0] + left, corner[1] + top]) };
-            let mut recorder = layers.as_ref().map(Layers::recorder);
-            for (i, numbers) in numbers.chunks_exact_mut(*width).enumerate() {
-                let at = [corner[0] + left + i % TILE, corner[1] + top + i / TILE];
-                if !part.has(at) {
-                    continue;
-                }
-                let (light, others) = numbers.split_at_mut(LIGHT);
-                let (light, _) = light.as_chunks_mut::<3>();
-                let seed = rng::hash(params.seed, &at.map(|v| v as u64));
-                for (replication, light) in (0..).zip(light) {
-                    let seed = rng::mix(seed ^ u64::from(replication));
-                    let mut sum = DVec3::ZERO;
+            let mut recorders = layers.as_ref().map(Layers::recorders);
+            let mut maker = Maker::default();
+            // What neighbours in another part bring is not wanted here; what they find is.
+            let mut others_of_neighbours = vec![0.0; *width - LIGHT];
+            for replication in 0..REPLICATIONS {
+                for block in blocks(replication) {
+                    let at = |i: usize| [corner[0] + left + i % TILE, corner[1] + top + i / TILE];
+                    let is_there = |[x, y]: [usize; 2]| x < params.width && y < params.height;
+                    let there = block.iter().map(|&i| (i, at(i))).filter(|(_, at)| is_there(*at));
+                    let members: Vec<Member> =
+                        there.map(|(i, at)| Member::new(i, at, length, params.seed, replication)).collect();
+                    if !members.iter().any(|m| part.has(m.at)) {
+                        continue;
+                    }
                     for index in share(part.first, replication)..share(part.first + part.samples, replication) {
                         if index % SLICE == 0 && job.is_cancelled() {
                             return;
                         }
-                        let path = (seed, index..index + 1);
-                        sum += paths(world, &eye, at, length, path, recorder.as_mut(), &discarded);
-                        if let Some(recorder) = &mut recorder {
-                            recorder.add_to(others);
+                        let discard = |member: usize| {
+                            if part.has(members[member].at) {
+                                discarded.fetch_add(1, Ordering::Relaxed);
+                            }
+                        };
+                        let sums =
+                            maker.paths(world, &eye, &members, index..index + 1, recorders.as_deref_mut(), discard);
+                        for (k, (member, sum)) in members.iter().zip(sums).enumerate() {
+                            let numbers = &mut numbers[member.pixel * *width..][..*width];
+                            let (light, others) = numbers.split_at_mut(LIGHT);
+                            let is_wanted = part.has(member.at);
+                            if let Some(recorders) = &mut recorders {
+                                recorders[k].add_to(if is_wanted { others } else { &mut others_of_neighbours });
+                            }
+                            if is_wanted {
+                                let light = &mut light[3 * replication as usize..][..3];
+                                (DVec3::from_slice(light) + sum).write_to_slice(light);
+                            }
                         }
                     }
-                    *light = sum.into();
                 }
             }
         })?;

@@ -4,6 +4,7 @@
 //! nothing of each other's; so each makes the same few paths over the image and, within a tile, over the tile, which tell
 //! all of them the same. These paths have seeds of their own and are no part of the image: no estimate is biased by them.
 
+use super::block::seed_of;
 use super::grid::TILE;
 use super::pixel::Pixel;
 use super::plan::coarse_stride;
@@ -14,7 +15,6 @@ use crate::exec;
 use crate::job::Job;
 use crate::render::path::Length;
 use crate::render::{Params, World};
-use crate::rng;
 use glam::{DVec3, Vec3};
 use std::sync::atomic::AtomicU64;
 
@@ -56,12 +56,11 @@ impl<'a> Survey<'a> {
 
     /// Some paths of a pixel.
     fn look(&self, at: [usize; 2], count: u32) -> Pixel {
-        let seed = rng::hash(self.params.seed ^ SALT, &at.map(|v| v as u64));
         let length = Length { most: self.eye.most, worth: None };
         // What is no number is left out of the survey as of the image, but counted only there.
         let (mut pixel, discarded) = (Pixel::default(), AtomicU64::new(0));
         pixel.extend(count, |replication, indices| {
-            let seed = rng::mix(seed ^ u64::from(replication));
+            let seed = seed_of(self.params.seed ^ SALT, at, replication);
             paths(self.world, self.eye, at, length, (seed, indices), None, &discarded)
         });
         pixel

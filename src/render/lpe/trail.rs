@@ -44,11 +44,48 @@ impl<'a> Trail<'a> {
     /// A new path leaves the camera.
     #[inline]
     pub fn start(&mut self) {
+        self.start_from(self.table.start());
+    }
+
+    /// A path begins in a state.
+    pub fn start_from(&mut self, state: u16) {
         self.brought.clear();
         self.rest = Vec3A::ZERO;
+        self.set_out(state);
+    }
+
+    /// The path leaves the camera once more, on another way. What it has brought stays.
+    #[inline]
+    pub fn restart(&mut self) {
+        self.share_rest();
+        self.set_out(self.table.start());
+    }
+
+    #[inline]
+    fn set_out(&mut self, state: u16) {
         self.parts.clear();
-        self.parts.push((self.table.start(), Vec3A::ONE));
-        self.settled = self.table.is_settled(self.table.start());
+        self.parts.push((state, Vec3A::ONE));
+        self.settled = self.table.is_settled(state);
+    }
+
+    /// What it has come to: states and their shares.
+    #[inline]
+    pub fn parts(&self) -> &[(u16, Vec3A)] {
+        &self.parts
+    }
+
+    /// Notes what was found to come of a part, for a list of expressions.
+    #[inline]
+    pub fn bring(&mut self, list: u16, contribution: Vec3A) {
+        bring(&mut self.brought, list, contribution);
+    }
+
+    /// Says which panes stand between a vertex and the light chosen for it, if they matter.
+    pub fn set_panes(&mut self, panes: &[Pane]) {
+        if !self.settled {
+            self.panes.clear();
+            self.panes.extend_from_slice(panes);
+        }
     }
 
     /// A place for the panes between a vertex and a light, if they matter.

@@ -13,6 +13,7 @@ mod parts;
 mod place;
 mod refusal;
 mod requirements;
+mod shared;
 
 use super::*;
 use crate::job::Monitor;

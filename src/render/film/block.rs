@@ -1,0 +1,121 @@
+//! Blocks of pixels whose paths share what they find (`shared`).
+//!
+//! A block is 4 × 2 pixels of a tile, or 2 × 4 in every other replication, so that the errors that its pixels have in common
+//! do not show as blocks. Which paths go together depends on the image alone.
+
+use super::Eye;
+use super::grid::{AREA, TILE};
+use crate::render::layers::Recorder;
+use crate::render::path::Length;
+use crate::render::sampler::Sampler;
+use crate::render::shared::{self, MOST, Start, Tapes};
+use crate::render::tape::{Steps, Sum};
+use crate::render::world::World;
+use crate::rng;
+use glam::{DVec3, Vec3};
+use std::ops::Range;
+
+/// Blocks of a tile.
+const BLOCKS: usize = AREA / MOST;
+/// Their longer side.
+const LONG: usize = 4;
+
+/// A pixel of a block.
+pub struct Member {
+    /// Its number in the tile.
+    pub pixel: usize,
+    /// Its column and row.
+    pub at: [usize; 2],
+    pub length: Length,
+    seed: u64,
+}
+
+impl Member {
+    /// For the paths of a replication; `seed` is the image's.
+    pub fn new(pixel: usize, at: [usize; 2], length: Length, seed: u64, replication: u32) -> Self {
+        Self { pixel, at, length, seed: seed_of(seed, at, replication) }
+    }
+}
+
+/// The seed of a pixel's paths of a replication.
+pub fn seed_of(seed: u64, at: [usize; 2], replication: u32) -> u64 {
+    rng::mix(rng::hash(seed, &at.map(|v| v as u64)) ^ u64::from(replication))
+}
+
+/// Numbers of the pixels of each block of a tile.
+pub fn blocks(replication: u32) -> [[usize; MOST]; BLOCKS] {
+    let wide = replication.is_multiple_of(2);
+    let (width, height) = if wide { (LONG, MOST / LONG) } else { (MOST / LONG, LONG) };
+    let across = TILE / width;
+    std::array::from_fn(|block| {
+        let (left, top) = (block % across * width, block / across * height);
+        std::array::from_fn(|i| (top + i / width) * TILE + left + i % width)
+    })
+}
+
+/// Makes the paths of one block after the other.
+#[derive(Default)]
+pub struct Maker {
+    starts: Vec<Start>,
+    sums: Tapes<Sum>,
+    steps: Tapes<Steps>,
+}
+
+impl Maker {
+    /// Sums of the paths of each member with indices in a range, all of one replication; each recorder is told of those of
+    /// its member. Those that are no finite numbers are left out, and counted by `discarded`, which has the number of the member.
+    pub fn paths(
+        &mut self,
+        world: &World,
+        eye: &Eye,
+        members: &[Member],
+        indices: Range<u32>,
+        mut recorders: Option<&mut [Recorder]>,
+        mut discarded: impl FnMut(usize),
+    ) -> [DVec3; MOST] {
+        let mut sums = [DVec3::ZERO; MOST];
+        for index in indices {
+            self.starts.clear();
+            self.starts.extend(members.iter().map(|m| eye.start(world, m.at, m.length, Sampler::new(m.seed, index))));
+            let radiances = match &mut recorders {
+                None => {
+                    let mut witnesses = [Sum(Vec3::ZERO); MOST];
+                    shared::trace(world, &mut self.starts, &mut witnesses[..members.len()], &mut self.sums);
+                    witnesses.map(|w| w.0)
+                }
+                Some(recorders) => {
+                    let recorders = &mut recorders[..members.len()];
+                    recorders.iter_mut().for_each(Recorder::start);
+                    shared::trace(world, &mut self.starts, recorders, &mut self.steps);
+                    let mut radiances = [Vec3::ZERO; MOST];
+                    radiances.iter_mut().zip(recorders).for_each(|(radiance, r)| *radiance = r.finish());
+                    radiances
+                }
+            };
+            for (member, (sum, radiance)) in sums.iter_mut().zip(radiances).take(members.len()).enumerate() {
+                if radiance.is_finite() {
+                    *sum += radiance.as_dvec3();
+                } else {
+                    discarded(member);
+                }
+            }
+        }
+        sums
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::pixel::REPLICATIONS;
+    use super::*;
+
+    #[test]
+    fn blocks_have_every_pixel_of_a_tile_once() {
+        for replication in 0..REPLICATIONS {
+            let mut seen = [0; AREA];
+            blocks(replication).iter().flatten().for_each(|&pixel| seen[pixel] += 1);
+            assert_eq!(seen, [1; AREA]);
+        }
+        assert_eq!((blocks(0)[1], blocks(1)[1]), ([4, 5, 6, 7, 12, 13, 14, 15], [2, 3, 10, 11, 18, 19, 26, 27]));
+    }
+}

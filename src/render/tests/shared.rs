@@ -1,0 +1,134 @@
+//! Paths that share what they find: the same light as paths on their own, with less scatter.
+
+use super::*;
+use crate::render::path::{self, Length};
+use crate::render::sampler::Sampler;
+use crate::render::shared::{self, MOST, Start, Tapes};
+use crate::render::tape::Sum as Light;
+use crate::scene::accel::Ray;
+
+/// A room of all that decides who takes part: matt, glossy, metal, mirror and glass, a smooth ball, leaves that are partly
+/// there, a pane before a corner, and a pane that nobody sees.
+fn room() -> Scene {
+    let mut scene = everything();
+    let materials = scene.materials.len();
+    scene.materials.extend([
+        Material { ior: 1.5, roughness: 0.5, ..Material::diffuse("paint", Vec3::new(0.7, 0.2, 0.0)) },
+        Material { metallic: 1.0, roughness: 0.4, ..Material::diffuse("metal", Vec3::new(0.9, 0.7, 0.4)) },
+        Material { transmission: 1.0, ior: 1.0, ..Material::diffuse("nothing", Vec3::ONE) },
+        Material { ior: 1.0, ..Material::diffuse("blue", Vec3::new(0.0, 0.0, 0.8)) },
+    ]);
+    let sheet = Mesh::parallelogram;
+    scene.meshes.extend([
+        sheet(Vec3::new(-1.5, -0.6, -1.5), Vec3::X * 3.0, Vec3::Y * 2.0, materials),
+        sheet(Vec3::new(-1.5, -0.6, -1.5), Vec3::Y * 2.0, Vec3::Z * 3.0, materials + 3),
+        sheet(Vec3::new(0.9, -0.6, -0.9), Vec3::X * 0.5, Vec3::Y * 0.7, materials + 1),
+        sheet(Vec3::new(-1.0, -0.6, -0.5), Vec3::X * 2.0, Vec3::Y * 0.6, materials + 2),
+    ]);
+    let ball = inward_sphere(0.3, materials);
+    let positions = ball.positions.iter().map(|p| *p + Vec3::new(-0.6, -0.2, -0.6)).collect();
+    scene.meshes.push(Mesh { normals: ball.positions.iter().map(|p| -p.normalize()).collect(), positions, ..ball });
+    scene
+}
+
+/// Mean of estimates along some rays, and the variance of one. Each mean is of 64 paths of one point sequence.
+fn estimates(mut make: impl FnMut(u64) -> [Vec3; MOST], count: u64) -> [[DVec3; 2]; MOST] {
+    let mut sums = [[DVec3::ZERO; 2]; MOST];
+    for trial in 0..count {
+        for (sum, value) in sums.iter_mut().zip(make(trial)) {
+            let value = value.as_dvec3();
+            *sum = [sum[0] + value, sum[1] + value * value];
+        }
+    }
+    let n = count as f64;
+    sums.map(|[sum, squares]| [sum / n, ((squares - sum * sum / n) / (n - 1.0)).max(DVec3::ZERO)])
+}
+
+/// Neighbouring rays from the eye around a direction.
+fn rays(world: &World, towards: Vec3) -> [Ray; MOST] {
+    let eye = viewer().position;
+    std::array::from_fn(|i| {
+        let aside = Vec3::new((i % 4) as f32, (i / 4) as f32, 0.0) * 0.03;
+        world.ray(eye, (towards + aside - eye).normalize())
+    })
+}
+
+fn apart(world: &World, rays: &[Ray; MOST], length: Length, trial: u64) -> [Vec3; MOST] {
+    std::array::from_fn(|i| {
+        let mut sum = Light::default();
+        for index in 0..64 {
+            let mut sampler = Sampler::new(crate::rng::hash(trial, &[1, i as u64]), index);
+            let first = sampler.next();
+            path::trace(world, rays[i], (first.fine(2), first.get(3)), length, &mut sampler, &mut sum);
+        }
+        sum.0 / 64.0
+    })
+}
+
+fn together(world: &World, rays: &[Ray; MOST], length: Length, trial: u64) -> [Vec3; MOST] {
+    let mut sums = [Light::default(); MOST];
+    let mut tapes = Tapes::default();
+    for index in 0..64 {
+        let start = |i: usize| {
+            let mut sampler = Sampler::new(crate::rng::hash(trial, &[2, i as u64]), index);
+            let first = sampler.next();
+            Start { ray: rays[i], lighting: (first.fine(2), first.get(3)), length, sampler }
+        };
+        let mut starts: [Start; MOST] = std::array::from_fn(start);
+        shared::trace(world, &mut starts, &mut sums, &mut tapes);
+    }
+    sums.map(|s| s.0 / 64.0)
+}
+
+#[test]
+fn shared_paths_bring_the_same_light() {
+    let world = world(room());
+    // Into corners, along edges, on the ball, through panes and leaves; paths cut short, and whole.
+    let targets = [
+        Vec3::new(-1.4, -0.5, -1.4),
+        Vec3::new(0.0, -0.6, -0.4),
+        Vec3::new(-0.6, -0.2, -0.3),
+        Vec3::new(1.1, -0.3, -0.9),
+        Vec3::new(0.2, 0.1, -1.5),
+        Vec3::new(-1.5, 0.3, -0.7),
+    ];
+    let (mut worst, mut tests) = (0f64, 0);
+    for towards in targets {
+        let rays = rays(&world, towards);
+        for most in [0, 1, 2, 3, path::MOST_SCATTERINGS] {
+            let count = if most > 3 { 96 } else { 32 };
+            let length = Length { most, worth: Some(Vec3::splat(0.7)) };
+            let own = estimates(|trial| apart(&world, &rays, length, trial), count);
+            let shared = estimates(|trial| together(&world, &rays, length, trial), count);
+            for ([a, va], [b, vb]) in own.into_iter().zip(shared) {
+                for c in 0..3 {
+                    let error = ((va[c] + vb[c]) / count as f64).sqrt();
+                    let distance = (a[c] - b[c]).abs();
+                    worst = worst.max(if distance < 1e-5 * a[c].max(1e-9) { 0.0 } else { distance / error });
+                    tests += 1;
+                }
+            }
+        }
+    }
+    // Of 720 distances, by Student's law with 62 degrees of freedom at least, one in ten thousand runs has one above 6.
+    assert!(tests == 720 && worst < 6.0, "{worst}");
+}
+
+#[test]
+fn shared_paths_scatter_less() {
+    let scene = Scene {
+        meshes: vec![inward_sphere(3.0, 0), Mesh::parallelogram(Vec3::new(-0.5, 2.0, -0.5), Vec3::X, Vec3::Z, 1)],
+        materials: vec![matt(0.6, 0.0), matt(0.0, 100.0)],
+        ..Scene::default()
+    };
+    let world = world(scene);
+    // What lies above the lamp is in its shade.
+    let rays = rays(&world, Vec3::new(0.0, 2.9, -1.0));
+    let length = Length { most: 2, worth: None };
+    let own = estimates(|trial| apart(&world, &rays, length, trial), 64);
+    let shared = estimates(|trial| together(&world, &rays, length, trial), 64);
+    for ([a, va], [b, vb]) in own.into_iter().zip(shared) {
+        let (apart, together) = (va.x / (a.x * a.x), vb.x / (b.x * b.x));
+        assert!(apart > 3.0 * together, "{apart} {together}");
+    }
+}
