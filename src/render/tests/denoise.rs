@@ -126,7 +126,8 @@ fn a_render_makes_its_own_preview_and_shows_only_what_was_asked_for() {
     assert!(plain.preview.is_none() && plain.beauty == film.beauty);
     let truth = render(&world, &camera, &Params { preview: 0.0, samples: 256, seed: 9, ..params.clone() }).beauty;
     let (before, after) = (rel_mse(&film.beauty, &truth), rel_mse(&preview.image, &truth));
-    assert!(after < before / 3.0, "from {before} to {after}");
+    // Neighbours that share what their paths find have small errors, and in part the same: the filter has less to do.
+    assert!(after < before / 2.0, "from {before} to {after}");
     // Two halves of the same paths, which the filter at strength 0 only adds up.
     let weak = render(&world, &camera, &Params { preview: 1e-12, ..params.clone() }).preview.unwrap().image;
     assert!(weak.data.iter().zip(&film.beauty.data).all(|(a, b)| (a - b).abs() <= 1e-4 * b.abs()));
