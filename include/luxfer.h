@@ -1798,8 +1798,12 @@ typedef struct luxfer_emission_report {
      * part of what there is, and without a whole lamp the texture shows the cut ones.
      */
     uint32_t exemplar_lamps;
-    /** 0. */
-    uint32_t reserved;
+    /**
+     * By how much the exemplar's own statistics are off, as far as can be told: the root mean square of the same difference between
+     * parts of the texture as large as the exemplar, and the whole. An error of up to twice this says nothing against the texture.
+     * 0 where the texture shows nothing else than the exemplar does, of blended exemplars, and of a plan.
+     */
+    float sampling_error;
 } luxfer_emission_report;
 
 /** One lamp of the texture. Set struct_size before the call. */
@@ -1892,7 +1896,7 @@ luxfer_status luxfer_emission_get_report(luxfer_emission *emission,
 
 /**
  * Describes a luminaire of the texture. Of a plan, which has no texel yet, it is as the exemplar shows it, cut where the texture
- * ends; lights that run through their exemplar are no lamps and not counted. Any thread.
+ * ends; lights that run through their exemplar are as the texture shows them. Any thread.
  * LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such luminaire.
  */
 luxfer_status luxfer_emission_get_luminaire(luxfer_emission *emission,

@@ -4,12 +4,18 @@
 //! would keep that distance within a patch and jump from one to the next. So each cell of the stretched lattice shows, in its own
 //! place, the lamps of that cell of the exemplar which the patch at its middle shows.
 
+use super::components::Component;
 use super::exemplar::Exemplar;
 use super::lamps::{self, Instance};
-use super::layout::Layout;
+use super::layout::{Layout, NONE, Shift, Shifts};
+use crate::error::Result;
+use crate::image::try_vec;
 use crate::rng::Rng;
 use glam::{DMat2, DVec2};
 use std::collections::{BTreeMap, BTreeSet};
+
+/// A period of no more than this many unwarped pixels is none: nothing changes along it.
+const UNCHANGING: f64 = 1.5;
 
 /// Cells by their steps along both periods.
 type Cell = [i64; 2];
@@ -78,6 +84,57 @@ pub fn place(
     }
     lamps::show_sharply(exemplar, &mut instances, seed);
     Some(instances)
+}
+
+/// The same of lights that follow the patches: each cell of the stretched lattice shows, in its own place, what the patch at its middle
+/// shows there, and where that shows nothing, what the others do. Along an axis on which nothing changes there are no
+/// cells. The layout meets itself at the sides of a texture of `size` unwarped pixels, which holds a whole number of them.
+pub fn stretch(
+    exemplar: &Exemplar,
+    layout: &Layout,
+    [own, stretched]: [[DVec2; 2]; 2],
+    offset: DVec2,
+    size: DVec2,
+) -> Result<Layout> {
+    let has_cells = DVec2::from(own.map(|period| f64::from(u8::from(period.length() > UNCHANGING))));
+    let [own, stretched] = [own, stretched].map(|[a, b]| DMat2::from_cols(a, b));
+    let to_cells = stretched.inverse();
+    let working = &exemplar.working;
+    let middle = DVec2::new(exemplar.width as f64, exemplar.height as f64) / 2.0;
+    let from_middle = |lamp: &&Component| lamp.centre.distance_squared(middle);
+    let lamps = exemplar.components.list.iter();
+    let first = lamps.min_by(|p, q| from_middle(p).total_cmp(&from_middle(q))).map_or(middle, |lamp| lamp.centre);
+    let start = first + offset;
+
+    let mut out = Layout::new(layout.width, layout.height);
+    let mut shifts = Shifts::default();
+    let mut row = try_vec(layout.width, NONE)?;
+    for y in 0..layout.height {
+        for (x, label) in row.iter_mut().enumerate() {
+            let place = (DVec2::new(x as f64, y as f64) + 0.5) * working.pitch;
+            // The middle of the cell, and where that is within the texture.
+            let cells = to_cells * (place - start);
+            let at = start + stretched * (cells.round() * has_cells + cells * (DVec2::ONE - has_cells));
+            let within = at.rem_euclid(size);
+            let pixel = within / working.pitch;
+            let (u, v) = ((pixel.x as usize).min(layout.width - 1), (pixel.y as usize).min(layout.height - 1));
+            // Cells between there and where the patch begins are wider, or less wide, than the exemplar's.
+            let moved = |patch: &Shift, at: DVec2| {
+                let steps = to_cells * (at - start) - to_cells * (patch.exact - offset);
+                patch.exact + (stretched - own) * (steps.round() * has_cells)
+            };
+            let shows = |shift: &DVec2| {
+                let shift = (*shift / working.pitch).round();
+                working.index(x as i32 - shift.x as i32, y as i32 - shift.y as i32).is_some_and(|i| working.usable[i])
+            };
+            let of_middle = layout.shift(u, v).map(|patch| moved(patch, within) + at - within).filter(shows);
+            let shift = of_middle.or_else(|| layout.shift(x, y).map(|patch| moved(patch, at)));
+            *label = shift.map_or(NONE, |shift| shifts.label(shift, working.pitch));
+        }
+        out.push(&row);
+    }
+    out.shifts = shifts.list;
+    Ok(out)
 }
 
 /// The cells whose place, from that of the first, is between two corners; and some around them.

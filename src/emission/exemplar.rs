@@ -31,6 +31,8 @@ pub struct Exemplar {
     pub components: Components,
     /// Which components are lamps that end inside the shown region.
     pub whole: Vec<bool>,
+    /// Which components have pixels at the border of the image or of the shown region.
+    pub touches: Vec<bool>,
     /// Which components are parts of such lamps that the border cuts off: these are not shown.
     pub cut: Vec<bool>,
     /// Which components move as one piece: the whole ones, and of others those that no whole one is like, as far as they are seen.
@@ -95,7 +97,9 @@ impl Exemplar {
         }
         let lit = components.list.iter().map(|c| c.area).sum::<usize>();
 
-        let whole = find_whole(&components, &shown, width, height);
+        let contacts = contacts(&components, &shown, width, height);
+        let touches = contacts.iter().map(|&n| n > 0).collect();
+        let whole = find_whole(&components, &contacts);
         let cut = find_cut(&components, &whole);
         let piece = find_pieces(&components, &whole, &cut, &shown, width, height);
         let is_usable = |(&s, &l): (&bool, &u32)| s && (l == 0 || !cut[l as usize - 1]);
@@ -103,7 +107,7 @@ impl Exemplar {
         let sources = Sources { image, light, components: &components, usable: &usable, shown: &shown };
         let working = Working::new(&sources, working_side, job)?;
         let lit_share = lit as f64 / total as f64;
-        Ok(Self { width, height, shown, components, whole, cut, piece, photo_area, lit_share, working })
+        Ok(Self { width, height, shown, components, whole, touches, cut, piece, photo_area, lit_share, working })
     }
 
     /// The statistics of the pattern of `unwarped`, in its pixels; `periods` as in [`Pattern`].
@@ -136,8 +140,8 @@ fn photo_areas(components: &Components, to_photo: Option<Homography>) -> Vec<f64
     components.list.iter().map(|c| c.area as f64 * magnification(c.centre)).collect()
 }
 
-/// A component is whole if hardly any of its pixels lies at the border of the image or of the shown region.
-fn find_whole(components: &Components, shown: &[bool], width: usize, height: usize) -> Vec<bool> {
+/// How many pixels of each component lie at the border of the image or of the shown region.
+pub fn contacts(components: &Components, shown: &[bool], width: usize, height: usize) -> Vec<usize> {
     let mut contacts = vec![0usize; components.list.len()];
     for (i, &label) in components.labels.iter().enumerate().filter(|(_, l)| **l != 0) {
         let (x, y) = (i % width, i / width);
@@ -146,15 +150,20 @@ fn find_whole(components: &Components, shown: &[bool], width: usize, height: usi
             contacts[label as usize - 1] += 1;
         }
     }
+    contacts
+}
+
+/// A component is whole if hardly any of its pixels lies at a border.
+pub fn find_whole(components: &Components, contacts: &[usize]) -> Vec<bool> {
     let is_whole = |(c, &n): (&Component, &usize)| {
         let [across, down] = c.size().map(|s| s as f64);
         n as f64 <= WHOLE_CONTACT * c.area as f64 / across.hypot(down)
     };
-    components.list.iter().zip(&contacts).map(is_whole).collect()
+    components.list.iter().zip(contacts).map(is_whole).collect()
 }
 
 /// A component is part of a cut lamp if it is not whole, yet fits into one that is.
-fn find_cut(components: &Components, whole: &[bool]) -> Vec<bool> {
+pub fn find_cut(components: &Components, whole: &[bool]) -> Vec<bool> {
     let sizes: Vec<[usize; 2]> =
         components.list.iter().zip(whole).filter(|(_, w)| **w).map(|(c, _)| c.size()).collect();
     let fits =
@@ -163,7 +172,7 @@ fn find_cut(components: &Components, whole: &[bool]) -> Vec<bool> {
 }
 
 /// What is neither whole nor part of such a lamp is a piece as far as it is seen, unless it runs through all that is shown.
-fn find_pieces(
+pub fn find_pieces(
     components: &Components,
     whole: &[bool],
     cut: &[bool],

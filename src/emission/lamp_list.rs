@@ -1,13 +1,14 @@
 //! The lamps of a plan, one by one: what a texture consists of that is never there as a whole.
 //!
 //! Every lamp of a texture is a shifted one of an exemplar, so a list needs their outlines once, and for each lamp its place.
-//! Where texels are not unwarped pixels a lamp is what it is in the exemplar; a texture shows it to the texel. Lights that run
-//! through their exemplar are no lamps, and not in the list; without [`super::Params::whole_lamps`] there are none.
+//! Where texels are not unwarped pixels a lamp is what it is in the exemplar; a texture shows it to the texel. Lights that are no
+//! lamps follow the patches, as those do that run through their exemplar, and without [`super::Params::whole_lamps`] all: these are
+//! listed as the texture shows them.
 
 use super::blend::Style;
 use super::lamps::Instance;
 use super::plan::{Layer, Plan, exemplars};
-use super::{Continuation, Input, Luminaire, luminaires, recover};
+use super::{Continuation, Input, Luminaire, luminaires, recover, sweep};
 use crate::error::Result;
 use crate::geometry::polygon;
 use crate::image::colour::luminance;
@@ -23,6 +24,8 @@ pub struct LampList {
     shapes: Vec<Vec<Luminaire>>,
     /// Each lamp and its exemplar.
     shown: Vec<(u32, Instance)>,
+    /// Lights that follow the patches.
+    others: Vec<Luminaire>,
     /// Light of all of them.
     flux: f64,
 }
@@ -31,7 +34,7 @@ impl LampList {
     /// Lists the lamps of a plan, from the exemplars it was made of. Errors as of [`Plan::tile`].
     pub fn new(plan: &Plan, input: &Input, styles: &[Style], job: Job) -> Result<Self> {
         plan.check_exemplars(input, styles)?;
-        let mut list = Self { shapes: Vec::new(), shown: Vec::new(), flux: 0.0 };
+        let mut list = Self { shapes: Vec::new(), shown: Vec::new(), others: Vec::new(), flux: 0.0 };
         for (layer, (input, _)) in plan.layers.iter().zip(exemplars(input, 1.0, styles)) {
             let colours = recover::mean_colours(layer, input, job)?;
             let mut shapes = luminaires::find(&input.unwarped.to_rgb()?, &layer.exemplar.components, job)?;
@@ -54,18 +57,22 @@ impl LampList {
                 }
             }
         }
+        list.others = sweep::find(plan, input, styles, job)?;
+        list.flux += list.others.iter().map(flux).sum::<f64>();
         Ok(list)
     }
 
     /// How many there are.
     pub fn count(&self) -> usize {
-        self.shown.len()
+        self.shown.len() + self.others.len()
     }
 
     /// One of them; of those that the border cuts, what is within.
     pub fn get(&self, plan: &Plan, index: usize) -> Option<Luminaire> {
-        let &(k, instance) = self.shown.get(index)?;
-        let mut lamp = self.placed(plan, k as usize, instance);
+        let mut lamp = match self.shown.get(index) {
+            Some(&(k, instance)) => self.placed(plan, k as usize, instance),
+            None => self.others.get(index - self.shown.len())?.clone(),
+        };
         lamp.flux_share = if self.flux > 0.0 { flux(&lamp) / self.flux } else { 0.0 };
         Some(lamp)
     }

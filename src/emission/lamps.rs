@@ -19,7 +19,7 @@ const LEAST_SHARE: f64 = 0.3;
 /// Share of a lamp's pixels that others may hold on a lattice, where rounding is all that can make them meet.
 const LATTICE_SLACK: f64 = 0.2;
 
-/// By how much, relatively, lamps of a kind may differ in area and in both sides.
+/// By how much, relatively, lamps of a kind may differ in area, in both sides and in their ratio.
 const LIKE: f64 = 0.25;
 /// A lamp is shown sharply if it covers this share of the photo pixels that the largest of its kind does.
 const SHARP: f64 = 0.4;
@@ -188,7 +188,10 @@ pub fn show_sharply(exemplar: &Exemplar, instances: &mut [Instance], seed: u64) 
         let is_like = |j: &usize| {
             let close = |a: usize, b: usize| (a as f64 - b as f64).abs() <= LIKE * a.max(b) as f64;
             let (a, b) = (&lamps[k], &lamps[*j]);
-            exemplar.whole[*j] && close(a.area, b.area) && (0..2).all(|i| close(a.size()[i], b.size()[i]))
+            let ([w, h], [u, v]) = (a.size(), b.size());
+            // As large and of the same proportions; and with nothing cut off.
+            let is_alike = close(a.area, b.area) && close(w, u) && close(h, v) && close(w * v, u * h);
+            exemplar.whole[*j] && !exemplar.touches[*j] && is_alike
         };
         let like: Vec<usize> = (0..lamps.len()).filter(is_like).collect();
         let most = like.iter().map(|&j| exemplar.photo_area[j]).fold(0.0, f64::max);

@@ -32,6 +32,25 @@ pub struct Layout {
     ends: Vec<usize>,
 }
 
+/// Shifts, and the label of each.
+#[derive(Default)]
+pub struct Shifts {
+    pub list: Vec<Shift>,
+    labels: BTreeMap<[i64; 2], u32>,
+}
+
+impl Shifts {
+    /// The label of a shift in unwarped pixels, of which a working pixel has `pitch`.
+    pub fn label(&mut self, exact: DVec2, pitch: DVec2) -> u32 {
+        let key = (exact * SUBPIXELS).round().to_array().map(|c| c as i64);
+        *self.labels.entry(key).or_insert_with(|| {
+            let working = (exact / pitch).round();
+            self.list.push(Shift { working: [working.x as i32, working.y as i32], exact });
+            self.list.len() as u32 - 1
+        })
+    }
+}
+
 impl Layout {
     pub fn new(width: usize, height: usize) -> Self {
         Self { width, height, shifts: Vec::new(), runs: Vec::new(), ends: Vec::new() }
@@ -57,16 +76,10 @@ impl Layout {
     /// comes from two sides keeps one label.
     pub fn repeated(&self, (width, height): (usize, usize), across: DVec2, pitch: DVec2) -> Self {
         let mut out = Self::new(width, height);
-        let mut labels: BTreeMap<[i64; 2], u32> = BTreeMap::new();
-        let mut relabel = |out: &mut Self, label: u32, times: usize| {
-            let Some(shift) = self.shifts.get(label as usize) else { return NONE };
-            let exact = shift.exact + across * times as f64;
-            let key = (exact * SUBPIXELS).round().to_array().map(|c| c as i64);
-            *labels.entry(key).or_insert_with(|| {
-                let working = (exact / pitch).round();
-                out.shifts.push(Shift { working: [working.x as i32, working.y as i32], exact });
-                out.shifts.len() as u32 - 1
-            })
+        let mut shifts = Shifts::default();
+        let mut relabel = |label: u32, times: usize| match self.shifts.get(label as usize) {
+            Some(shift) => shifts.label(shift.exact + across * times as f64, pitch),
+            None => NONE,
         };
         let period = across.abs() / pitch;
         // Which repetition a pixel is in, and the pixel there.
@@ -82,12 +95,13 @@ impl Layout {
             for (x, out_label) in row.iter_mut().enumerate() {
                 let (right, u) = place(x, period.x, self.width);
                 if (right, source[u]) != (last.0, last.1) {
-                    last = (right, source[u], relabel(&mut out, source[u], down + right));
+                    last = (right, source[u], relabel(source[u], down + right));
                 }
                 *out_label = last.2;
             }
             out.push(&row);
         }
+        out.shifts = shifts.list;
         out
     }
 

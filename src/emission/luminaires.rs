@@ -103,16 +103,7 @@ fn measure(lamp: &Component, texture: &Image, total: f64, is_in: &dyn Fn(isize, 
     }
     colour /= lamp.area as f64;
 
-    // The direction of largest variance; a lamp that has none lies along x.
-    let (difference, cross) = (xx - yy, 2.0 * xy);
-    let anisotropy = difference.hypot(cross);
-    let orientation = if anisotropy > 1e-6 * (xx + yy) { 0.5 * cross.atan2(difference) } else { 0.0 };
-    // In (-π/2, π/2]: rounding may not choose between the two ends.
-    let orientation = if orientation <= -std::f64::consts::FRAC_PI_2 + 1e-12 {
-        orientation + std::f64::consts::PI
-    } else {
-        orientation
-    };
+    let orientation = orientation([xx, xy, yy]);
 
     // Extent along both axes, texels being squares of side 1.
     let axis = DVec2::from_angle(orientation);
@@ -132,6 +123,15 @@ fn measure(lamp: &Component, texture: &Image, total: f64, is_in: &dyn Fn(isize, 
         flux_share: if total > 0.0 { flux / total } else { 0.0 },
         outline: outline(lamp, is_in),
     }
+}
+
+/// The direction of largest variance, in (-π/2, π/2], of second moments; a lamp that has none lies along x.
+pub fn orientation([xx, xy, yy]: [f64; 3]) -> f64 {
+    let (difference, cross) = (xx - yy, 2.0 * xy);
+    let anisotropy = difference.hypot(cross);
+    let angle = if anisotropy > 1e-6 * (xx + yy) { 0.5 * cross.atan2(difference) } else { 0.0 };
+    // Rounding may not choose between the two ends.
+    if angle <= -std::f64::consts::FRAC_PI_2 + 1e-12 { angle + std::f64::consts::PI } else { angle }
 }
 
 /// The outer boundary along the edges of the texels, the lamp on the right, simplified (Douglas and Peucker 1973).
@@ -162,7 +162,11 @@ fn outline(lamp: &Component, is_in: &dyn Fn(isize, isize) -> bool) -> Vec<DVec2>
         };
         corners.push(DVec2::new(at[0] as f64, at[1] as f64));
     }
+    simplified(corners, lamp.size()[0].min(lamp.size()[1]) as f64)
+}
 
+/// A ring of corners without those that tell little of a lamp so narrow.
+pub fn simplified(mut corners: Vec<DVec2>, narrow: f64) -> Vec<DVec2> {
     // Split the ring at the corner farthest from the first, then simplify both halves.
     let far = (0..corners.len())
         .max_by(|&a, &b| corners[a].distance_squared(corners[0]).total_cmp(&corners[b].distance_squared(corners[0])))
@@ -171,7 +175,7 @@ fn outline(lamp: &Component, is_in: &dyn Fn(isize, isize) -> bool) -> Vec<DVec2>
     (kept[0], kept[far]) = (true, true);
     corners.push(corners[0]);
     // A lamp of a few texels keeps its corners.
-    let tolerance = OUTLINE_TOLERANCE.min(0.3 * lamp.size()[0].min(lamp.size()[1]) as f64);
+    let tolerance = OUTLINE_TOLERANCE.min(0.3 * narrow);
     simplify(&corners, 0, far, tolerance, &mut kept);
     simplify(&corners, far, corners.len() - 1, tolerance, &mut kept);
     corners.iter().zip(&kept).take(corners.len() - 1).filter(|(_, k)| **k).map(|(c, _)| *c).collect()

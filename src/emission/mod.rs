@@ -4,13 +4,14 @@
 //! unwarped photo + light + valid ─▶ exemplar ─▶ period ─▶ metadata ─▶ patches (seam) ─▶ lamps ─▶ recover ─▶ luminaires
 //! ```
 //! 1. [`exemplar`]: what may be used, its lamps (connected [`components`]), and a reduced size to work at.
-//! 2. [`period`]: the lattice the lamps lie on, from the autocorrelation of the mask ([`correlation`]).
+//! 2. [`period`]: the lattice the lamps lie on, from the autocorrelation of the mask ([`correlation`]), and its [`places`] that the
+//!    border cuts.
 //! 3. [`metadata`]: confidence and signed x and y distance to the nearest light.
 //! 4. [`patches`]: quilting over colour and metadata with minimum-error [`seam`]s, held to the lattice.
 //! 5. [`lamps`]: every lamp that patches show becomes one piece again; no seam cuts it.
 //! 6. [`recover`]: full detail from the photo. 7. [`luminaires`]: the lamps as a list. 8. [`statistics`]: how far the
-//!    texture's are from the exemplar's; and by [`pairs`] of lamps.
-//! 9. [`lamp_list`]: the lamps of a plan, whose texture is never there as a whole.
+//!    texture's are from the exemplar's, and how far by [`sampling`] alone; and by [`pairs`] of lamps.
+//! 9. [`lamp_list`]: the lamps of a plan, whose texture is never there as a whole; [`mod@sweep`]: its lights that are none.
 //!
 //! A texture that fits inside the exemplar is a part of it, copied.
 //!
@@ -36,10 +37,13 @@ mod metadata;
 pub mod pairs;
 mod patches;
 mod period;
+mod places;
 mod plan;
 mod recover;
+mod sampling;
 mod seam;
 pub mod statistics;
+mod sweep;
 #[cfg(test)]
 mod tests;
 mod window;
@@ -84,6 +88,8 @@ pub struct Params {
     pub scale: f64,
     /// Side of a patch in working pixels; 0 chooses it from the spacing of the lights.
     pub block: usize,
+    /// Patches that are compared for each block, at most, where none is held to a lattice, in `[1, 65536]`.
+    pub candidates: usize,
     /// Longest side of the exemplar during synthesis, in pixels, in `[16, 2048]`.
     pub working_side: usize,
     /// Weight of the metadata channels against colour, in `[0, 1e3]`; 0 is plain quilting.
@@ -118,6 +124,7 @@ impl Default for Params {
             height: 1024,
             scale: 1.0,
             block: 0,
+            candidates: 192,
             working_side: 256,
             metadata_weight: 1.0,
             offset: DVec2::ZERO,
@@ -172,6 +179,10 @@ pub struct Emission {
     /// Largest relative difference between the two, their luminance aside. It weighs as much as the lamps that the exemplar shows
     /// whole, `exemplar_lamps`: of a few, what the border cuts off is a large part, and without any only light is compared.
     pub error: f64,
+    /// By how much the exemplar's own statistics are off, as far as can be told: the root mean square of that difference between parts
+    /// of the texture as large as the exemplar, and the whole. No method is expected to have a smaller error than that. 0 where the
+    /// texture shows nothing that the exemplar does not, and of blended exemplars.
+    pub sampling_error: f64,
     /// Number of lamps that the exemplars show whole.
     pub exemplar_lamps: usize,
 }
@@ -183,6 +194,7 @@ impl Params {
         check_range("emission.height", self.height, 1, 65_536)?;
         check_range("emission.scale", self.scale, 1e-3, 1e3)?;
         check_range("emission.block", self.block, 0, 65_536)?;
+        check_range("emission.candidates", self.candidates, 1, 65_536)?;
         check_range("emission.working_side", self.working_side, 16, 2048)?;
         check_range("emission.metadata_weight", self.metadata_weight, 0.0, 1e3)?;
         check_range("emission.offset.x", self.offset.x, -1e6, 1e6)?;
@@ -223,6 +235,7 @@ pub fn given(texture: &Image, job: Job) -> Result<Emission> {
         regularity: 0.0,
         statistics: [statistics; 2],
         error: 0.0,
+        sampling_error: 0.0,
         exemplar_lamps,
     })
 }
@@ -288,6 +301,14 @@ fn make(mut plan: Plan, input: &Input, styles: &[Style], params: &Params, job: J
     let periods = if styles.is_empty() { continuation.periods() } else { [None; 2] };
     let statistics = [expected, statistics_of(&texture, &components, periods.map(|p| p.map(|p| p / params.scale)))];
     let error = statistics[1].difference(&statistics[0]);
+    let sampling_error = match continuation {
+        Continuation::Lattice(_) | Continuation::Row(_) | Continuation::Free if styles.is_empty() => {
+            let images = (&texture, &mask);
+            sampling::error(&exemplar, images, &statistics[1], periods, params.scale, job.part(1.0, 1.0))?
+                .unwrap_or(0.0)
+        }
+        _ => 0.0,
+    };
     let shown = shown_metadata(&layout, &exemplar, &metadata)?;
     job.report(1.0);
     Ok(Emission {
@@ -300,6 +321,7 @@ fn make(mut plan: Plan, input: &Input, styles: &[Style], params: &Params, job: J
         regularity,
         statistics,
         error,
+        sampling_error,
         exemplar_lamps,
     })
 }

@@ -17,8 +17,7 @@ use crate::rng::{self, Rng};
 use glam::{DMat2, DVec2, Vec3, Vec4};
 use std::collections::BTreeMap;
 
-/// Candidates per patch where any shift is allowed, and the most where the lattice allows too many.
-const FREE_CANDIDATES: usize = 192;
+/// Most candidates per patch where a lattice allows more.
 const LATTICE_CANDIDATES: usize = 128;
 /// Patches within this factor of the best (0.1 in the original), or this close to it, are equally good.
 const TOLERANCE: (f32, f32) = (1.1, 1e-6);
@@ -35,11 +34,13 @@ const TASK: usize = 1 << 16;
 /// What is compared of a pixel, colour and metadata: scaled by the roots of their weights, so that squares add up as they are.
 type Feature = [Vec4; 2];
 
-/// Colour and metadata of the exemplar, and their weights.
+/// Colour and metadata of the exemplar, their weights, and how many patches are compared by them.
 pub struct Guide<'a> {
     pub working: &'a Working,
     pub metadata: &'a Image,
     pub metadata_weight: f32,
+    /// Per patch where any shift is allowed.
+    pub candidates: usize,
 }
 
 impl Guide<'_> {
@@ -140,6 +141,10 @@ struct Quilt<'a> {
     bounds: [usize; 4],
     admissible: Vec<u32>,
     usable: AreaSums,
+    lit: AreaSums,
+    /// Share of what the exemplar shows that is light, and by how many pixels the result so far has more light than that.
+    lit_share: f64,
+    excess: f64,
     seed: u64,
 }
 
@@ -173,6 +178,7 @@ pub fn place(
         }
     }
 
+    let count = |mask: &[bool]| mask.iter().filter(|m| **m).count() as f64;
     let mut quilt = Quilt {
         guide,
         features: guide.features(),
@@ -187,6 +193,9 @@ pub fn place(
         bounds,
         admissible,
         usable,
+        lit: AreaSums::new(|i| working.lit[i], working.width, working.height)?,
+        lit_share: count(&working.shown_lit) / count(&working.shown).max(1.0),
+        excess: 0.0,
         seed,
     };
     let overlap = [w / 3, h / 3];
@@ -228,10 +237,11 @@ impl Quilt<'_> {
                 return Ok(());
             }
             let scored = self.score(&block, &self.candidates(rect), None, f32::INFINITY, job)?;
-            let Some(mut chosen) = self.choose(rect, &scored) else { return Ok(()) };
+            let Some(mut chosen) = self.choose(&block, &scored) else { return Ok(()) };
             if !self.admissible.is_empty() {
                 chosen = self.improve(&block, chosen, job)?;
             }
+            self.excess += self.excess_of(&block, &chosen.shift);
             self.paste(&block, chosen.shift, first.then_some(overlap));
             first = false;
         }
@@ -286,7 +296,7 @@ impl Quilt<'_> {
             None => {
                 let mut rng = Rng::new(self.seed, &[rect.x as u64, rect.y as u64]);
                 let width = self.guide.working.width;
-                shifts.extend((0..FREE_CANDIDATES).map(|_| {
+                shifts.extend((0..self.guide.candidates).map(|_| {
                     let corner = self.admissible[rng.below(self.admissible.len())] as usize;
                     let working = [rect.x as i32 - (corner % width) as i32, rect.y as i32 - (corner / width) as i32];
                     free_shift(working, pitch)
@@ -449,9 +459,22 @@ impl Quilt<'_> {
         if compared > 0 { (sum / compared as f64) as f32 } else { 0.0 }
     }
 
-    /// Draws one of the shifts that are as good as the best. A row of lamps begins as the exemplar does, and goes on with it as far
+    /// How many pixels of light more than its share a shift brings into the empty pixels of a block.
+    fn excess_of(&self, block: &Block, shift: &Shift) -> f64 {
+        let parts = block.empty.iter().filter_map(|run| self.shown(run, shift));
+        parts
+            .map(|(_, length, [x, y])| {
+                let count = |sums: &AreaSums| sums.count(x, y, length, 1) as f64;
+                count(&self.lit) - self.lit_share * count(&self.usable)
+            })
+            .sum()
+    }
+
+    /// Draws two of the shifts that are as good as the best, and takes that which leaves the result nearer to its share of light: parts
+    /// of the exemplar that fit more often than others would else decide how much there is. A row of lamps begins as the exemplar does, and goes on with it as far
     /// as it goes.
-    fn choose(&self, rect: &Rect, scored: &[Scored]) -> Option<Scored> {
+    fn choose(&self, block: &Block, scored: &[Scored]) -> Option<Scored> {
+        let rect = &block.rect;
         if matches!(self.continuation, Continuation::Row(_)) && self.layout.shifts.is_empty() {
             let length = |s: &&Scored| (s.shift.exact - self.offset).length();
             return scored.iter().min_by(|a, b| length(a).total_cmp(&length(b))).copied();
@@ -464,8 +487,10 @@ impl Quilt<'_> {
                 return Some(**same);
             }
         }
-        let pick = Rng::new(self.seed, &[rect.x as u64, rect.y as u64, 1]).below(equal.len().max(1));
-        equal.get(pick).map(|s| **s)
+        let mut rng = Rng::new(self.seed, &[rect.x as u64, rect.y as u64, 1]);
+        let drawn = [(); 2].map(|()| equal.get(rng.below(equal.len().max(1))));
+        let left = |s: &&&Scored| (self.excess + self.excess_of(block, &s.shift)).abs();
+        drawn.iter().flatten().min_by(|a, b| left(a).total_cmp(&left(b))).map(|s| ***s)
     }
 
     /// Moves a free patch to the best place in its neighbourhood, by ever smaller steps.

@@ -22,6 +22,9 @@ const UNCHANGING: f32 = 0.95;
 const LEAST_OVERLAP: f32 = 0.2;
 /// Longest side of the image that is correlated.
 const SIDE: usize = 160;
+/// Shifts beside a period, in pixels of that image, over which its correlation must fall by so much: where it does not, nothing that
+/// repeats is in sight, only what goes on along the shift.
+const FLAT: (isize, f32) = (8, 0.02);
 /// Slant of a row of lamps that is taken for none.
 const MOST_SLANT: f64 = 0.04;
 /// Fewer lamps than this show no law of their own: the exemplar repeats as a whole.
@@ -273,7 +276,13 @@ fn peaks(
                 let other = at(dx, dy);
                 if i < 4 { value > other } else { value >= other }
             });
-            if is_peak {
+            let (ux, uy) = if x.abs() > y { (1, 0) } else { (0, 1) };
+            let is_flat = [-1, 1].into_iter().any(|side| {
+                (1..=FLAT.0).all(|k| {
+                    correlation.at(x + side * k * ux, y + side * k * uy, 1.0).is_some_and(|v| v > value - FLAT.1)
+                })
+            });
+            if is_peak && !is_flat {
                 // The vertex of the parabola through three values: where it is, and how far it rises above the middle one.
                 let vertex = |low: f32, high: f32| {
                     let (slope, curvature) = (high - low, low + high - 2.0 * value);

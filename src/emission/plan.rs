@@ -15,7 +15,8 @@ use super::layout::Layout;
 use super::measure::Reading;
 use super::patches::{self, Guide};
 use super::period::{self, Continuation};
-use super::recover::{self, Bands, Source};
+use super::places;
+use super::recover::{self, Bands, Lights, Source};
 use super::window::{self, Window};
 use super::{Input, Params, luminaires, metadata};
 use crate::error::{Error, Result};
@@ -46,7 +47,7 @@ pub struct Plan {
     pub(super) layers: Vec<Layer>,
     pub(super) weights: Weights,
     /// Area in texels below which a piece of light is a crumb.
-    crumb: f64,
+    pub(super) crumb: f64,
 }
 
 /// Where the texture shows what of an exemplar.
@@ -168,10 +169,22 @@ impl Plan {
     /// A tile, crumbs and all.
     fn render(&self, input: &Input, styles: &[Style], tile: Tile, job: Job) -> Result<(Image, Image)> {
         self.check_exemplars(input, styles)?;
+        self.render_lights(input, styles, tile, Lights::All, job)
+    }
+
+    /// Some lights of a tile.
+    pub(super) fn render_lights(
+        &self,
+        input: &Input,
+        styles: &[Style],
+        tile: Tile,
+        lights: Lights,
+        job: Job,
+    ) -> Result<(Image, Image)> {
         let inputs = exemplars(input, 1.0, styles);
         let sources: Vec<Source> =
             self.layers.iter().zip(inputs).map(|(layer, (input, _))| Source { layer, input }).collect();
-        recover::run(self, &sources, tile, job)
+        recover::run(self, &sources, tile, lights, job)
     }
 
     /// Checks that exemplars are those, or as large as those, that the plan was made of.
@@ -232,11 +245,10 @@ impl Tile {
 
 impl Layer {
     fn new(reading: Option<Reading>, input: &Input, params: &Params, job: Job) -> Result<Self> {
-        let (exemplar, read) = match reading.filter(|r| r.serves(input, params)) {
+        let (mut exemplar, read) = match reading.filter(|r| r.serves(input, params)) {
             Some(reading) => (reading.exemplar, Some((reading.continuation, reading.regularity))),
             None => (Exemplar::new(input, working_side(input, params), job.part(0.0, 0.15))?, None),
         };
-        let working = &exemplar.working;
 
         // How the pattern goes on, the size of a patch, and the metadata at that scale.
         let stays = params.tileable || params.centred;
@@ -249,6 +261,10 @@ impl Layer {
                 None => period::find(&exemplar, params.least_regularity, job.part(0.15, 0.25))?,
             },
         };
+        if let Continuation::Lattice(basis) = found {
+            places::leave_out(&mut exemplar, basis)?;
+        }
+        let working = &exemplar.working;
         let continuation = if params.tileable { found.fitted(params.size())? } else { found };
         let block = if params.block > 0 { params.block } else { default_block(&exemplar, continuation) };
         let reach = continuation
@@ -273,7 +289,8 @@ impl Layer {
         let layout = match inside {
             Some(corner) => window::copy(corner, canvas, working.pitch),
             None => {
-                let guide = Guide { working, metadata: &metadata, metadata_weight: params.metadata_weight };
+                let Params { metadata_weight, candidates, .. } = *params;
+                let guide = Guide { working, metadata: &metadata, metadata_weight, candidates };
                 // One row is made, and repeated beside itself: that is all that the exemplar tells.
                 let row = match continuation {
                     Continuation::Row([_, across]) => {
@@ -301,12 +318,12 @@ impl Layer {
         };
 
         // Whole lamps as pieces, the rest as the patches have it.
-        let (instances, by_pixel) = match inside {
+        let laid = found.lattice().zip(continuation.lattice()).filter(|_| params.tileable).map(|(a, b)| [a, b]);
+        let (instances, by_pixel): (_, Vec<bool>) = match inside {
             None if params.whole_lamps => {
                 let rules = Rules { is_lattice: continuation.lattice().is_some(), wraps: params.tileable };
-                let laid = found.lattice().zip(continuation.lattice()).filter(|_| params.tileable);
-                let stretched = laid.and_then(|(own, stretched)| {
-                    cells::place(&exemplar, &layout, [own, stretched], offset, params.size(), params.seed)
+                let stretched = laid.and_then(|lattices| {
+                    cells::place(&exemplar, &layout, lattices, offset, params.size(), params.seed)
                 });
                 let instances = match continuation {
                     Continuation::Lattice(_) | Continuation::Row(_) if stretched.is_some() => {
@@ -320,6 +337,10 @@ impl Layer {
                 (instances, exemplar.piece.iter().zip(&exemplar.cut).map(|(piece, cut)| !piece && !cut).collect())
             }
             _ => (Vec::new(), vec![true; exemplar.whole.len()]),
+        };
+        let layout = match laid.filter(|_| by_pixel.contains(&true)) {
+            Some(lattices) => cells::stretch(&exemplar, &layout, lattices, offset, params.size())?,
+            None => layout,
         };
         let instances = match continuation {
             Continuation::Free => shifted(instances, &by_pixel, params)?,

@@ -7,6 +7,7 @@
 use super::Input;
 use super::exemplar::LIT;
 use super::lamps::Instance;
+use super::period::Continuation;
 use super::plan::{Layer, Plan, Tile};
 use crate::error::Result;
 use crate::image::Image;
@@ -36,8 +37,16 @@ impl Bands {
     }
 }
 
+/// Which lights of a plan are rendered.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Lights {
+    All,
+    /// Those that follow the patches pixel by pixel, where the texture is no copy of a part of the exemplar.
+    OfPatches,
+}
+
 /// A tile of the texture and its mask.
-pub fn run(plan: &Plan, sources: &[Source], tile: Tile, job: Job) -> Result<(Image, Image)> {
+pub fn run(plan: &Plan, sources: &[Source], tile: Tile, lights: Lights, job: Job) -> Result<(Image, Image)> {
     let Tile { width, height, .. } = tile;
     let mut texture = Image::new(width, height, 3)?;
     let mut mask = Image::new(width, height, 1)?;
@@ -54,7 +63,7 @@ pub fn run(plan: &Plan, sources: &[Source], tile: Tile, job: Job) -> Result<(Ima
         };
         for (k, source) in sources.iter().enumerate() {
             let layer = source.layer;
-            for &(i, range) in &layer.bands.0[y / BAND] {
+            for &(i, range) in layer.bands.0[y / BAND].iter().filter(|_| lights == Lights::All) {
                 let [x0, y0, x1, y1] = range.map(|r| r as usize);
                 if (y0..y1).contains(&y) {
                     let Instance { component, shift } = layer.instances[i as usize];
@@ -62,7 +71,11 @@ pub fn run(plan: &Plan, sources: &[Source], tile: Tile, job: Job) -> Result<(Ima
                     columns.for_each(|x| add(x, source.texel(x, y, shift, |label| label == component as u32 + 1)));
                 }
             }
-            if !layer.by_pixel.contains(&true) {
+            let has_more = match lights {
+                Lights::All => layer.by_pixel.contains(&true),
+                Lights::OfPatches => layer.follows_patches(),
+            };
+            if !has_more {
                 continue;
             }
             for x in tile.x..tile.x + width {
@@ -114,6 +127,11 @@ fn texels(layer: &Layer, instance: &Instance, width: usize, height: usize) -> Op
 }
 
 impl Layer {
+    /// Whether some of its lights are shown as the patches have them, in another order than the exemplar's.
+    pub fn follows_patches(&self) -> bool {
+        self.by_pixel.contains(&true) && self.continuation != Continuation::Copy
+    }
+
     /// Shifts become whole pixels where pixels are copied one to one, so that copies are exact.
     pub fn rounded(&self, shift: DVec2) -> DVec2 {
         if self.scale == 1.0 { shift.round() } else { shift }

@@ -19,7 +19,7 @@ pub struct Statistics {
     pub luminance: f64,
     /// Mean area of a whole lamp; 0 if there is none.
     pub area: f64,
-    /// Mean distance from a whole lamp to the nearest other; 0 if there are less than two.
+    /// Mean distance from a whole lamp to the nearest other; 0 where that is known of none.
     pub spacing: f64,
     /// Lamps that end inside.
     pub whole: usize,
@@ -61,16 +61,23 @@ impl Statistics {
         let lamps: Vec<(DVec2, f64)> =
             components.list.iter().zip(*whole).filter(|(_, w)| **w).map(|(c, _)| (c.centre, c.area as f64)).collect();
         let place = |at: DVec2| weight(at.x, *width, periods[0]) * weight(at.y, *height, periods[1]);
-        let mean = |value: &dyn Fn(usize) -> f64| {
-            let weights: f64 = lamps.iter().map(|l| place(l.0)).sum();
-            ratio((0..lamps.len()).map(|i| place(lamps[i].0) * value(i)).sum(), weights)
+        let mean = |of: &dyn Fn(usize) -> bool, value: &dyn Fn(usize) -> f64| {
+            let counted = || (0..lamps.len()).filter(|i| of(*i));
+            let weights: f64 = counted().map(|i| place(lamps[i].0)).sum();
+            ratio(counted().map(|i| place(lamps[i].0) * value(i)).sum(), weights)
         };
-        let nearest = nearest_distances(&lamps.iter().map(|l| l.0).collect::<Vec<_>>());
+        // Where something cut off is nearer than the nearest whole lamp, the distance to the nearest is not known.
+        let cut = components.list.iter().zip(*whole).filter(|(_, whole)| !**whole).map(|(c, _)| c.centre);
+        let mut centres: Vec<DVec2> = lamps.iter().map(|l| l.0).collect();
+        let nearest = nearest_distances(&centres);
+        centres.extend(cut);
+        let nearest_of_all = nearest_distances(&centres);
+        let is_known = |i: usize| nearest[i].is_finite() && nearest_of_all[i] >= nearest[i];
         Self {
             lit: ratio(lit, all),
             luminance: ratio(light, lit),
-            area: mean(&|i| lamps[i].1),
-            spacing: if lamps.len() < 2 { 0.0 } else { mean(&|i| nearest[i]) },
+            area: mean(&|_| true, &|i| lamps[i].1),
+            spacing: mean(&is_known, &|i| nearest[i]),
             whole: lamps.len(),
         }
     }

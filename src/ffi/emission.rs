@@ -122,6 +122,7 @@ impl luxfer_emission_params {
             centred: params::flag(self.centred, "centred")?,
             clip_level: self.clip_level,
             seed: self.seed,
+            ..emission::Params::default()
         })
     }
 }
@@ -142,8 +143,10 @@ pub struct luxfer_emission_report {
     /// Number of lamps that the exemplars show whole. Fewer than six tell little about a design: what the border cuts off is a large
     /// part of what there is, and without a whole lamp the texture shows the cut ones.
     pub exemplar_lamps: u32,
-    /// 0.
-    pub reserved: u32,
+    /// By how much the exemplar's own statistics are off, as far as can be told: the root mean square of the same difference between
+    /// parts of the texture as large as the exemplar, and the whole. An error of up to twice this says nothing against the texture.
+    /// 0 where the texture shows nothing else than the exemplar does, of blended exemplars, and of a plan.
+    pub sampling_error: f32,
 }
 
 // SAFETY: plain numbers.
@@ -151,7 +154,7 @@ unsafe impl Versioned for luxfer_emission_report {
     const NAME: &'static str = "luxfer_emission_report";
     const SIZES: &'static [usize] = &[32];
     fn defaults() -> Self {
-        Self { struct_size: 32, luminaires: 0, error: 0.0, regularity: 0.0, exemplar_lamps: 0, reserved: 0 }
+        Self { struct_size: 32, luminaires: 0, error: 0.0, regularity: 0.0, exemplar_lamps: 0, sampling_error: 0.0 }
     }
 }
 
@@ -424,16 +427,17 @@ pub unsafe extern "C" fn luxfer_emission_get_report(
         let out = Report::new(report)?;
         let made = stage.output()?;
         let count = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
-        let (error, regularity, exemplar_lamps) = match (&made.plan, &made.texture) {
-            (Some(planned), _) => (f64::NAN, planned.plan.regularity(), planned.plan.exemplar_lamps()),
-            (_, Some(texture)) => (texture.error, texture.regularity, texture.exemplar_lamps),
-            _ => (f64::NAN, 0.0, 0),
+        let (error, sampling_error, regularity, exemplar_lamps) = match (&made.plan, &made.texture) {
+            (Some(planned), _) => (f64::NAN, 0.0, planned.plan.regularity(), planned.plan.exemplar_lamps()),
+            (_, Some(texture)) => (texture.error, texture.sampling_error, texture.regularity, texture.exemplar_lamps),
+            _ => (f64::NAN, 0.0, 0.0, 0),
         };
         out.set(luxfer_emission_report {
             luminaires: count(made.luminaires()),
             error,
             regularity,
             exemplar_lamps: count(exemplar_lamps),
+            sampling_error: sampling_error as f32,
             ..luxfer_emission_report::defaults()
         });
         Ok(())
@@ -441,7 +445,7 @@ pub unsafe extern "C" fn luxfer_emission_get_report(
 }
 
 /// Describes a luminaire of the texture. Of a plan, which has no texel yet, it is as the exemplar shows it, cut where the texture
-/// ends; lights that run through their exemplar are no lamps and not counted. Any thread.
+/// ends; lights that run through their exemplar are as the texture shows them. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such luminaire.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_get_luminaire(

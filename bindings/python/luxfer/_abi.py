@@ -646,7 +646,7 @@ class luxfer_emission_report(Structure):
         ("error", c_double),
         ("regularity", c_double),
         ("exemplar_lamps", c_uint32),
-        ("reserved", c_uint32),
+        ("sampling_error", c_float),
     ]
     result = types.EmissionReport
 

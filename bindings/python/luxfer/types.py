@@ -1135,6 +1135,11 @@ class EmissionReport:
     exemplar_lamps: int
     """Number of lamps that the exemplars show whole. Fewer than six tell little about a design: what the border
     cuts off is a large part of what there is, and without a whole lamp the texture shows the cut ones."""
+    sampling_error: float
+    """By how much the exemplar's own statistics are off, as far as can be told: the root mean square of the
+    same difference between parts of the texture as large as the exemplar, and the whole. An error of up to
+    twice this says nothing against the texture. 0 where the texture shows nothing else than the exemplar does,
+    of blended exemplars, and of a plan."""
 
 
 @dataclass(frozen=True)

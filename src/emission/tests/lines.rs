@@ -1,0 +1,106 @@
+//! Lights that run through the exemplar: no lamps, yet they meet where a texture repeats, and a plan lists them.
+
+use super::*;
+
+/// Lines 6 pixels wide every 24, along x or along y.
+fn lines(along_x: bool) -> Design {
+    Design::new(200, 190, move |x, y| (if along_x { y } else { x } - 5.0).rem_euclid(24.0) < 6.0)
+}
+
+/// Where lit runs of a ring of texels begin, and how long they are.
+fn runs(lit: &[bool]) -> Vec<(usize, usize)> {
+    let n = lit.len();
+    let starts = (0..n).filter(|&i| lit[i] && !lit[(i + n - 1) % n]);
+    starts.map(|i| (i, (0..n).take_while(|k| lit[(i + k) % n]).count())).collect()
+}
+
+#[test]
+fn lines_meet_where_the_texture_repeats() {
+    for (along_x, width, height, scale) in [
+        (true, 500, 500, 1.0),
+        (false, 500, 470, 1.0),
+        (true, 333, 300, 1.0),
+        (false, 301, 280, 1.3),
+        (true, 210, 101, 0.7),
+    ] {
+        let exemplar = lines(along_x);
+        let params = Params { width, height, scale, tileable: true, ..Params::default() };
+        let result = exemplar.run(&params).unwrap();
+        let across = if along_x { height } else { width };
+        let count = (across as f64 * scale / 24.0).round() as usize;
+        let period = across as f64 / count as f64;
+        for k in 0..width * height / across {
+            let at = |i: usize| if along_x { i * width + k } else { k * width + i };
+            let lit: Vec<bool> = (0..across).map(|i| result.mask.data[at(i)] > 0.5).collect();
+            let runs = runs(&lit);
+            assert_eq!(runs.len(), count, "{width} x {height}, {k}: {runs:?}");
+            for (i, (start, length)) in runs.iter().enumerate() {
+                let next = (runs[(i + 1) % count].0 + across - start - 1) % across + 1;
+                assert!((*length as f64 * scale - 6.0).abs() <= 1.0f64.max(scale), "{width} x {height}, {k}: {runs:?}");
+                assert!((next as f64 - period).abs() <= 1.0, "{width} x {height}, {k}: {runs:?}, {period}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_net_of_lines_meets_where_the_texture_repeats() {
+    let exemplar = Design::new(240, 220, |x, y| (x - 5.0).rem_euclid(40.0) < 6.0 || (y - 9.0).rem_euclid(36.0) < 6.0);
+    let (width, height) = (500, 490);
+    let result = exemplar.run(&Params { width, height, tileable: true, ..Params::default() }).unwrap();
+    let counts = [(500.0f64 / 40.0).round() as usize, (490.0f64 / 36.0).round() as usize];
+    // Rows and columns are lines, or meet all of the others.
+    for (along, across, count) in [(0, 1, counts[1]), (1, 0, counts[0])] {
+        let size = [width, height];
+        let mut solid = 0usize;
+        for k in 0..size[along] {
+            let at = |i: usize| if along == 0 { i * width + k } else { k * width + i };
+            let lit: Vec<bool> = (0..size[across]).map(|i| result.mask.data[at(i)] > 0.5).collect();
+            // Edges may be off by a pixel from cell to cell.
+            if lit.iter().filter(|l| **l).count() > 7 * count {
+                solid += 1;
+                continue;
+            }
+            let runs = runs(&lit);
+            assert_eq!(runs.len(), count, "{along} {k}: {runs:?}");
+            assert!(runs.iter().all(|r| (5..=7).contains(&r.1)), "{along} {k}: {runs:?}");
+        }
+        assert!((6 * counts[along]..=8 * counts[along]).contains(&solid), "{solid} of {}", counts[along]);
+    }
+}
+
+#[test]
+fn a_plan_lists_lines_and_whatever_follows_the_patches() {
+    let net = || Design::new(240, 220, |x, y| (x - 5.0).rem_euclid(40.0) < 6.0 || (y - 9.0).rem_euclid(36.0) < 6.0);
+    let mixed = Design::new(240, 220, |x, y| {
+        let (u, v) = (x.rem_euclid(40.0), y.rem_euclid(40.0));
+        v < 5.0 || (10.0..30.0).contains(&u) && (15.0..27.0).contains(&v)
+    });
+    let lamps = Design::new(200, 180, grid(33.0, 29.0, 12.0, 9.0));
+    let whole = Params { width: 310, height: 290, ..Params::default() };
+    for (name, exemplar, params) in [
+        ("lines along x", lines(true), whole.clone()),
+        ("lines along y", lines(false), Params { scale: 0.7, ..whole.clone() }),
+        ("tileable lines", lines(false), Params { tileable: true, ..whole.clone() }),
+        ("net", net(), whole.clone()),
+        ("lines and lamps", mixed, whole.clone()),
+        ("lamps as the patches cut them", lamps, Params { whole_lamps: false, ..whole }),
+    ] {
+        let job = Monitor::default();
+        let plan = Plan::new(&exemplar.input(), &[], &params, job.job()).unwrap();
+        let list = LampList::new(&plan, &exemplar.input(), &[], job.job()).unwrap();
+        let listed: Vec<Luminaire> = (0..list.count()).map(|i| list.get(&plan, i).unwrap()).collect();
+        assert!(list.get(&plan, list.count()).is_none());
+        assert!((listed.iter().map(|l| l.flux_share).sum::<f64>() - 1.0).abs() < 1e-6, "{name}");
+        let shown = exemplar.run(&params).unwrap().luminaires;
+        assert_eq!(listed.len(), shown.len(), "{name}");
+        for lamp in &shown {
+            let apart = |l: &&Luminaire| l.centre.distance(lamp.centre);
+            let same = listed.iter().min_by(|a, b| apart(a).total_cmp(&apart(b))).unwrap();
+            let size_off = (same.size - lamp.size).abs().max_element();
+            assert!(apart(&same) < 1.0 && size_off < 1.5, "{name}: {same:?} {lamp:?}");
+            assert!((same.area / lamp.area - 1.0).abs() < 0.02, "{name}: {same:?} {lamp:?}");
+            assert!((same.colour - lamp.colour).abs().max_element() < 1e-3, "{name}: {same:?} {lamp:?}");
+        }
+    }
+}

@@ -1,0 +1,131 @@
+//! What differs from lamp to lamp in the exemplar differs so in the texture, on a lattice as well.
+
+use super::*;
+
+/// Lamps of 14 pixels every 40, each as bright as `level` says of its place.
+fn of_levels(side: usize, level: impl Fn([i64; 2]) -> f32) -> Design {
+    let mut exemplar = Design::new(side, side, |x, y| {
+        (x.rem_euclid(40.0) - 20.0).abs() < 7.0 && (y.rem_euclid(40.0) - 20.0).abs() < 7.0
+    });
+    for i in 0..side * side {
+        let place = [(i % side / 40) as i64, (i / side / 40) as i64];
+        exemplar.unwarped.data[3 * i..3 * i + 3].fill(level(place));
+    }
+    exemplar
+}
+
+fn deviation(values: &[f64]) -> (f64, f64) {
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    (mean, (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / values.len() as f64).sqrt())
+}
+
+#[test]
+fn lamps_on_a_lattice_vary_as_in_the_exemplar() {
+    // No two lamps are equally bright.
+    let level = |[i, j]: [i64; 2]| 0.3 + 0.5 * Rng::new(5, &[i as u64, j as u64]).next_f32();
+    let exemplar = of_levels(400, level);
+    let result = exemplar.run(&Params { width: 1200, height: 1200, ..Params::default() }).unwrap();
+    assert!(matches!(result.continuation, Continuation::Lattice(_)));
+    let lamps = inner(&result.luminaires, 1200, 1200);
+    let known: Vec<f64> = (0..100).map(|k| f64::from(level([k % 10, k / 10]))).collect();
+    let source = |lamp: &Luminaire| {
+        let off = |k: &usize| (known[*k] - f64::from(lamp.colour.y)).abs();
+        let nearest = (0..100).min_by(|a, b| off(a).total_cmp(&off(b))).unwrap();
+        assert!(off(&nearest) < 1e-4, "{}: a lamp of no level that the exemplar has", lamp.colour);
+        nearest
+    };
+    let sources: Vec<usize> = lamps.iter().map(|lamp| source(lamp)).collect();
+
+    // Most of them are shown, none far too often.
+    let mut times = [0; 100];
+    sources.iter().for_each(|&k| times[k] += 1);
+    let shown = times.iter().filter(|&&n| n > 0).count();
+    assert!(shown >= 60, "{shown} of 100 are shown");
+    assert!(times.iter().max().unwrap() * 15 < sources.len(), "{times:?}");
+
+    // As bright on average and as different. Patches bring groups of lamps, so a texture is a sample of no more lamps than the
+    // exemplar has; three standard deviations of its mean, and of its deviation, which for uniform levels is half of that.
+    let (mean, spread) = deviation(&sources.iter().map(|&k| known[k]).collect::<Vec<_>>());
+    let (expected, exact) = deviation(&known);
+    let standard = exact / (known.len() as f64).sqrt();
+    assert!((mean - expected).abs() < 3.0 * standard, "{mean} {expected}");
+    assert!((spread - exact).abs() < 1.5 * standard, "{spread} {exact}");
+}
+
+#[test]
+fn lamps_off_their_places_stay_as_far_off_and_no_farther() {
+    let (period, most) = (40.0, 2.0);
+    let off = |i: i64, j: i64| {
+        let mut rng = Rng::new(8, &[i as u64, j as u64]);
+        (DVec2::new(rng.next_f64(), rng.next_f64()) * 2.0 - 1.0) * most
+    };
+    let exemplar = Design::new(480, 480, |x, y| {
+        let (i, j) = ((x / period).floor(), (y / period).floor());
+        let centre = (DVec2::new(i, j) + 0.5) * period + off(i as i64, j as i64);
+        (DVec2::new(x, y) - centre).abs().max_element() < 8.0
+    });
+    let result = exemplar.run(&Params { width: 1200, height: 1000, ..Params::default() }).unwrap();
+    assert!(matches!(result.continuation, Continuation::Lattice(_)), "{:?}", result.continuation);
+    let basis = [DVec2::X * period, DVec2::Y * period];
+    let phase = |result: &Emission, width: usize, height: usize| {
+        let centres: Vec<DVec2> = inner(&result.luminaires, width, height).iter().map(|l| l.centre).collect();
+        statistics::phase(&centres, basis)
+    };
+    let own = exemplar.run(&Params { width: 480, height: 480, ..Params::default() }).unwrap();
+    let (own, made) = (phase(&own, 480, 480), phase(&result, 1200, 1000));
+    // Uniform in a square: the root of two thirds of its half side. Drift would add up to more over thirty periods.
+    assert!((own / ((2.0f64 / 3.0).sqrt() * most / period) - 1.0).abs() < 0.15, "{own}");
+    assert!((made / own - 1.0).abs() < 0.15, "{made} {own}");
+}
+
+#[test]
+fn scattered_lamps_among_those_of_a_lattice_stay_whole_and_it_in_step() {
+    // Between square lamps every 48 pixels, round ones anywhere clear of them.
+    let square = |p: DVec2| (p.rem_euclid(DVec2::splat(48.0)) - 24.0).abs().max_element();
+    let mut rng = Rng::new(31, &[]);
+    let mut discs: Vec<DVec2> = Vec::new();
+    for _ in 0..6000 {
+        let p = DVec2::new(rng.next_f64(), rng.next_f64()) * 480.0;
+        if square(p) > 14.0 && discs.iter().all(|d| d.distance(p) > 40.0) {
+            discs.push(p);
+        }
+    }
+    let exemplar = Design::new(480, 480, |x, y| {
+        let p = DVec2::new(x, y);
+        square(p) < 8.0 || discs.iter().any(|d| d.distance(p) < 4.0)
+    });
+    let result = exemplar.run(&Params { width: 1152, height: 1056, ..Params::default() }).unwrap();
+    assert!(matches!(result.continuation, Continuation::Lattice(_)), "{:?}", result.continuation);
+    let lamps = inner(&result.luminaires, 1152, 1056);
+    let (squares, round): (Vec<&Luminaire>, Vec<&Luminaire>) = lamps.into_iter().partition(|l| l.area > 150.0);
+    assert!(squares.iter().all(|l| (l.area - 256.0).abs() < 30.0), "a square lamp is cut or has met another");
+    assert!(round.iter().all(|l| (40.0..62.0).contains(&l.area)), "a round lamp is cut or has met another");
+    let centres: Vec<DVec2> = squares.iter().map(|l| l.centre).collect();
+    assert!(statistics::phase(&centres, [DVec2::X * 48.0, DVec2::Y * 48.0]) < 0.02);
+    let cells = (1152.0 / 48.0) * (1056.0 / 48.0);
+    assert!((squares.len() as f64 / cells - 1.0).abs() < 0.01, "{} of {cells}", squares.len());
+    assert!(!round.is_empty());
+}
+#[test]
+fn lamps_are_missing_as_often_as_where_the_exemplar_shows_their_places_whole() {
+    // A quarter of the places of 9 × 9 has no lamp; the border cuts the outer ones in half.
+    let has_lamp = |i: i64, j: i64| Rng::new(3, &[i as u64, j as u64]).next_f64() < 0.75;
+    let exemplar = Design::new(320, 320, |x, y| {
+        let (u, v) = (x + 10.0, y + 10.0);
+        let at_lamp = u.rem_euclid(40.0) < 20.0 && v.rem_euclid(40.0) < 20.0;
+        at_lamp && has_lamp((u / 40.0) as i64, (v / 40.0) as i64)
+    });
+    let whole = (1..8).flat_map(|j| (1..8).map(move |i| (i, j)));
+    let expected = whole.filter(|&(i, j)| has_lamp(i, j)).count() as f64 / 49.0;
+    let seeds = 1..=6;
+    let mut sum = 0.0;
+    for seed in seeds.clone() {
+        let result = exemplar.run(&Params { width: 800, height: 800, seed, ..Params::default() }).unwrap();
+        assert!(matches!(result.continuation, Continuation::Lattice(_)), "{:?}", result.continuation);
+        // Light over the 20 × 20 cells.
+        sum += result.mask.data.iter().map(|&m| f64::from(m)).sum::<f64>() / 400.0 / 400.0;
+    }
+    let filled = sum / seeds.count() as f64;
+    // Could the dark halves at the border be shown, where their like with a lamp cannot, it would be an eighth less.
+    assert!((filled / expected - 1.0).abs() < 0.05, "{filled} {expected}");
+}
