@@ -1,7 +1,8 @@
 //! Patterns from photos: a ceiling photographed in perspective and noise, the photos of real rooms, and the glass ceiling.
 
 use crate::harness::{Table, absent, figure};
-use crate::{DESIGNS, Exemplar, Score, save};
+use crate::score::{STATISTICS, Score};
+use crate::{DESIGNS, Exemplar, save};
 use glam::{DMat3, DVec2};
 use luxfer::emission::pairs::{self, Points};
 use luxfer::emission::{self, Emission, Input, Luminaire, Params};
@@ -25,7 +26,7 @@ const NOISE: [f32; 3] = [0.0, 0.05, 0.15];
 
 /// Every design, photographed from aside, unwarped and continued.
 pub fn perspective() {
-    let mut table = Table::new(["design", "noise %", "worst statistic %", "phase %", "pairs %", "lamps broken"]);
+    let mut table = Table::new(["design", "noise %"].into_iter().chain(STATISTICS).chain(["broken"]));
     let mut all = Score::default();
     for design in &DESIGNS {
         for noise in NOISE {
@@ -52,17 +53,11 @@ pub fn perspective() {
             // Light is what is brighter than halfway, as a segmentation would say of pixels and their neighbours.
             let smooth = luxfer::image::pyramid::blur(&photo, 0.9, Monitor::default().job()).expect("a blur");
             let sure = Image::from_fn(640, 384, |x, y| [((smooth.rgb(x, y).x - 0.3) / 0.4).clamp(0.0, 1.0)]);
-            let result = continued(&photo, &sure.expect("a mask"), &Homography(to_photo));
-            let score = Score::of(&result, design, result.statistics[0].luminance);
+            let (exemplar, result) = continued(&photo, &sure.expect("a mask"), &Homography(to_photo));
+            let score = Score::of(&result, design, design.filled_in(&exemplar), result.statistics[0].luminance);
             all = all.worse(score);
-            table.row([
-                design.name.to_string(),
-                format!("{:.0}", 100.0 * noise),
-                format!("{:.1}", 100.0 * score.worst),
-                format!("{:.2}", 100.0 * score.phase),
-                format!("{:.1}", 100.0 * score.pairs),
-                score.broken.to_string(),
-            ]);
+            let names = [design.name.to_string(), format!("{:.0}", 100.0 * noise)];
+            table.row(names.into_iter().chain(score.columns()));
             if noise == NOISE[2] {
                 save(&photo, &format!("emission_{}_photographed", design.name.replace([' ', '%'], "_")));
                 save(&result.texture, &format!("emission_{}_from_photo", design.name.replace([' ', '%'], "_")));
@@ -70,19 +65,20 @@ pub fn perspective() {
         }
     }
     table.print("800 x 720 from photos of 640 x 384 in perspective and noise, unwarped to 480 x 480");
-    figure("emission.perspective.worst_stat", 100.0 * all.worst, "%");
-    figure("emission.perspective.lattice_rms", 100.0 * all.phase, "% of the period");
+    figure("emission.perspective.worst_stat", 100.0 * all.worst(), "%");
+    figure("emission.perspective.lattice_rms", 100.0 * all.phase(), "% of the period");
     figure("emission.perspective.cut_lamps", all.broken as f64, "lamps");
 }
 
-fn continued(photo: &Image, light: &Image, to_photo: &Homography) -> Emission {
+fn continued(photo: &Image, light: &Image, to_photo: &Homography) -> (Exemplar, Emission) {
     let warp = |image: &Image| rectify::warp(image, to_photo, PLANE, PLANE, Monitor::default().job()).expect("a plane");
     let mut white = Image::new(photo.width, photo.height, 1).expect("a mask");
     white.data.fill(1.0);
     let exemplar = Exemplar { unwarped: warp(photo), light: warp(light), valid: warp(&white) };
     let input = Input { photo: Some((photo, *to_photo)), ..exemplar.input() };
     let params = Params { width: 800, height: 720, ..Params::default() };
-    emission::run(&input, &params, Monitor::default().job()).expect("a texture")
+    let result = emission::run(&input, &params, Monitor::default().job()).expect("a texture");
+    (exemplar, result)
 }
 
 fn data() -> PathBuf {
@@ -97,7 +93,7 @@ pub fn real() {
         .into_iter()
         .flatten()
         .filter_map(|entry| Some(entry.ok()?.path().file_stem()?.to_str()?.to_string()))
-        .filter(|name| data().join(format!("photos/{name}.jpg")).exists())
+        .filter(|name| photo_of(name).is_some())
         .collect();
     names.sort();
     let mut table = table_of_real();
@@ -105,6 +101,7 @@ pub fn real() {
         match unwarped(&root, name) {
             Ok((exemplar, photo, to_photo)) => {
                 let input = Input { photo: Some((&photo, to_photo)), ..exemplar.input() };
+                save(&exemplar.unwarped, &format!("emission_real_{name}_exemplar"));
                 row(&mut table, name, &input);
             }
             Err(reason) => println!("# {name}: {reason}"),
@@ -113,10 +110,16 @@ pub fn real() {
     table.print("Real photos, unwarped and continued to twice their size");
 }
 
+/// The file of a photo.
+fn photo_of(name: &str) -> Option<PathBuf> {
+    let files = [format!("photos/{name}.jpg"), format!("photos/hdri/{name}.png")];
+    files.iter().map(|file| data().join(file)).find(|file| file.exists())
+}
+
 /// The exemplar that a transfer unwarps from a photo of the data; the photo and the map into it.
 fn unwarped(root: &std::path::Path, name: &str) -> Result<(Exemplar, Image, Homography), String> {
     let text = |e: luxfer::error::Error| e.message;
-    let photo = io::load(&data().join(format!("photos/{name}.jpg")), Encoding::Srgb).map_err(text)?;
+    let photo = io::load(&photo_of(name).ok_or("no photo")?, Encoding::Srgb).map_err(text)?;
     let drawn = std::fs::read_to_string(root.join(format!("{name}.txt"))).map_err(|e| e.to_string())?;
     let strokes = strokes::parse(&drawn, photo.width, photo.height).map_err(text)?;
     let input = transfer::Input { photo: Some(Arc::new(photo)), strokes, ..transfer::Input::default() };
@@ -189,6 +192,7 @@ fn table_of_real() -> Table {
         "spacing",
         "pairs %",
         "stated error %",
+        "sampling %",
     ])
 }
 
@@ -216,6 +220,7 @@ fn row(table: &mut Table, name: &str, input: &Input) -> Emission {
         pair(before.spacing, after.spacing, 0),
         pair_distance(&own, &result).map_or("-".into(), |d| format!("{:.0}", 100.0 * d)),
         format!("{:.1}", 100.0 * result.error),
+        format!("{:.1}", 100.0 * result.sampling_error),
     ]);
     save(&result.texture, &format!("emission_real_{name}"));
     result

@@ -1,0 +1,144 @@
+//! How far a texture is from the design it continues, statistic by statistic.
+//!
+//! All are means weighed by a Hann window, which fades to nothing at the border, whatever made the texture: where the border cuts the
+//! pattern does not matter, and no method's own idea of its period does.
+
+use crate::{Design, photos};
+use glam::DVec2;
+use luxfer::emission::pairs::{self, Points};
+use luxfer::emission::{Emission, Luminaire, statistics};
+use luxfer::image::colour::luminance;
+use std::f64::consts::PI;
+
+/// Relative differences of lamps per area, mean area, light per area, areas in order, and mean distance to the nearest other; the
+/// share of the pairs of lamps that are at other distances; and the root mean square distance from the lattice in parts of the
+/// period.
+pub const STATISTICS: [&str; 7] = ["lamps %", "area %", "light %", "sizes %", "nearest %", "pairs %", "phase %"];
+
+/// A texture against the design it continues.
+#[derive(Clone, Copy, Default)]
+pub struct Score {
+    /// As [`STATISTICS`].
+    pub off: [f64; STATISTICS.len()],
+    /// Lamps smaller than 70 % of the least of the design, or larger than 130 % of its largest.
+    pub broken: usize,
+}
+
+impl Score {
+    /// Of lamps that the exemplar shows at `filled` of the places and as bright as `luminance`.
+    pub fn of(result: &Emission, design: &Design, filled: f64, luminance_of_lamps: f64) -> Self {
+        let size = DVec2::new(result.mask.width as f64, result.mask.height as f64);
+        let lamps = photos::whole(result);
+        let centres: Vec<DVec2> = lamps.iter().map(|l| l.centre).collect();
+        let cell = design.periods[0].perp_dot(design.periods[1]).abs() / filled;
+        let [least, largest] = [design.areas[1], design.areas[2]];
+
+        // Over the plane, and over lamps.
+        let plane = size.element_product() / 4.0;
+        let seen: f64 = result.luminaires.iter().map(|l| hann(l.centre, size)).sum();
+        let all: f64 = lamps.iter().map(|l| hann(l.centre, size)).sum();
+        let area = lamps.iter().map(|l| hann(l.centre, size) * l.area).sum::<f64>() / all;
+        let light = light(result, size) / luminance_of_lamps / plane * cell / design.areas[0];
+
+        // Distances to the nearest of those of the design in as large a part of it.
+        let truth = design.places(size);
+        let nearest = |points: &[DVec2]| {
+            let weights: f64 = points.iter().map(|p| hann(*p, size)).sum();
+            let distances = statistics::nearest_distances(points);
+            points.iter().zip(distances).map(|(p, d)| hann(*p, size) * d).sum::<f64>() / weights
+        };
+        let relative = |value: f64| if value.is_finite() { (value - 1.0).abs() } else { 1.0 };
+        let is_broken = |l: &&&Luminaire| l.area < 0.7 * least || l.area > 1.3 * largest;
+        Self {
+            off: [
+                relative(seen / plane * cell),
+                relative(area / design.areas[0]),
+                relative(light),
+                sizes(&lamps, design, size),
+                relative(nearest(&centres) / nearest(&truth)),
+                pair_distance(&centres, size, design),
+                statistics::phase(&centres, design.periods),
+            ],
+            broken: lamps.iter().filter(is_broken).count(),
+        }
+    }
+
+    /// The largest difference of a statistic, the phase aside, which has a goal of its own.
+    pub fn worst(&self) -> f64 {
+        self.off[..6].iter().copied().fold(0.0, f64::max)
+    }
+
+    pub fn pairs(&self) -> f64 {
+        self.off[5]
+    }
+
+    pub fn phase(&self) -> f64 {
+        self.off[6]
+    }
+
+    /// Each statistic at its worst of both.
+    pub fn worse(self, other: Self) -> Self {
+        Self { off: std::array::from_fn(|k| self.off[k].max(other.off[k])), broken: self.broken + other.broken }
+    }
+
+    /// The number of statistics in which another is nearer to the design, rounding aside, broken lamps among them.
+    pub fn behind(&self, other: &Self) -> usize {
+        const ROUNDING: f64 = 1e-3;
+        let nearer = self.off.iter().zip(&other.off).filter(|(own, other)| **own > **other + ROUNDING).count();
+        nearer + usize::from(self.broken > other.broken)
+    }
+
+    /// Columns of a table: those of [`STATISTICS`], and broken lamps.
+    pub fn columns(&self) -> impl Iterator<Item = String> {
+        let broken = self.broken.to_string();
+        self.off.iter().map(|off| format!("{:.2}", 100.0 * off)).chain([broken])
+    }
+}
+
+/// What a place weighs: 1 in the middle, a quarter on average.
+fn hann(at: DVec2, size: DVec2) -> f64 {
+    let along = |at: f64, side: f64| (PI * at / side).sin().powi(2);
+    along(at.x, size.x) * along(at.y, size.y)
+}
+
+/// Luminance of all texels, as each weighs.
+fn light(result: &Emission, size: DVec2) -> f64 {
+    let texels = result.texture.data.chunks_exact(3).enumerate();
+    let width = result.texture.width;
+    texels
+        .filter(|(_, texel)| **texel != [0.0; 3])
+        .map(|(i, texel)| {
+            let at = DVec2::new((i % width) as f64, (i / width) as f64) + 0.5;
+            hann(at, size) * f64::from(luminance(glam::Vec3::from_slice(texel)))
+        })
+        .sum()
+}
+
+/// Mean difference of the areas of lamps from those of the design, both in order of size, relative to the mean area (Wasserstein).
+fn sizes(lamps: &[&Luminaire], design: &Design, size: DVec2) -> f64 {
+    let [mean, least, largest] = design.areas;
+    let small = if largest > least { (largest - mean) / (largest - least) } else { 0.0 };
+    let mut sorted: Vec<(f64, f64)> = lamps.iter().map(|l| (l.area, hann(l.centre, size))).collect();
+    sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let all: f64 = sorted.iter().map(|l| l.1).sum();
+    let (mut below, mut off) = (0.0, 0.0);
+    for (area, weight) in sorted {
+        // The part of it that the design has small, and the rest.
+        let share = weight / all;
+        let of_small = (small - below).clamp(0.0, share);
+        off += of_small * (area - least).abs() + (share - of_small) * (area - largest).abs();
+        below += share;
+    }
+    if all > 0.0 { off / mean } else { 1.0 }
+}
+
+/// Share of the pairs of lamps that are at other distances than those of the design, in the part of the texture that shows all
+/// lamps whose centres lie in it.
+fn pair_distance(centres: &[DVec2], size: DVec2, design: &Design) -> f64 {
+    let margin = design.areas[2].sqrt();
+    let inner = size - 2.0 * margin;
+    let is_inside = |p: &DVec2| p.cmpge(DVec2::ZERO).all() && p.cmplt(inner).all();
+    let made: Vec<DVec2> = centres.iter().map(|c| *c - margin).filter(is_inside).collect();
+    let truth = design.places(inner);
+    pairs::distance(&Points { at: &truth, size: inner }, &Points { at: &made, size: inner }).unwrap_or(1.0)
+}
