@@ -128,7 +128,10 @@ pub fn stretch(
                 working.index(x as i32 - shift.x as i32, y as i32 - shift.y as i32).is_some_and(|i| working.usable[i])
             };
             let of_middle = layout.shift(u, v).map(|patch| moved(patch, within) + at - within).filter(shows);
-            let shift = of_middle.or_else(|| layout.shift(x, y).map(|patch| moved(patch, at)));
+            let own_patch = layout.shift(x, y);
+            let shift = of_middle
+                .or_else(|| own_patch.map(|patch| moved(patch, at)).filter(shows))
+                .or_else(|| own_patch.map(|patch| patch.exact));
             *label = shift.map_or(NONE, |shift| shifts.label(shift, working.pitch));
         }
         out.push(&row);

@@ -29,15 +29,19 @@ fn lines_meet_where_the_texture_repeats() {
         let across = if along_x { height } else { width };
         let count = (across as f64 * scale / 24.0).round() as usize;
         let period = across as f64 / count as f64;
+        // A texel is light from half of its samples on: with two a side each edge is off by three quarters of a texel at most.
+        let slack = if scale > 1.0 { 1.5 * scale } else { 1.0 };
         for k in 0..width * height / across {
             let at = |i: usize| if along_x { i * width + k } else { k * width + i };
             let lit: Vec<bool> = (0..across).map(|i| result.mask.data[at(i)] > 0.5).collect();
             let runs = runs(&lit);
             assert_eq!(runs.len(), count, "{width} x {height}, {k}: {runs:?}");
             for (i, (start, length)) in runs.iter().enumerate() {
-                let next = (runs[(i + 1) % count].0 + across - start - 1) % across + 1;
-                assert!((*length as f64 * scale - 6.0).abs() <= 1.0f64.max(scale), "{width} x {height}, {k}: {runs:?}");
-                assert!((next as f64 - period).abs() <= 1.0, "{width} x {height}, {k}: {runs:?}, {period}");
+                let after = runs[(i + 1) % count];
+                let next = (after.0 + across - start - 1) % across + 1;
+                let next = next as f64 + (after.1 as f64 - *length as f64) / 2.0;
+                assert!((*length as f64 * scale - 6.0).abs() <= slack, "{width} x {height}, {k}: {runs:?}");
+                assert!((next - period).abs() <= 1.0, "{width} x {height}, {k}: {runs:?}, {period}");
             }
         }
     }
@@ -46,9 +50,9 @@ fn lines_meet_where_the_texture_repeats() {
 #[test]
 fn a_net_of_lines_meets_where_the_texture_repeats() {
     let exemplar = Design::new(240, 220, |x, y| (x - 5.0).rem_euclid(40.0) < 6.0 || (y - 9.0).rem_euclid(36.0) < 6.0);
-    let (width, height) = (500, 490);
+    let (width, height) = (510, 490);
     let result = exemplar.run(&Params { width, height, tileable: true, ..Params::default() }).unwrap();
-    let counts = [(500.0f64 / 40.0).round() as usize, (490.0f64 / 36.0).round() as usize];
+    let counts = [(510.0f64 / 40.0).round() as usize, (490.0f64 / 36.0).round() as usize];
     // Rows and columns are lines, or meet all of the others.
     for (along, across, count) in [(0, 1, counts[1]), (1, 0, counts[0])] {
         let size = [width, height];
