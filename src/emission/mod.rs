@@ -18,7 +18,8 @@
 //! Beyond the paper: the lattice, and lamps as pieces; image quilting alone lets regular patterns drift and cuts lamps; the
 //! colour of lamps that the photo shows clipped ([`clipping`]); lamps kept off where they have no place ([`ground`]);
 //! textures of any size, in tiles of a [`plan`]; and several exemplars in one ([`mod@blend`]).
-//! Not modelled: lamps that are a mixture of two exemplars', and a pattern that bends from one plane into another.
+//! Not modelled: lamps that are a mixture of two exemplars', a pattern that bends from one plane into another, and nets of crossing
+//! lines in textures that repeat, whose edges may be off by the stretch of a few cells.
 
 mod blend;
 mod cells;
