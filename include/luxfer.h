@@ -2047,7 +2047,10 @@ typedef struct luxfer_render_report {
 /** Mean radiance of each pixel, linear RGB in cd/m². */
 #define LUXFER_RENDER_BEAUTY 0
 
-/** Variance of that mean; 3 channels. */
+/**
+ * Variance of that mean; 3 channels. Pixels in blocks of eight share what their paths find, so that the error of a mean over
+ * pixels is up to the root of eight times what their variances add up to.
+ */
 #define LUXFER_RENDER_VARIANCE 1
 
 /** Number of paths of each pixel; 1 channel. */

@@ -30,7 +30,8 @@ pub struct luxfer_render {
 pub type luxfer_render_image = i32;
 /// Mean radiance of each pixel, linear RGB in cd/m².
 pub const LUXFER_RENDER_BEAUTY: luxfer_render_image = 0;
-/// Variance of that mean; 3 channels.
+/// Variance of that mean; 3 channels. Pixels in blocks of eight share what their paths find, so that the error of a mean over
+/// pixels is up to the root of eight times what their variances add up to.
 pub const LUXFER_RENDER_VARIANCE: luxfer_render_image = 1;
 /// Number of paths of each pixel; 1 channel.
 pub const LUXFER_RENDER_PATHS: luxfer_render_image = 2;

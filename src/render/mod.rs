@@ -7,6 +7,7 @@
 //!
 //! `sampler` numbers → `path` a walk → (`light` one light of all, by way of `emissive` and `environment`; `vertex` what was
 //! hit; `bsdf` how it scatters, by way of `ggx`) → a [`PathSink`] → `film` means, errors, and which pixels get more paths.
+//! The paths of neighbouring pixels are `shared`: what one finds behind the first surface is light for all that see it.
 //! Beside the image, `layers` makes images of light by the way it came (`lpe`) and of surfaces (`aov`) from the same paths;
 //! [`illuminance`] calculates grids and maps of meshes in lux. For previews, `denoise` filters noise out, with a bias.
 //!

@@ -257,7 +257,8 @@ class RenderImage(IntEnum):
     BEAUTY = 0
     """Mean radiance of each pixel, linear RGB in cd/m²."""
     VARIANCE = 1
-    """Variance of that mean; 3 channels."""
+    """Variance of that mean; 3 channels. Pixels in blocks of eight share what their paths find, so that the
+    error of a mean over pixels is up to the root of eight times what their variances add up to."""
     PATHS = 2
     """Number of paths of each pixel; 1 channel."""
     INTERVAL = 3

@@ -3,8 +3,8 @@
 //! The scatter of a pixel's own four replications is a poor witness. It has three degrees of freedom, and worse, it is
 //! small just where a bright path has not been found yet, where the mean is too small as well: in rooms, mean ± 1.96
 //! standard errors holds the truth in 66 to 83 % of the pixels, and with Student's factor in 78 to 93 %. The scatter of the
-//! neighbours knows nothing of the pixel's own luck. Binomial weights over 7 × 7 pixels give 93 to 97 % from 8 paths on;
-//! `benches/error_control.rs` measures it.
+//! neighbours knows nothing of the pixel's own luck, or little: those of its own block (`block`) share in some of it. Binomial
+//! weights over 7 × 7 pixels give 93 to 97 % from 8 paths on; `benches/error_control.rs` measures it.
 
 use super::super::Film;
 use crate::error::Result;
