@@ -14,8 +14,8 @@ use std::f32::consts::FRAC_1_PI;
 /// Below this perceptual roughness a surface is a perfect mirror.
 pub const MIRROR_ROUGHNESS: f32 = 1e-3;
 
-/// From this perceptual roughness on, light found for one viewer serves others.
-const SHAREABLE_ROUGHNESS: f32 = 0.25;
+/// From this perceptual roughness on, light found for one viewer serves its neighbours: they look from nearly the same place.
+const SHAREABLE_ROUGHNESS: f32 = 0.1;
 
 /// What a material is at one point.
 #[derive(Clone, Copy, Debug)]
@@ -148,7 +148,7 @@ impl<'a> Bsdf<'a> {
         self.diffuse + above.unwrap_or(Vec3::ZERO)
     }
 
-    /// Whether most of what it sends back goes everywhere, so that light found for one direction serves for others. It
+    /// Whether it spreads all that it sends back, so that light found for one direction serves for those beside it. It
     /// depends on the place alone, not on the viewer.
     #[inline]
     pub fn is_shareable(&self) -> bool {
@@ -156,8 +156,7 @@ impl<'a> Bsdf<'a> {
             None => self.diffuse != Vec3::ZERO,
             Some(Layers { substance: s, .. }) => {
                 let is_rough = s.f90 == 0.0 || s.roughness >= SHAREABLE_ROUGHNESS;
-                let is_diffuse = s.diffuse.max_element() >= s.f0.max_element().max(f32::MIN_POSITIVE);
-                is_rough && is_diffuse && s.transmission == Vec3::ZERO
+                is_rough && s.transmission == Vec3::ZERO && s.diffuse + s.f0 != Vec3::ZERO
             }
         }
     }

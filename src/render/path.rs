@@ -219,7 +219,7 @@ pub(super) fn go_on<O: Observer>(
 }
 
 /// Adds the light chosen for a vertex and chooses where the path goes on.
-fn scatter<O: Observer>(
+pub(super) fn scatter<O: Observer>(
     world: &World,
     vertex: &Vertex,
     bsdf: &Bsdf,

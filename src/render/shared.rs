@@ -6,14 +6,14 @@
 //! re-using paths"). So no estimate is biased, and a pixel has the indirect light of as many points as there are pixels, for
 //! little more than a ray each. What it costs is that the errors of those pixels are alike.
 //!
-//! Only surfaces that are mostly diffuse take part, at both ends: a mirror sends to each pixel something else. All others'
+//! Only surfaces that spread light take part, at both ends: a mirror sends to each pixel something else. All others'
 //! paths go on alone.
 
 use super::bsdf::{Bsdf, Kind, Lobes};
 use super::light::{LightSample, Receiver};
 use super::path::{self, Found, Leg, Length, Observer, Seen};
 use super::sampler::Sampler;
-use super::vertex::Vertex;
+use super::vertex::{Surface, Vertex};
 use super::world::World;
 use crate::scene::accel::Ray;
 use glam::Vec3;
@@ -43,7 +43,8 @@ pub trait Tape: Observer + Default {
     fn is_blank(&self) -> bool;
 }
 
-/// Room for two tapes: of the light chosen for a point, and of the path beyond it.
+/// Room for the tapes of a point: of the light chosen for it, and of the path beyond it; both are one tape where it sends
+/// the same to all.
 #[derive(Default)]
 pub struct Tapes<T> {
     chosen: T,
@@ -80,11 +81,20 @@ struct Departure {
 /// A point that a path has come to from there, and the light it has for all that see it.
 struct Find<'w> {
     vertex: Vertex,
-    bsdf: Bsdf<'w>,
-    /// A light, and what its emission counts for before it is scattered.
-    chosen: Option<(LightSample, Vec3)>,
-    /// Direction and density with which the path goes on.
-    beyond: Option<(Vec3, f32)>,
+    light: Light<'w>,
+}
+
+enum Light<'w> {
+    /// It sends the same to all.
+    Alike,
+    /// What it sends depends on who sees it.
+    Turned {
+        surface: Surface<'w>,
+        /// A light, and what its emission counts for before it is scattered.
+        chosen: Option<(LightSample, Vec3)>,
+        /// Direction and density with which the path goes on.
+        beyond: Option<(Vec3, f32)>,
+    },
 }
 
 /// One who sees it.
@@ -114,7 +124,7 @@ pub fn trace<W: Witness>(world: &World, starts: &mut [Start], witnesses: &mut [W
             && let Some(find) = find(world, sight, departure, worth, &mut starts[number], &mut witnesses[number], tapes)
         {
             let viewers = Viewers::of(world, &find, number, departure, &sights);
-            viewers.tell(world, &find, &sights, witnesses, tapes);
+            viewers.tell(&find, &sights, witnesses, tapes);
         }
     }
 }
@@ -171,27 +181,64 @@ fn find<'w, W: Witness>(
     if length.most == 1 {
         return None;
     }
-    let bsdf = vertex.bsdf(world, -*direction);
+    let surface = vertex.surface(world);
+    let bsdf = surface.seen_from(-*direction);
     if !bsdf.is_shareable() || !sees_for_sure(world, sight, &vertex) {
         if let Some(next) = path::go_on(world, leg, &vertex, distance, 1, length, sampler, witness) {
             path::walk(world, next, 2, *length, sampler, witness);
         }
         return None;
     }
-    // The light chosen for it.
+    // The path from there on is told of as if it began there.
+    let length = Length { most: length.most, worth: Some(worth) };
+    let light = if bsdf.looks_alike() {
+        send_to_all(world, &vertex, &bsdf, leg.lighting, length, sampler, &mut tapes.beyond)
+    } else {
+        send_to_each(world, &vertex, surface, &bsdf, leg.lighting, length, sampler, tapes)
+    };
+    light.map(|light| Find { vertex, light })
+}
+
+/// The light of a find that sends the same to all.
+fn send_to_all<'w, T: Tape>(
+    world: &World,
+    vertex: &Vertex,
+    bsdf: &Bsdf,
+    lighting: (f64, f32),
+    length: Length,
+    sampler: &mut Sampler,
+    tape: &mut T,
+) -> Option<Light<'w>> {
+    tape.clear();
+    if let Some(next) = path::scatter(world, vertex, bsdf, Vec3::ONE, None, lighting, sampler, tape) {
+        path::walk(world, next, 2, length, sampler, tape);
+    }
+    (!tape.is_blank()).then_some(Light::Alike)
+}
+
+/// The light of a find that sends to each what is theirs.
+fn send_to_each<'w, T: Tape>(
+    world: &World,
+    vertex: &Vertex,
+    surface: Surface<'w>,
+    bsdf: &Bsdf,
+    lighting: (f64, f32),
+    length: Length,
+    sampler: &mut Sampler,
+    tapes: &mut Tapes<T>,
+) -> Option<Light<'w>> {
     let receiver = Receiver { position: vertex.position, normal: bsdf.normal() };
-    let light = path::choose_light(world, &receiver, &bsdf, leg.lighting).filter(|l| l.emission != Vec3::ZERO);
+    let light = path::choose_light(world, &receiver, bsdf, lighting).filter(|l| l.emission != Vec3::ZERO);
     let chosen = light.and_then(|light| {
         let (lobes, density) = bsdf.eval(light.direction);
         if lobes.sum() == Vec3::ZERO {
             return None;
         }
-        let importance = path::reach(world, &vertex, &light, density, tapes.chosen.panes());
+        let importance = path::reach(world, vertex, &light, density, tapes.chosen.panes());
         (importance != Vec3::ZERO).then_some((light, importance))
     });
-    // The path beyond it, as if it began there.
     tapes.beyond.clear();
-    let beyond = path::choose_direction(&bsdf, sampler).and_then(|(scattered, lighting)| {
+    let beyond = path::choose_direction(bsdf, sampler).and_then(|(scattered, lighting)| {
         let Kind::Spread(density) = scattered.kind else { return None };
         let leg = Leg {
             ray: vertex.ray(scattered.direction),
@@ -200,12 +247,12 @@ fn find<'w, W: Witness>(
             rival: Some((receiver, density)),
             lighting,
         };
-        let length = Length { most: length.most, worth: Some(worth * scattered.weight) };
+        let length = Length { worth: length.worth.map(|worth| worth * scattered.weight), ..length };
         path::walk(world, leg, 2, length, sampler, &mut tapes.beyond);
         (!tapes.beyond.is_blank()).then_some((scattered.direction, density))
     });
     let has_light = chosen.is_some() || beyond.is_some();
-    has_light.then_some(Find { vertex, bsdf, chosen, beyond })
+    has_light.then_some(Light::Turned { surface, chosen, beyond })
 }
 
 /// Whether nothing stands between, not even what lets light pass: a path that came that way came by chance, or met it.
@@ -262,7 +309,6 @@ impl Viewers {
     /// Tells the witnesses what light they get from it.
     fn tell<W: Witness>(
         &self,
-        world: &World,
         find: &Find,
         sights: &[Option<Sight>; MOST],
         witnesses: &mut [W],
@@ -274,23 +320,21 @@ impl Viewers {
             let importance = viewer.lobes.sum() * (viewer.angle / self.density);
             witness.restart();
             witness.scatter(sight.vertex.mesh, Kind::Spread(viewer.density), viewer.lobes);
-            let seen;
-            let bsdf = if find.bsdf.looks_alike() {
-                &find.bsdf
-            } else {
-                seen = find.vertex.bsdf(world, -viewer.direction);
-                &seen
+            let Light::Turned { surface, chosen, beyond } = &find.light else {
+                witness.replay(&mut tapes.beyond, importance);
+                continue;
             };
-            if let Some((light, reach)) = &find.chosen {
+            let bsdf = surface.seen_from(-viewer.direction);
+            if let Some((light, reach)) = chosen {
                 let (lobes, _) = bsdf.eval(light.direction);
                 witness.take_panes(&tapes.chosen);
                 let importance = importance * lobes.sum() * *reach;
                 witness.add(light.source, importance, light.emission, Found::Chosen { mesh, lobes });
             }
-            if let Some((direction, density)) = find.beyond {
-                let (lobes, _) = bsdf.eval(direction);
-                witness.scatter(mesh, Kind::Spread(density), lobes);
-                witness.replay(&mut tapes.beyond, importance * lobes.sum() / density);
+            if let Some((direction, density)) = beyond {
+                let (lobes, _) = bsdf.eval(*direction);
+                witness.scatter(mesh, Kind::Spread(*density), lobes);
+                witness.replay(&mut tapes.beyond, importance * lobes.sum() / *density);
             }
         }
     }

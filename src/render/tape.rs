@@ -65,7 +65,9 @@ impl Observer for Steps {
         let contribution = importance * emission;
         self.sum += contribution;
         let first = self.kept.len();
-        if let Found::Chosen { .. } = found {
+        if let Found::Chosen { .. } = found
+            && !self.panes.is_empty()
+        {
             self.kept.extend_from_slice(&self.panes);
         }
         self.steps.push(Step::Add { source, contribution: contribution.into(), found, panes: first..self.kept.len() });

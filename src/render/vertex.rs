@@ -3,6 +3,7 @@
 use super::bsdf::{Bsdf, Substance};
 use super::facet::{self, Facet};
 use super::finish::{self, Finish};
+use super::ggx::AlbedoTable;
 use super::world::{NONE, World};
 use crate::scene::accel::{Hit, Ray};
 use crate::scene::{Material, Mesh, TextureRef};
@@ -67,18 +68,22 @@ impl Vertex {
     /// What scatters light that leaves along `wo`.
     #[inline]
     pub fn bsdf<'w>(&self, world: &'w World, wo: Vec3) -> Bsdf<'w> {
+        self.surface(world).seen_from(wo)
+    }
+
+    /// What is there, whoever looks at it.
+    #[inline]
+    pub fn surface<'w>(&self, world: &'w World) -> Surface<'w> {
         let facet = world.facet(self.id);
         let finish = world.finish(facet);
         // Most surfaces are flat and of one substance.
         let shading = if facet.is_smooth() || finish.bumpy { self.shading_normal(world, facet) } else { self.normal };
-        let table = world.albedo_table();
-        let normals = [shading, self.normal];
-        if finish.varies {
-            let varied = Spot::new(world, facet, self.triangle, self.barycentric).substance(finish);
-            Bsdf::new(&varied, finish.layered, normals, wo, table)
+        let substance = if finish.varies {
+            Spot::new(world, facet, self.triangle, self.barycentric).substance(finish)
         } else {
-            Bsdf::new(&finish.substance, finish.layered, normals, wo, table)
-        }
+            finish.substance
+        };
+        Surface { substance, layered: finish.layered, normals: [shading, self.normal], table: world.albedo_table() }
     }
 
     fn shading_normal(&self, world: &World, facet: &Facet) -> Vec3 {
@@ -101,6 +106,24 @@ impl Vertex {
         let b = normal.cross(t);
         let b = if b.dot(along_v) > 0.0 { -b } else { b };
         (t * (n.x * material.normal_scale) + b * (n.y * material.normal_scale) + normal * n.z).normalize_or(normal)
+    }
+}
+
+/// What a surface is at a point.
+pub struct Surface<'w> {
+    substance: Substance,
+    /// Whether there may be more than a diffuse layer.
+    layered: bool,
+    /// Shading and geometric normal of the front.
+    normals: [Vec3; 2],
+    table: Option<&'w AlbedoTable>,
+}
+
+impl<'w> Surface<'w> {
+    /// What scatters light that leaves along `wo`.
+    #[inline]
+    pub fn seen_from(&self, wo: Vec3) -> Bsdf<'w> {
+        Bsdf::new(&self.substance, self.layered, self.normals, wo, self.table)
     }
 }
 

@@ -36,13 +36,14 @@ pub struct Tile<'a> {
     pixels: &'a mut [Pixel],
     surroundings: Option<Surroundings>,
     layers: Option<(Vec<Recorder<'a>>, Kept<'a>)>,
+    maker: Maker,
 }
 
 impl<'a> Tile<'a> {
     pub fn new(setting: Setting<'a>, number: usize, pixels: &'a mut [Pixel], layers: Option<&'a Layers<'a>>) -> Self {
         let surroundings = setting.level.map(|level| Surroundings::of(pixels, level));
         let layers = layers.map(|l| (l.recorders(), l.kept(number)));
-        Self { setting, number, pixels, surroundings, layers }
+        Self { setting, number, pixels, surroundings, layers, maker: Maker::default() }
     }
 
     /// Extends the paths of every pixel to what the pass asks for, or until the time is over.
@@ -96,7 +97,6 @@ impl<'a> Tile<'a> {
         let discard = |_| {
             discarded.fetch_add(1, Ordering::Relaxed);
         };
-        let mut maker = Maker::default();
         for replication in 0..REPLICATIONS {
             let indices = share(before, replication)..share(count, replication);
             for block in blocks(replication) {
@@ -104,7 +104,7 @@ impl<'a> Tile<'a> {
                 let member = |(i, (x, y))| Member::new(i, [x, y], lengths[i], seed, replication);
                 let members: Vec<Member> = there.map(member).collect();
                 let recorders = self.layers.as_mut().map(|(recorders, _)| &mut recorders[..]);
-                let sums = maker.paths(world, eye, &members, indices.clone(), recorders, discard);
+                let sums = self.maker.paths(world, eye, &members, indices.clone(), recorders, discard);
                 for (k, (member, sum)) in members.iter().zip(sums).enumerate() {
                     self.pixels[member.pixel].add(replication, sum);
                     if let Some((recorders, kept)) = &mut self.layers {

@@ -82,7 +82,7 @@ impl<'a> Trail<'a> {
 
     /// Says which panes stand between a vertex and the light chosen for it, if they matter.
     pub fn set_panes(&mut self, panes: &[Pane]) {
-        if !self.settled {
+        if !self.settled && !(panes.is_empty() && self.panes.is_empty()) {
             self.panes.clear();
             self.panes.extend_from_slice(panes);
         }
@@ -96,33 +96,30 @@ impl<'a> Trail<'a> {
 
     #[inline(always)]
     pub fn scatter(&mut self, mesh: u32, kind: Kind, lobes: Lobes) {
-        if !self.settled {
-            self.step(mesh, kind, lobes);
+        if self.settled {
+            return;
         }
-    }
-
-    #[inline(never)]
-    fn step(&mut self, mesh: u32, kind: Kind, lobes: Lobes) {
-        let Self { table, parts, before, .. } = self;
-        let class = table.class(mesh);
-        let scatter = match kind {
+        let way = match kind {
             Kind::Spread(_) => only_layer(lobes),
             Kind::Mirrored => Some(Scatter::Mirror),
             Kind::Through => Some(Scatter::Pane),
         };
-        match (scatter, &mut parts[..]) {
+        match (way, &mut self.parts[..]) {
             // Most paths are still whole.
-            (Some(scatter), [(state, _)]) => *state = table.next(*state, class)[scatter as usize],
-            (None, &mut [(state, share)]) => {
-                parts.clear();
-                let [one, other, ..] = *table.next(state, class);
-                go_two_ways(parts, one, other, share, diffuse_share(lobes));
+            (Some(way), [(state, _)]) => {
+                *state = self.table.next(*state, self.table.class(mesh))[way as usize];
+                self.settled = self.table.is_settled(*state);
             }
-            _ => {
-                std::mem::swap(parts, before);
-                go_on(table, class, scatter, lobes, before, parts);
-            }
+            _ => self.divide(mesh, way, lobes),
         }
+    }
+
+    /// The same for a path of several parts, or one that goes on in several ways.
+    #[inline(never)]
+    fn divide(&mut self, mesh: u32, way: Option<Scatter>, lobes: Lobes) {
+        let Self { table, parts, before, .. } = self;
+        std::mem::swap(parts, before);
+        go_on(table, table.class(mesh), way, lobes, before, parts);
         self.settled = parts.iter().all(|&(state, _)| table.is_settled(state));
     }
 
