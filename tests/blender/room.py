@@ -64,17 +64,22 @@ def build() -> bpy.types.Scene:
     return scene
 
 
-def cycles(scene: bpy.types.Scene, samples: int) -> np.ndarray:
-    """The scene by Cycles, linear, rows from the top."""
+def unbiased(scene: bpy.types.Scene) -> None:
+    """Has Cycles leave no light out, of which its defaults leave much, and filter pixels as ours are filtered."""
     scene.render.engine = "CYCLES"
     scene.cycles.device = "CPU"
-    scene.cycles.samples = samples
     scene.cycles.use_denoising = False
     scene.cycles.use_adaptive_sampling = False
-    scene.cycles.max_bounces = scene.cycles.diffuse_bounces = 64
+    scene.cycles.max_bounces = scene.cycles.diffuse_bounces = scene.cycles.glossy_bounces = 64
     scene.cycles.sample_clamp_indirect = scene.cycles.sample_clamp_direct = 0
     scene.cycles.blur_glossy = 0
-    scene.cycles.pixel_filter_type = "BOX"  # as ours
+    scene.cycles.pixel_filter_type = "BOX"
+
+
+def cycles(scene: bpy.types.Scene, samples: int) -> np.ndarray:
+    """The scene by Cycles, linear, rows from the top."""
+    unbiased(scene)
+    scene.cycles.samples = samples
     scene.render.image_settings.file_format = "OPEN_EXR"
     scene.render.image_settings.color_depth = "32"
     with tempfile.TemporaryDirectory() as folder:

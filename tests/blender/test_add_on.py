@@ -5,11 +5,12 @@ import time
 import unittest
 from types import SimpleNamespace
 
-from room import SIZE, bpy, build, cycles, np
+from room import SIZE, bpy, build, cycles, np, unbiased
 
+import bmesh
 import luxfer
 import luxfer_lighting
-from luxfer_lighting import convert, lighting, painting, panels, work
+from luxfer_lighting import convert, lighting, painting, panels, passes, work
 
 EXEMPLAR = {"width": 240, "height": 160, "samples": 8}
 
@@ -192,13 +193,16 @@ class AddOn(unittest.TestCase):
         with self.assertRaisesRegex(RuntimeError, "artwork"):
             bpy.ops.luxfer.stylise()
 
+    def hang_lamp(self):
+        light = bpy.data.objects.new("Lamp", bpy.data.lights.new("Lamp", "POINT"))
+        light.data.energy, light.data.shadow_soft_size = 5000, 0
+        light.location = (SIZE[0] / 2, SIZE[1] / 2, SIZE[2] - 0.3)
+        self.scene.collection.objects.link(light)
+
     def test_stylising(self):
         settings = self.scene.luxfer
         settings.exemplar_width, settings.exemplar_height, settings.guide_samples = 96, 72, 8
-        light = bpy.data.objects.new("Lamp", bpy.data.lights.new("Lamp", "POINT"))
-        light.data.energy = 5000
-        light.location = (SIZE[0] / 2, SIZE[1] / 2, SIZE[2] - 0.3)
-        self.scene.collection.objects.link(light)
+        self.hang_lamp()
         bpy.ops.luxfer.exemplar()
         self.assertEqual(tuple(bpy.data.images[painting.EXEMPLAR].size), (96, 72))
         bpy.ops.luxfer.sample_artwork(style="paint")
@@ -208,6 +212,105 @@ class AddOn(unittest.TestCase):
         if folder := os.environ.get("LUXFER_LOOK"):
             luxfer.Image(work.context(), picture, "srgb").save(os.path.join(folder, "stylised.png"))
         self.assertGreater(picture.std(), 0.02)
+
+        # Its guides by Cycles instead: another picture, but much the same paint.
+        settings.guides_by = "CYCLES"
+        before = {name: getattr(self.scene.render, name) for name in ("engine", "filepath", "use_compositing")}
+        asked = self.scene.view_layers[0].use_pass_diffuse_direct
+        bpy.ops.luxfer.stylise()
+        other = convert.pixels(bpy.data.images[painting.PICTURE])[..., :3]
+        if folder := os.environ.get("LUXFER_LOOK"):
+            luxfer.Image(work.context(), other, "srgb").save(os.path.join(folder, "stylised_by_cycles.png"))
+        self.assertTrue((picture != other).any())
+        np.testing.assert_allclose(other.mean((0, 1)), picture.mean((0, 1)), atol=0.05)
+        for name, value in before.items():
+            self.assertEqual(getattr(self.scene.render, name), value)
+        self.assertEqual(self.scene.view_layers[0].use_pass_diffuse_direct, asked)
+
+    def test_cycles_can_be_cancelled_and_leaves_nothing(self):
+        settings = self.scene.luxfer
+        settings.exemplar_width, settings.exemplar_height, settings.guides_by = 64, 48, "CYCLES"
+        settings.guide_samples = 65536
+        self.hang_lamp()
+        for seconds in (0.0, 4.0):  # while it starts, and while it renders
+            rendering = passes.Rendering(self.scene, bpy.context.view_layer, 65536)
+
+            def steps():
+                yield rendering
+
+            work.start("Guides", lambda: (steps(), 1))
+            folder = rendering._folder.name
+            end = time.monotonic() + seconds
+            while time.monotonic() < end:
+                self.assertIsNotNone(work.step())
+                time.sleep(work.POLL_SECONDS)
+            start = time.monotonic()
+            bpy.ops.luxfer.cancel()
+            self.assertLess(time.monotonic() - start, 1)
+            self.assertTrue(rendering.finished)
+            self.assertFalse(os.path.exists(folder))
+            self.assertEqual(work.message, "Cancelled")
+
+    def test_why_cycles_could_not_is_told(self):
+        self.scene.camera = None
+        rendering = passes.Rendering(self.scene, bpy.context.view_layer, 1)
+        with self.assertRaisesRegex(RuntimeError, "Cycles could not render the guides: .*[Cc]amera"):
+            rendering.wait()
+        self.assertFalse(os.path.exists(rendering._folder.name))
+
+    def test_guides_by_cycles_are_those_of_the_library(self):
+        """Of a room with a glossy ball: each kind of light has the same mean and the same shape. Cycles' indirect is all that
+        comes to a matt thing after another bounce, and its glossy ball scatters more than once (Turquin)."""
+        self.hang_lamp()
+        mesh = bpy.data.meshes.new("Ball")
+        shape = bmesh.new()
+        bmesh.ops.create_uvsphere(shape, u_segments=48, v_segments=24, radius=0.8)
+        for face in shape.faces:
+            face.smooth = True
+        shape.to_mesh(mesh)
+        shape.free()
+        look = bpy.data.materials["Red"].copy()
+        surface = next(n for n in look.node_tree.nodes if n.type == "BSDF_PRINCIPLED")
+        surface.inputs["Metallic"].default_value, surface.inputs["Roughness"].default_value = 1, 0.4
+        mesh.materials.append(look)
+        ball = bpy.data.objects.new("Ball", mesh)
+        ball.location = (SIZE[0] / 2, SIZE[1] - 1.2, 0.8)
+        self.scene.collection.objects.link(ball)
+
+        unbiased(self.scene)
+        theirs = passes.Rendering(self.scene, bpy.context.view_layer, 128).wait().light()
+        room = convert.scene(work.context(), self.scene)
+        width, height = convert.resolution(self.scene)
+        guides = luxfer.Guides(work.context(), room)
+        guides.run(width=width, height=height, samples=128, camera=room.add_camera(**convert.camera(self.scene)))
+        ours = passes.light_of(guides)
+        wider = luxfer.Render(work.context(), room, expressions={"wider": "L.+DE"})
+        wider.set_camera(**convert.camera(self.scene))
+        wider.run(width=width, height=height, samples=128)
+        if folder := os.environ.get("LUXFER_LOOK"):
+            for name in ours:
+                both = np.concatenate((ours[name], theirs[name]), 1)
+                luxfer.Image(work.context(), both).save(os.path.join(folder, f"{name}.png"), exposure=0.4 / ours["full"].mean())
+        self.assertEqual(list(ours), list(theirs))
+        for name, light in ours.items():
+            expected = wider.layer("wider").numpy() if name == "indirect" else light
+            mine, mean, other = (image.mean((0, 1)) for image in (light, expected, theirs[name]))
+            print(f"{name:12} luxfer {mine.round(3)}, as Cycles has it {mean.round(3)}, Cycles {other.round(3)} cd/m²")
+            np.testing.assert_allclose(other, mean, rtol=0.05 if name == "specular" else 0.02, err_msg=name)
+            self.assertGreater(np.corrcoef(light.ravel(), theirs[name].ravel())[0, 1], 0.95, name)
+
+    def test_light_goes_in_as_the_library_puts_it_in(self):
+        context, size = work.context(), {"width": 48, "height": 36, "samples": 4}
+        ball, table = (luxfer.Guides(context, luxfer.Scene.demo(context, n)).run(**size) for n in ("sphere-on-table", "still-life"))
+        pictures = []
+        for by_hand in (False, True):
+            stylize = luxfer.Stylize(context, ball.demo_artwork("paint"))
+            if by_hand:
+                passes.add_light(stylize, passes.light_of(ball), passes.light_of(table))
+            else:
+                stylize.add_guides(ball, table)
+            pictures.append(stylize.run(preset="fast").image().numpy())
+        np.testing.assert_allclose(pictures[0], pictures[1], atol=1e-3)
 
 
 class Conversion(unittest.TestCase):

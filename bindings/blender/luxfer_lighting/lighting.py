@@ -51,7 +51,7 @@ def prepared(scene: bpy.types.Scene) -> luxfer.Transfer:
     return transfer
 
 
-def mask_steps(transfer: luxfer.Transfer, photo: np.ndarray) -> Generator[luxfer.Job, Any, None]:
+def mask_steps(transfer: luxfer.Transfer, photo: np.ndarray) -> Generator[work.Step, Any, None]:
     yield transfer.start("view", "lights")
     store_masks(photo, transfer)
 
@@ -66,7 +66,7 @@ def store_masks(photo: np.ndarray, transfer: luxfer.Transfer) -> None:
 
 def transfer_steps(
     transfer: luxfer.Transfer, photo: np.ndarray, room: luxfer.Scene, name: str, params: dict[str, Any], apply: bool
-) -> Generator[luxfer.Job, Any, None]:
+) -> Generator[work.Step, Any, None]:
     global result
     yield transfer.start("view", "relight", **params)
     store_masks(photo, transfer)
@@ -149,7 +149,7 @@ class LUXFER_OT_preview_masks(work.Background, bpy.types.Operator):
     bl_label = "Preview Masks"
     title = "Masks"
 
-    def make(self, context: bpy.types.Context) -> tuple[Generator[luxfer.Job, Any, None], int]:
+    def make(self, context: bpy.types.Context) -> tuple[Generator[work.Step, Any, None], int]:
         return mask_steps(prepared(context.scene), photo_pixels(context.scene)), 1
 
 
@@ -160,11 +160,11 @@ class LUXFER_OT_transfer(work.Background, bpy.types.Operator):
     bl_label = "Transfer Light"
     title = "Transfer"
 
-    def make(self, context: bpy.types.Context) -> tuple[Generator[luxfer.Job, Any, None], int]:
+    def make(self, context: bpy.types.Context) -> tuple[Generator[work.Step, Any, None], int]:
         return transfer_work(context.scene)
 
 
-def transfer_work(scene: bpy.types.Scene) -> tuple[Generator[luxfer.Job, Any, None], int]:
+def transfer_work(scene: bpy.types.Scene) -> tuple[Generator[work.Step, Any, None], int]:
     """Reads all that a transfer needs."""
     settings = scene.luxfer
     if settings.target is None:

@@ -9,7 +9,7 @@ import bpy
 import luxfer
 import numpy as np
 
-from . import convert, work
+from . import convert, passes, work
 
 EXEMPLAR, ARTWORK, PICTURE = "Luxfer exemplar", "Luxfer artwork", "Luxfer stylised"
 
@@ -20,7 +20,7 @@ def ball(width: int, height: int, samples: int) -> tuple[luxfer.Guides, luxfer.J
     return guides, guides.start(width=width, height=height, samples=samples)
 
 
-def exemplar_steps(width: int, height: int, samples: int) -> Generator[luxfer.Job, Any, None]:
+def exemplar_steps(width: int, height: int, samples: int) -> Generator[work.Step, Any, None]:
     guides, job = ball(width, height, samples)
     yield job
     light = guides.image("full").numpy()
@@ -28,7 +28,7 @@ def exemplar_steps(width: int, height: int, samples: int) -> Generator[luxfer.Jo
     convert.store(EXEMPLAR, shown.numpy(np.uint8, "srgb") / np.float32(255), linear=False)
 
 
-def sample_steps(width: int, height: int, samples: int, style: str) -> Generator[luxfer.Job, Any, None]:
+def sample_steps(width: int, height: int, samples: int, style: str) -> Generator[work.Step, Any, None]:
     guides, job = ball(width, height, samples)
     yield job
     artwork = guides.demo_artwork(style).numpy(np.uint8, "srgb")[..., :3]
@@ -36,14 +36,23 @@ def sample_steps(width: int, height: int, samples: int, style: str) -> Generator
 
 
 def stylise_steps(
-    artwork: luxfer.Image, target: luxfer.Scene, params: dict[str, int], preset: str
-) -> Generator[luxfer.Job, Any, None]:
-    source, job = ball(*artwork.size[:2], params["samples"])
-    yield job
-    guides = luxfer.Guides(work.context(), target)
-    yield guides.start(**params)
-    stylize = luxfer.Stylize(work.context(), artwork)
-    stylize.add_guides(source, guides)
+    artwork: luxfer.Image, target: luxfer.Scene | passes.Rendering, params: dict[str, Any], preset: str
+) -> Generator[work.Step, Any, None]:
+    """The target is a scene for the library to render, or its guides by Cycles, being rendered already."""
+    try:
+        stylize = luxfer.Stylize(work.context(), artwork)
+        source, job = ball(*artwork.size[:2], params["samples"])
+        yield job
+        if isinstance(target, passes.Rendering):
+            yield target
+            passes.add_light(stylize, passes.light_of(source), target.light())
+        else:
+            guides = luxfer.Guides(work.context(), target)
+            yield guides.start(**params)
+            stylize.add_guides(source, guides)
+    finally:  # if the work ends before its turn
+        if isinstance(target, passes.Rendering):
+            target.close()
     yield stylize.start(preset)
     painted = stylize.image().numpy(np.uint8, "srgb")
     convert.store(PICTURE, painted[..., :3] / np.float32(255), linear=False)
@@ -56,7 +65,7 @@ class LUXFER_OT_exemplar(work.Background, bpy.types.Operator):
     bl_label = "Render Exemplar"
     title = "Exemplar"
 
-    def make(self, context: bpy.types.Context) -> tuple[Generator[luxfer.Job, Any, None], int]:
+    def make(self, context: bpy.types.Context) -> tuple[Generator[work.Step, Any, None], int]:
         settings = context.scene.luxfer
         return exemplar_steps(settings.exemplar_width, settings.exemplar_height, settings.guide_samples), 1
 
@@ -77,7 +86,7 @@ class LUXFER_OT_sample_artwork(work.Background, bpy.types.Operator):
         ),
     )
 
-    def make(self, context: bpy.types.Context) -> tuple[Generator[luxfer.Job, Any, None], int]:
+    def make(self, context: bpy.types.Context) -> tuple[Generator[work.Step, Any, None], int]:
         settings = context.scene.luxfer
         return sample_steps(settings.exemplar_width, settings.exemplar_height, settings.guide_samples, self.style), 1
 
@@ -89,17 +98,21 @@ class LUXFER_OT_stylise(work.Background, bpy.types.Operator):
     bl_label = "Stylise"
     title = "Stylisation"
 
-    def make(self, context: bpy.types.Context) -> tuple[Generator[luxfer.Job, Any, None], int]:
+    def make(self, context: bpy.types.Context) -> tuple[Generator[work.Step, Any, None], int]:
         scene, settings = context.scene, context.scene.luxfer
         view = convert.camera(scene)
         if settings.artwork is None:
             raise ValueError("choose an artwork first: the exemplar, painted over")
         if view is None:
             raise ValueError("the scene has no camera")
-        target = convert.scene(work.context(), scene)
-        width, height = convert.resolution(scene)
-        params = {"width": width, "height": height, "samples": settings.guide_samples, "camera": target.add_camera(**view)}
-        return stylise_steps(convert.image(work.context(), settings.artwork), target, params, settings.preset), 3
+        artwork, params = convert.image(work.context(), settings.artwork), {"samples": settings.guide_samples}
+        if settings.guides_by == "CYCLES":
+            target = passes.Rendering(scene, context.view_layer, settings.guide_samples)
+        else:
+            target = convert.scene(work.context(), scene)
+            params["width"], params["height"] = convert.resolution(scene)
+            params["camera"] = target.add_camera(**view)
+        return stylise_steps(artwork, target, params, settings.preset), 3
 
 
 CLASSES = (LUXFER_OT_exemplar, LUXFER_OT_sample_artwork, LUXFER_OT_stylise)

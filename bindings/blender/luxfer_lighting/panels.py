@@ -82,6 +82,8 @@ class PaintingPanel(Sidebar):
         layout.template_ID(settings, "artwork", open="image.open")
         layout.operator_menu_enum("luxfer.sample_artwork", "style")
         layout.prop(settings, "preset")
+        row = layout.row()
+        row.prop(settings, "guides_by", expand=True)
         layout.prop(settings, "guide_samples")
         layout.operator("luxfer.stylise", icon="BRUSH_DATA")
         layout.label(text=f"The picture is the image {painting.PICTURE}")

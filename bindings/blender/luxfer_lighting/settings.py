@@ -80,6 +80,15 @@ class LuxferSettings(bpy.types.PropertyGroup):
         ),
         default="FAST",
     )
+    guides_by: EnumProperty(
+        name="Guides",
+        items=(
+            ("LUXFER", "Luxfer", "What glTF can say of the scene, rendered by the library: exact light paths"),
+            ("CYCLES", "Cycles", "The scene as Cycles sees it, rendered by a second Blender on a copy of the file"),
+        ),
+        default="LUXFER",
+        description="Who renders what the light does in the scene",
+    )
     guide_samples: IntProperty(name="Samples", default=32, min=1, max=65536, description="Paths per pixel of the guides")
     exemplar_width: IntProperty(name="Width", default=480, min=32, max=8192, description="Width of the exemplar in pixels")
     exemplar_height: IntProperty(name="Height", default=360, min=32, max=8192, description="Height of the exemplar in pixels")

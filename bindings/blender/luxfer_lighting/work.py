@@ -7,7 +7,7 @@ cancel. Nothing of Blender's data is touched but from the main thread, between t
 from __future__ import annotations
 
 from collections.abc import Callable, Generator
-from typing import Any
+from typing import Any, Protocol
 
 import bpy
 import luxfer
@@ -27,13 +27,23 @@ def context() -> luxfer.Context:
     return _context
 
 
+class Step(Protocol):
+    """A job of the library, or what looks like one."""
+
+    @property
+    def finished(self) -> bool: ...
+    def poll(self) -> tuple[float, bool]: ...
+    def wait(self) -> Any: ...
+    def cancel(self) -> None: ...
+
+
 class Work:
     """A generator of jobs, how many there will be, and what is said of it."""
 
-    def __init__(self, title: str, steps: Generator[luxfer.Job, Any, None], count: int):
+    def __init__(self, title: str, steps: Generator[Step, Any, None], count: int):
         self.title, self.steps, self.count = title, steps, count
         self.done = 0
-        self.job: luxfer.Job = next(steps)
+        self.job: Step = next(steps)
 
     @property
     def progress(self) -> float:
@@ -56,7 +66,7 @@ class Work:
         self.job.cancel()
         try:
             self.job.wait()
-        except luxfer.Error:
+        except Exception:
             pass
         self.steps.close()
 
@@ -65,7 +75,7 @@ def current() -> Work | None:
     return _current
 
 
-def start(title: str, make: Callable[[], tuple[Generator[luxfer.Job, Any, None], int]]) -> None:
+def start(title: str, make: Callable[[], tuple[Generator[Step, Any, None], int]]) -> None:
     """Begins a work; an error of its first step is raised here, later ones become the message."""
     global _current, message
     if _current is not None:
@@ -99,7 +109,7 @@ def finish() -> None:
     while _current is not None:
         try:
             _current.job.wait()
-        except luxfer.Error:
+        except Exception:
             pass  # step() meets it again
         step()
     if message:
@@ -129,7 +139,7 @@ class Background:
 
     title: str
 
-    def make(self, context: bpy.types.Context) -> tuple[Generator[luxfer.Job, Any, None], int]:
+    def make(self, context: bpy.types.Context) -> tuple[Generator[Step, Any, None], int]:
         """The steps and how many jobs they have. Blender's data is read here: an undo may replace it while a job runs."""
         raise NotImplementedError
 

@@ -1,0 +1,115 @@
+"""Guide passes by Cycles: in a second Blender, on a copy of the .blend, so that nothing here waits or is changed.
+
+The rendering has the face of a job of the library's, so that `work` runs it, tells its progress and cancels it in the same way.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import threading
+from pathlib import Path
+
+import bpy
+import luxfer
+import numpy as np
+
+from .render_passes import GUIDES
+
+PROGRAM = Path(__file__).with_name("render_passes.py")
+
+
+class Rendering:
+    """The guides of a scene's active camera, being rendered. Blender's data is only read, and only here at the start."""
+
+    def __init__(self, scene: bpy.types.Scene, layer: bpy.types.ViewLayer, samples: int):
+        self._folder = tempfile.TemporaryDirectory(prefix="luxfer-")
+        self._out = Path(self._folder.name) / "guides.npz"
+        blend = os.path.join(self._folder.name, "scene.blend")
+        bpy.ops.wm.save_as_mainfile(filepath=blend, copy=True, check_existing=False, compress=False)
+        settings = {"blend": blend, "scene": scene.name, "layer": layer.name, "samples": samples, "out": str(self._out)}
+        blender = [bpy.app.binary_path, "--background", "--python-exit-code", "1", "--python"]
+        if not bpy.app.binary_path:  # bpy as a module of Python's
+            blender = [sys.executable, "-P"]  # which does not take the files beside the program for modules
+        self._fraction, self._said, self._cancelled = 0.0, [""], False
+        self._process = subprocess.Popen(
+            [*blender, str(PROGRAM), "--", json.dumps(settings)],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            errors="replace",
+        )
+        self._reader = threading.Thread(target=self._listen, daemon=True)
+        self._reader.start()
+
+    def _listen(self) -> None:
+        for line in self._process.stdout:
+            if line.startswith("progress "):
+                self._fraction = max(self._fraction, float(line.split()[1]))
+            elif line.strip():
+                self._said = [*self._said[-4:], line.strip()]
+
+    @property
+    def finished(self) -> bool:
+        return self._process.poll() is not None
+
+    def poll(self) -> tuple[float, bool]:
+        """The share that is done, and whether it has ended, well or not."""
+        return self._fraction, self.finished
+
+    def cancel(self) -> None:
+        self._cancelled = True
+        self._process.kill()
+
+    def wait(self) -> Rendering:
+        """Waits for the end; raises what a job would."""
+        try:
+            status = self._process.wait()
+        except BaseException:  # Ctrl-C in a script
+            self.close()
+            raise
+        self._reader.join()
+        if self._cancelled:
+            self.close()
+            raise luxfer.errors.Cancelled("cancelled")
+        if status != 0 or not self._out.exists():
+            self.close()
+            raise RuntimeError(f"Cycles could not render the guides: {self._said[-1] or f'it ended with {status}'}")
+        return self
+
+    def light(self) -> dict[str, np.ndarray]:
+        """The guides by the names of GUIDES, (height, width, 3), rows from the top."""
+        with np.load(self._out) as stored:
+            out = {name: stored[name] for name in GUIDES}
+        self.close()
+        return out
+
+    def close(self) -> None:
+        if not self.finished:
+            self._process.kill()
+        self._process.wait()
+        self._reader.join()
+        self._process.stdout.close()
+        self._folder.cleanup()
+
+
+def light_of(guides: luxfer.Guides) -> dict[str, np.ndarray]:
+    """The same of guides that the library has rendered."""
+    return {name: guides.image(which).numpy() for name, which in GUIDES.items()}
+
+
+def add_light(stylize: luxfer.Stylize, source: dict[str, np.ndarray], target: dict[str, np.ndarray]) -> None:
+    """Adds the guides of two scenes, whoever has rendered them, at a common exposure, as Stylize.add_guides does: the
+    luminance that nine tenths of both full pictures stay below becomes 0.8, and what is beyond 1 is 1."""
+    luma = np.float32((0.2126, 0.7152, 0.0722))
+    luminances = np.concatenate([(light["full"] @ luma).ravel() for light in (source, target)])
+    luminances = luminances[np.isfinite(luminances)]
+    rank = (max(luminances.size, 1) - 1) * 9 // 10
+    bright = np.partition(luminances, rank)[rank] if luminances.size else 0.0
+    exposure = np.float32(0.8 / bright if bright > 0 else 1)
+    for name in GUIDES:
+        stylize.add_guide(name, *(np.minimum(light[name] * exposure, 1) for light in (source, target)))
