@@ -10,7 +10,7 @@ from room import SIZE, bpy, build, cycles, np, unbiased
 import bmesh
 import luxfer
 import luxfer_lighting
-from luxfer_lighting import convert, lighting, painting, panels, passes, work
+from luxfer_lighting import convert, lighting, live, painting, panels, passes, work
 
 EXEMPLAR = {"width": 240, "height": 160, "samples": 8}
 
@@ -180,6 +180,82 @@ class AddOn(unittest.TestCase):
         photo = convert.pixels(self.scene.luxfer.photo)[..., :3]
         self.assertEqual(masks.shape, photo.shape)
         self.assertGreater((masks != photo).any(-1).mean(), 0.05)
+
+    def follow(self):
+        """What the timer does until there is nothing new; what it took."""
+        start = time.monotonic()
+        self.assertIsNotNone(live.step())
+        while live.preview is not None and live.preview.job is not None:
+            self.assertIsNotNone(live.step())
+        return time.monotonic() - start
+
+    def test_masks_follow_the_strokes(self):
+        self.load_photo()
+        strokes = self.scene.luxfer.strokes
+        complete = convert.pixels(strokes)
+        beside = (complete[..., :3] == (0, 0, 1)).all(-1)
+        some = complete.copy()
+        some[beside] = 0.5
+        manager = bpy.context.window_manager
+
+        def paint(values):
+            strokes.pixels.foreach_set(np.ascontiguousarray(values[::-1]).ravel())
+
+        paint(some)
+        manager.luxfer_live = True
+        self.assertTrue(bpy.app.timers.is_registered(live.step))
+        self.follow()  # the photo
+        self.follow()  # the strokes
+        self.assertEqual(list(live.preview.shown), ["plane"])
+        self.assertIn("blue", live.preview.hint)
+        self.assertEqual(live.preview.overlay().shape, complete.shape)
+
+        paint(complete)
+        took = self.follow()
+        self.assertEqual(list(live.preview.shown), ["plane", "lights"])
+        self.assertEqual(live.preview.hint, "")
+        self.assertLess(took, 1)
+        shown = convert.pixels(bpy.data.images[lighting.MASKS])
+        version = live.preview.version
+        self.follow()
+        self.assertEqual(live.preview.version, version, "nothing new was painted")
+        bpy.ops.luxfer.preview_masks()  # the photo is not reduced: the same masks
+        np.testing.assert_array_equal(convert.pixels(bpy.data.images[lighting.MASKS]), shown)
+
+        bpy.ops.luxfer.new_strokes()
+        self.follow()
+        self.assertEqual(live.preview.shown, {})
+        self.assertIn("green", live.preview.hint)
+        manager.luxfer_live = False
+        self.assertIsNone(live.step())
+        self.assertIsNone(live.preview)
+
+    def test_live_masks_of_large_photos_are_reduced_and_give_way(self):
+        self.load_photo()
+        bpy.context.window_manager.luxfer_live = True
+        pixels, live.PIXELS = live.PIXELS, 5_000
+        self.addCleanup(setattr, live, "PIXELS", pixels)
+        self.follow()
+        self.follow()
+        width, height = self.scene.luxfer.photo.size
+        n = live.preview.reduction
+        self.assertEqual(live.preview.shown["plane"].shape, (height // n, width // n, 1))
+        self.assertLessEqual(width * height / n**2, 5_000)
+        self.assertGreater(width * height / (n - 1) ** 2, 5_000)
+
+        # Another photo is another preview; and none is made while the processors are needed.
+        work.start("Masks", lambda: (lighting.mask_steps(lighting.prepared(self.scene), lighting.photo_pixels(self.scene)), 1))
+        before = live.preview
+        self.scene.luxfer.photo = self.scene.luxfer.photo.copy()
+        live.step()
+        self.assertIs(live.preview, before)
+        work.cancel()
+        live.step()
+        self.assertIsNot(live.preview, before)
+        luxfer_lighting.unregister()  # while a job runs
+        self.assertIsNone(live.preview)
+        self.assertFalse(bpy.app.timers.is_registered(live.step))
+        luxfer_lighting.register()
 
     def test_what_is_missing_is_told(self):
         for message, prepare in (

@@ -4,13 +4,14 @@
     ball ─▶ artwork painted over it ─▶ stylise ─▶ an image
 
 One file for each thing: `convert` turns Blender's data into luxfer's and back, `work` runs jobs behind the user
-interface, `lighting` and `painting` are the operators, `panels` what is seen of them, `settings` what is stored in the .blend.
+interface, `lighting` and `painting` are the operators, `live` shows masks while strokes are painted, `passes` has a second
+Blender render (`render_passes`), `panels` is what is seen of them, `settings` what is stored in the .blend.
 One unit of radiance in Blender is taken as one cd/m², so numbers in materials are nits.
 """
 
-from . import lighting, painting, panels, settings, work
+from . import lighting, live, painting, panels, settings, work
 
-MODULES = (settings, work, lighting, painting, panels)
+MODULES = (settings, work, lighting, live, painting, panels)
 
 
 def register() -> None:

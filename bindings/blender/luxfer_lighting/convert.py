@@ -44,9 +44,9 @@ def drawing(context: luxfer.Context, source: bpy.types.Image) -> luxfer.Image:
     return luxfer.Image(context, pixels(source)[..., :3])
 
 
-def store(name: str, values: np.ndarray, linear: bool) -> bpy.types.Image:
+def store(name: str, values: np.ndarray, linear: bool, pack: bool = True) -> bpy.types.Image:
     """Pixels (height, width, channels), rows from the top, as the image of that name: of floats if linear, else sRGB of 8
-    bits. It is packed into the .blend."""
+    bits. It is packed into the .blend, unless it is soon to be another."""
     height, width, channels = values.shape
     rgba = np.ones((height, width, 4), np.float32)
     rgba[..., :3] = values[::-1] if channels == 3 else values[::-1, :, :1]
@@ -58,7 +58,8 @@ def store(name: str, values: np.ndarray, linear: bool) -> bpy.types.Image:
     out.colorspace_settings.name = "Linear Rec.709" if linear else "sRGB"
     out.pixels.foreach_set(rgba.ravel())
     out.update()
-    out.pack()
+    if pack:
+        out.pack()
     return out
 
 

@@ -53,15 +53,22 @@ def prepared(scene: bpy.types.Scene) -> luxfer.Transfer:
 
 def mask_steps(transfer: luxfer.Transfer, photo: np.ndarray) -> Generator[work.Step, Any, None]:
     yield transfer.start("view", "lights")
-    store_masks(photo, transfer)
+    store_masks(photo, *masks(transfer))
 
 
-def store_masks(photo: np.ndarray, transfer: luxfer.Transfer) -> None:
-    """The photo with the plane in green and the lights in yellow."""
-    plane, lights = (transfer.image(which).numpy() for which in ("plane-mask", "lights-mask"))
-    tinted = photo + plane * (0.5 * (np.float32((0, 0.6, 0)) - photo))
-    tinted += lights * (0.8 * (np.float32((1, 1, 0)) - tinted))
-    convert.store(MASKS, tinted, linear=False)
+def masks(transfer: luxfer.Transfer) -> tuple[np.ndarray, np.ndarray]:
+    """Of the plane and of the lights, (height, width, 1)."""
+    return transfer.image("plane-mask").numpy(), transfer.image("lights-mask").numpy()
+
+
+def store_masks(photo: np.ndarray, plane: np.ndarray | None, lights: np.ndarray | None, pack: bool = True) -> None:
+    """The photo with the plane in green and the lights in yellow, as far as they are known."""
+    tinted = photo.copy()
+    if plane is not None:
+        tinted += plane * (0.5 * (np.float32((0, 0.6, 0)) - tinted))
+    if lights is not None:
+        tinted += lights * (0.8 * (np.float32((1, 1, 0)) - tinted))
+    convert.store(MASKS, tinted, linear=False, pack=pack)
 
 
 def transfer_steps(
@@ -69,7 +76,7 @@ def transfer_steps(
 ) -> Generator[work.Step, Any, None]:
     global result
     yield transfer.start("view", "relight", **params)
-    store_masks(photo, transfer)
+    store_masks(photo, *masks(transfer))
     lit = transfer.scene("lit")
     emission = lit.material(lit.counts.materials - 1)["emission"]  # that of the surface is the last one
     texture = transfer.image("emission").numpy()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import bpy
 
-from . import lighting, painting, work
+from . import lighting, live, painting, work
 
 
 def show_progress(layout: bpy.types.UILayout) -> None:
@@ -47,7 +47,12 @@ class LightingPanel(Sidebar):
         grid = box.grid_flow(columns=2, align=True)
         for kind, (_, label, _) in lighting.COLOURS.items():
             grid.operator("luxfer.paint", text=label).kind = kind
-        box.operator("luxfer.preview_masks", icon="MOD_MASK")
+        row = box.row(align=True)
+        row.operator("luxfer.preview_masks", icon="MOD_MASK")
+        row.prop(context.window_manager, "luxfer_live", toggle=True, icon="HIDE_OFF")
+        if live.preview is not None and live.preview.hint:
+            for line in lines(live.preview.hint):
+                box.label(text=line)
         layout.prop(settings, "target")
         column = layout.column(align=True)
         column.prop(settings, "scale")

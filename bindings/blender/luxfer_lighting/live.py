@@ -1,0 +1,197 @@
+"""The masks while strokes are painted: a timer looks whether the strokes have changed, and a job makes new masks of them.
+
+They lie over the photo in the Image Editor where it is painted on, and are the image "Luxfer masks". Large photos are looked
+at in reduced size here; *Preview Masks* and the transfer are exact.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from typing import Any
+
+import bpy
+import luxfer
+import numpy as np
+
+from . import convert, lighting, work
+
+POLL_SECONDS = 0.2
+#: The share of the time that looking at the strokes may take, however large they are.
+SHARE = 0.1
+#: Photos of more pixels are reduced.
+PIXELS = 1_500_000
+
+#: What is missing where a stage cannot make its mask.
+HINTS = {
+    "plane": "Paint a stroke on the plane of the lights (green) and one off it (red)",
+    "lights": "Paint a stroke on a light (yellow) and one beside the lights (blue)",
+}
+
+
+class Preview:
+    """What is known of one photo, and the masks of the strokes seen last."""
+
+    def __init__(self, scene: bpy.types.Scene):
+        photo = scene.luxfer.photo
+        self.of = identity(scene)
+        self.reduction = max(1, math.ceil(math.sqrt(photo.size[0] * photo.size[1] / PIXELS)))
+        self.photo = self.reduced(convert.pixels(photo)[..., :3], smooth=True)
+        encoded = not photo.is_float and photo.colorspace_settings.name == "sRGB"
+        self.transfer = luxfer.Transfer(work.context(), luxfer.Image(work.context(), self.photo, "srgb" if encoded else "linear"))
+        self.job: luxfer.Job[luxfer.Transfer] | None = self.transfer.start("view", "features")
+        self.stage = "features"
+        self.strokes: np.ndarray | None = None
+        self.masks: dict[str, np.ndarray] = {}  # by stage
+        self.shown: dict[str, np.ndarray] = {}  # the last complete ones
+        self.hint = ""
+        self.version = 0
+
+    def reduced(self, values: np.ndarray, smooth: bool = False) -> np.ndarray:
+        """Every n-th pixel, or means over n x n."""
+        n = self.reduction
+        height, width = (size // n * n for size in values.shape[:2])
+        if smooth and n > 1:
+            return np.ascontiguousarray(values[:height, :width].reshape(height // n, n, width // n, n, -1).mean((1, 3)))
+        return np.ascontiguousarray(values[n // 2 : height : n, n // 2 : width : n])
+
+    def follow(self, scene: bpy.types.Scene) -> None:
+        """Takes up what the job has found, or starts another if there is new paint."""
+        if self.job is not None:
+            if self.job.finished:
+                job, self.job = self.job, None
+                self.read(job)
+            return
+        strokes = self.reduced(convert.pixels(scene.luxfer.strokes)[..., :3])
+        if self.strokes is not None and np.array_equal(strokes, self.strokes):
+            return
+        self.strokes = strokes
+        self.transfer.clear_strokes()
+        self.transfer.add_strokes_image(luxfer.Image(work.context(), strokes))
+        self.masks, self.hint = {}, ""
+        self.begin("plane")
+
+    def begin(self, stage: str) -> None:
+        self.stage, self.job = stage, self.transfer.start(stage, stage)
+
+    def read(self, job: luxfer.Job[luxfer.Transfer]) -> None:
+        """The mask of a stage, if there are strokes for it; then the next stage."""
+        try:
+            job.wait()
+        except luxfer.errors.Degenerate as error:
+            self.hint = HINTS.get(self.stage, str(error))
+        if self.stage == "features":
+            return
+        if not self.hint:
+            self.masks[self.stage] = self.transfer.image(f"{self.stage}-mask").numpy()
+            if self.stage == "plane":
+                self.begin("lights")
+                return
+        lighting.store_masks(self.photo, *(self.masks.get(stage) for stage in HINTS), pack=False)
+        self.shown = dict(self.masks)
+        self.version += 1
+        work.redraw()
+
+    def overlay(self) -> np.ndarray | None:
+        """The masks as colours to lay over the photo: (height, width, 4), rows from the top."""
+        if not self.shown:
+            return None
+        out = np.zeros((*self.photo.shape[:2], 4), np.float32)
+        for stage, colour in (("plane", (0.0, 0.8, 0.1, 0.4)), ("lights", (1.0, 0.9, 0.0, 0.7))):
+            if stage in self.shown:
+                out += self.shown[stage] * (np.float32(colour) - out)
+        return out
+
+
+preview: Preview | None = None
+_texture: Any = None
+_texture_of: tuple[int, int] | None = None
+_handler: Any = None
+
+
+def identity(scene: bpy.types.Scene) -> tuple[Any, ...]:
+    """What makes a preview another one."""
+    photo = scene.luxfer.photo
+    return scene.name, photo.name, tuple(photo.size)
+
+
+def step() -> float | None:
+    """What the timer calls: seconds until it wants to be called again, None when it is over."""
+    global preview
+    scene, settings = bpy.context.scene, bpy.context.scene.luxfer
+    if not bpy.context.window_manager.luxfer_live:
+        forget()
+        return None
+    if work.current() is not None:  # it has the processors
+        return POLL_SECONDS
+    if settings.photo is None or settings.strokes is None or tuple(settings.strokes.size) != tuple(settings.photo.size):
+        forget()
+        return POLL_SECONDS
+    start = time.perf_counter()
+    try:
+        if preview is None or preview.of != identity(scene):
+            forget()
+            preview = Preview(scene)
+        preview.follow(scene)
+    except Exception as error:  # a timer has nobody to raise to
+        bpy.context.window_manager.luxfer_live = False
+        work.message = str(error)
+        forget()
+        return None
+    return max(POLL_SECONDS if preview.job is None else work.POLL_SECONDS, (time.perf_counter() - start) / SHARE)
+
+
+def forget() -> None:
+    """Ends what runs."""
+    global preview, _texture, _texture_of
+    if preview is not None and preview.job is not None:
+        preview.job.cancel()
+        preview.job.close()
+    preview = _texture = _texture_of = None
+    work.redraw()
+
+
+def toggled(manager: bpy.types.WindowManager, _: bpy.types.Context) -> None:
+    if manager.luxfer_live and not bpy.app.timers.is_registered(step):
+        bpy.app.timers.register(step, first_interval=0.0, persistent=True)
+
+
+def draw() -> None:
+    """Lays the masks over the photo where strokes are painted on it."""
+    global _texture, _texture_of
+    space, region, settings = bpy.context.space_data, bpy.context.region, bpy.context.scene.luxfer
+    if preview is None or not preview.shown or space.image is None or space.image != settings.strokes:
+        return
+    import gpu
+    from gpu_extras.presets import draw_texture_2d
+
+    if _texture_of != (id(preview), preview.version):
+        colours = preview.overlay()[::-1]
+        height, width = colours.shape[:2]
+        buffer = gpu.types.Buffer("FLOAT", colours.size, np.ascontiguousarray(colours).ravel())
+        _texture = gpu.types.GPUTexture((width, height), format="RGBA16F", data=buffer)
+        _texture_of = id(preview), preview.version
+    left, bottom = region.view2d.view_to_region(0, 0, clip=False)
+    right, top = region.view2d.view_to_region(1, 1, clip=False)
+    gpu.state.blend_set("ALPHA")
+    draw_texture_2d(_texture, (left, bottom), right - left, top - bottom)
+    gpu.state.blend_set("NONE")
+
+
+def register() -> None:
+    global _handler
+    bpy.types.WindowManager.luxfer_live = bpy.props.BoolProperty(
+        name="Live", description="Show the masks while strokes are painted", default=False, update=toggled
+    )
+    _handler = bpy.types.SpaceImageEditor.draw_handler_add(draw, (), "WINDOW", "POST_PIXEL")
+
+
+def unregister() -> None:
+    global _handler
+    if bpy.app.timers.is_registered(step):
+        bpy.app.timers.unregister(step)
+    forget()
+    if _handler is not None:
+        bpy.types.SpaceImageEditor.draw_handler_remove(_handler, "WINDOW")
+        _handler = None
+    del bpy.types.WindowManager.luxfer_live
