@@ -150,13 +150,15 @@ class AddOn(unittest.TestCase):
         self.assertEqual(reports, ["Cancelled"])
 
     def test_panels_name_what_exists(self):
-        """Drawn into a stub of a layout that looks up every property and operator it is given."""
+        """Drawn into a stub of a layout that looks up every property, operator and icon it is given."""
+        icons = bpy.types.UILayout.bl_rna.functions["prop"].parameters["icon"].enum_items
 
         class Layout:
             def __getattr__(self, name):
-                return lambda *arguments, **_: self.check(name, *arguments)
+                return lambda *arguments, **options: self.check(name, *arguments, **options)
 
-            def check(self, name, *arguments):
+            def check(self, name, *arguments, icon="NONE", **_):
+                icons[icon]
                 if name in ("prop", "template_ID"):
                     arguments[0].bl_rna.properties[arguments[1]]
                 elif name in ("operator", "operator_menu_enum"):

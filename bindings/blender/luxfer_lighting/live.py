@@ -90,7 +90,7 @@ class Preview:
         lighting.store_masks(self.photo, *(self.masks.get(stage) for stage in HINTS), pack=False)
         self.shown = dict(self.masks)
         self.version += 1
-        work.redraw()
+        work.redraw(pictures=True)
 
     def overlay(self) -> np.ndarray | None:
         """The masks as colours to lay over the photo: (height, width, 4), rows from the top."""
@@ -138,7 +138,7 @@ def step() -> float | None:
         work.message = str(error)
         forget()
         return None
-    return max(POLL_SECONDS if preview.job is None else work.POLL_SECONDS, (time.perf_counter() - start) / SHARE)
+    return work.POLL_SECONDS if preview.job is not None else max(POLL_SECONDS, (time.perf_counter() - start) / SHARE)
 
 
 def forget() -> None:
@@ -148,7 +148,7 @@ def forget() -> None:
         preview.job.cancel()
         preview.job.close()
     preview = _texture = _texture_of = None
-    work.redraw()
+    work.redraw(pictures=True)
 
 
 def toggled(manager: bpy.types.WindowManager, _: bpy.types.Context) -> None:

@@ -7,7 +7,11 @@ import bpy
 from . import lighting, live, painting, work
 
 
-def show_progress(layout: bpy.types.UILayout) -> None:
+#: The colours of the strokes, by icons that every version has (those of bones).
+ICONS = {"PLANE": "COLORSET_03_VEC", "NOT_PLANE": "COLORSET_01_VEC", "LIGHT": "COLORSET_09_VEC", "NOT_LIGHT": "COLORSET_04_VEC"}
+
+
+def show_progress(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     """The progress of the running work and a button that cancels, or what the last one had to say."""
     running = work.current()
     if running is not None:
@@ -15,14 +19,22 @@ def show_progress(layout: bpy.types.UILayout) -> None:
         row.progress(factor=running.progress, text=f"{running.title} {running.progress:.0%}")
         row.operator("luxfer.cancel", text="", icon="X")
     elif work.message:
-        column = layout.column()
-        column.alert = work.message != "Cancelled"
-        for line in lines(work.message):
-            column.label(text=line)
+        say(layout, context, work.message, alert=work.message != "Cancelled")
 
 
-def lines(text: str, width: int = 40) -> list[str]:
-    """A message in lines that fit into the sidebar."""
+def say(layout: bpy.types.UILayout, context: bpy.types.Context, text: str, alert: bool = False) -> None:
+    """A text in lines that fit into the sidebar, as wide as it is."""
+    column = layout.column(align=True)
+    column.alert = alert
+    width = 280
+    if context.region is not None:
+        width = context.region.width / context.preferences.system.ui_scale
+    for line in lines(text, max(16, int((width - 60) / 6))):  # letters are about 6 wide, tabs and margins 60 together
+        column.label(text=line)
+
+
+def lines(text: str, width: int) -> list[str]:
+    """A text in lines of less than `width` letters, as far as its words allow."""
     out = [""]
     for word in text.split():
         if len(out[-1]) + len(word) >= width:
@@ -46,14 +58,13 @@ class LightingPanel(Sidebar):
         box.operator("luxfer.new_strokes", icon="BRUSH_DATA")
         grid = box.grid_flow(columns=2, align=True)
         for kind, (_, label, _) in lighting.COLOURS.items():
-            grid.operator("luxfer.paint", text=label).kind = kind
+            grid.operator("luxfer.paint", text=label, icon=ICONS[kind]).kind = kind
         row = box.row(align=True)
-        row.operator("luxfer.preview_masks", icon="MOD_MASK")
+        row.operator("luxfer.preview_masks", text="Masks", icon="MOD_MASK")
         row.prop(context.window_manager, "luxfer_live", toggle=True, icon="HIDE_OFF")
         if live.preview is not None and live.preview.hint:
-            for line in lines(live.preview.hint):
-                box.label(text=line)
-        layout.prop(settings, "target")
+            say(box, context, live.preview.hint)
+        layout.prop(settings, "target", text="On")
         column = layout.column(align=True)
         column.prop(settings, "scale")
         if settings.scale == "DISTANCE":
@@ -70,8 +81,8 @@ class LightingPanel(Sidebar):
         layout.operator("luxfer.transfer", icon="LIGHT")
         if lighting.result is not None:
             layout.operator("luxfer.apply", icon="MATERIAL")
-            layout.label(text=f"Strength known to {lighting.result.error:.1%}; see the text {lighting.LAMPS}")
-        show_progress(layout)
+            say(layout, context, f"Strength known to {lighting.result.error:.1%}; see the text {lighting.LAMPS}")
+        show_progress(layout, context)
 
 
 class PaintingPanel(Sidebar):
@@ -91,8 +102,8 @@ class PaintingPanel(Sidebar):
         row.prop(settings, "guides_by", expand=True)
         layout.prop(settings, "guide_samples")
         layout.operator("luxfer.stylise", icon="BRUSH_DATA")
-        layout.label(text=f"The picture is the image {painting.PICTURE}")
-        show_progress(layout)
+        say(layout, context, f"The picture is the image {painting.PICTURE}")
+        show_progress(layout, context)
 
 
 class LUXFER_PT_lighting(LightingPanel, bpy.types.Panel):

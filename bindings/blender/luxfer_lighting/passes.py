@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -34,7 +35,7 @@ class Rendering:
         blender = [bpy.app.binary_path, "--background", "--python-exit-code", "1", "--python"]
         if not bpy.app.binary_path:  # bpy as a module of Python's
             blender = [sys.executable, "-P"]  # which does not take the files beside the program for modules
-        self._fraction, self._said, self._cancelled = 0.0, [""], False
+        self._fraction, self._said, self._cancelled = 0.0, "", False
         self._process = subprocess.Popen(
             [*blender, str(PROGRAM), "--", json.dumps(settings)],
             stdin=subprocess.DEVNULL,
@@ -47,11 +48,17 @@ class Rendering:
         self._reader.start()
 
     def _listen(self) -> None:
+        first = last = 0.0
         for line in self._process.stdout:
-            if line.startswith("progress "):
-                self._fraction = max(self._fraction, float(line.split()[1]))
+            if line.startswith("part "):
+                first, last = (float(word) for word in line.split()[1:])
+            elif sample := re.search(r"Sample (\d+)/([1-9]\d*)", line):
+                done = int(sample[1]) / int(sample[2])
+                if tiles := re.search(r"Rendered (\d+)/([1-9]\d*) Tiles", line):
+                    done = (int(tiles[1]) + done) / int(tiles[2])
+                self._fraction = max(self._fraction, first + min(done, 1.0) * (last - first))
             elif line.strip():
-                self._said = [*self._said[-4:], line.strip()]
+                self._said = line.strip()
 
     @property
     def finished(self) -> bool:
@@ -78,7 +85,7 @@ class Rendering:
             raise luxfer.errors.Cancelled("cancelled")
         if status != 0 or not self._out.exists():
             self.close()
-            raise RuntimeError(f"Cycles could not render the guides: {self._said[-1] or f'it ended with {status}'}")
+            raise RuntimeError(f"Cycles could not render the guides: {self._said or f'it ended with {status}'}")
         return self
 
     def light(self) -> dict[str, np.ndarray]:

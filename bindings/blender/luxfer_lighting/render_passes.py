@@ -2,8 +2,9 @@
 
     blender --background --python render_passes.py -- SETTINGS     (or a Python that has bpy: render_passes.py -- SETTINGS)
 
-SETTINGS is JSON: "blend", "scene", "layer" (of views), "samples", "out" (an .npz file). Lines "progress SHARE" tell how far it
-is. What the passes are as light path expressions, in the notation of luxfer's guides:
+SETTINGS is JSON: "blend", "scene", "layer" (of views), "samples", "out" (an .npz file). Lines "part FIRST LAST" say which
+share of the work the rendering that begins is; Cycles' own lines say how far that is. What the passes are as light path
+expressions, in the notation of luxfer's guides:
 
     full        L.*E       Combined
     direct      LDE        diffuse direct
@@ -18,10 +19,11 @@ The light is smoothed along surfaces as luxfer smooths its own (src/guides/smoot
 from __future__ import annotations
 
 import json
-import re
+import os
 import struct
 import sys
 import tempfile
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -40,13 +42,11 @@ LONG = {
     "GlossCol": "Glossy Color",
     "IndexMA": "Material Index",
 }
-#: Of Cycles' work, what the second rendering takes.
-SECOND = 0.3
 
 
 def read_exr(path: Path) -> dict[str, np.ndarray]:
-    """The layers of an OpenEXR file as Blender writes it uncompressed, of floats, in one part: name of the pass -> (height,
-    width, channels), channels in the order RGBA or XYZ."""
+    """The layers of an OpenEXR file as Blender writes it uncompressed, of floats, in one part: name of the pass ->
+    (channels, height, width), channels in the order RGBA or XYZ."""
     data = path.read_bytes()
     at = 8  # behind magic number and version
     attributes: dict[str, bytes] = {}
@@ -70,51 +70,82 @@ def read_exr(path: Path) -> dict[str, np.ndarray]:
     for i, full in enumerate(names):
         _, layer, channel = full.rsplit(".", 2)
         layers.setdefault(layer, {})[channel] = values[:, i]
-    return {LONG.get(name, name): np.stack([c[k] for k in "RGBXYZVA" if k in c], -1) for name, c in layers.items()}
+    return {LONG.get(name, name): np.stack([c[k] for k in "RGBXYZVA" if k in c]) for name, c in layers.items()}
 
 
-def smooth(light: np.ndarray, normals: np.ndarray, material: np.ndarray) -> np.ndarray:
-    """The light averaged over neighbours of the same material, of like normal and of like brightness: three passes of
-    edge-avoiding à-trous wavelets (Dammertz et al. 2010)."""
-    luma = np.float32((0.2126, 0.7152, 0.0722))
-    floor = 0.02 * float((light @ luma).mean())
-    kernel = np.float32((1 / 16, 1 / 4, 3 / 8, 1 / 4, 1 / 16))
+def smooth(lights: list[np.ndarray], normals: np.ndarray, material: np.ndarray) -> list[np.ndarray]:
+    """The lights averaged over neighbours of the same material, of like normal and of like brightness: three passes of
+    edge-avoiding à-trous wavelets (Dammertz et al. 2010). All but the material are (3, height, width)."""
+    floors = [0.02 * float(brightness(light).mean()) for light in lights]
+    for step in (1, 2, 4):
+        means = [brightness(mean) for mean in averages(lights, None, floors, normals, material, 1)]
+        lights = averages(lights, means, floors, normals, material, step)
+    return lights
+
+
+def brightness(light: np.ndarray) -> np.ndarray:
+    return np.float32(0.2126) * light[0] + np.float32(0.7152) * light[1] + np.float32(0.0722) * light[2]
+
+
+KERNEL = (1 / 16, 1 / 4, 3 / 8, 1 / 4, 1 / 16)
+#: Rows at a time: what is worked on stays in the processor's caches.
+BAND = 16
+
+
+def averages(
+    lights: list[np.ndarray],
+    guides: list[np.ndarray] | None,
+    floors: list[float],
+    normals: np.ndarray,
+    material: np.ndarray,
+    step: int,
+) -> list[np.ndarray]:
+    """Weighted means over 5 x 5 pixels `step` apart, of the like brightness in the guides if there are any."""
     height, width = material.shape
-    nothing = (normals == 0).all(-1)
+    tiny = np.finfo(np.float32).tiny
+    nothing = (normals == 0).all(0)
+    out = [np.empty_like(light) for light in lights]
 
-    def average(values: np.ndarray, brightness: np.ndarray | None, step: int) -> np.ndarray:
-        total, sums = np.zeros((height, width), np.float32), np.zeros_like(values)
+    def band(top: int) -> None:
+        bottom = min(top + BAND, height)
+        totals = [np.zeros((bottom - top, width), np.float32) for _ in lights]
+        sums = [np.zeros((3, bottom - top, width), np.float32) for _ in lights]
         for i, j in np.ndindex(5, 5):
             dy, dx = (i - 2) * step, (j - 2) * step
-            if abs(dy) >= height or abs(dx) >= width:
+            first, last = max(top, -dy), min(bottom, height - dy)
+            if first >= last or abs(dx) >= width:
                 continue
-            here = slice(max(0, -dy), height - max(0, dy)), slice(max(0, -dx), width - max(0, dx))
-            there = slice(max(0, dy), height + min(0, dy)), slice(max(0, dx), width + min(0, dx))
-            facing = np.einsum("ijk,ijk->ij", normals[here], normals[there]).clip(0) ** 16
+            left, right = max(0, -dx), width - max(0, dx)
+            here = ..., slice(first, last), slice(left, right)
+            there = ..., slice(first + dy, last + dy), slice(left + dx, right + dx)
+            inside = ..., slice(first - top, last - top), slice(left, right)
+            facing = (normals[here] * normals[there]).sum(0)
+            np.maximum(facing, 0, out=facing)
+            for _ in range(4):
+                facing *= facing
             facing[nothing[here]] = 1
-            weight = kernel[i] * kernel[j] * facing * (material[here] == material[there])
-            if brightness is not None:
-                a, b = brightness[here], brightness[there]
-                apart = (a - b) / np.maximum(0.25 * (0.5 * (a + b) + floor), np.finfo(np.float32).tiny)
-                weight *= np.exp(-apart * apart)
-            total[here] += weight
-            sums[here] += weight[..., None] * values[there]
-        return np.where(total[..., None] > 0, sums / np.maximum(total, 1e-30)[..., None], values)
+            facing *= material[here] == material[there]
+            facing *= np.float32(KERNEL[i] * KERNEL[j])
+            for k, light in enumerate(lights):
+                weight = facing
+                if guides is not None:
+                    a, b = guides[k][here], guides[k][there]
+                    apart = (a - b) / np.maximum(np.float32(0.125) * (a + b) + np.float32(0.25 * floors[k]), tiny)
+                    weight = facing * np.exp(-apart * apart)
+                totals[k][inside] += weight
+                sums[k][inside] += weight * light[there]
+        for k, light in enumerate(lights):
+            out[k][:, top:bottom] = np.where(totals[k] > 0, sums[k] / np.maximum(totals[k], tiny), light[:, top:bottom])
 
-    for step in (1, 2, 4):
-        light = average(light, average(light, None, 1) @ luma, step)
-    return light
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        list(pool.map(band, range(0, height, BAND)))
+    return out
 
 
-def told(first: float, share: float) -> Any:
-    """A handler that tells the progress of one rendering, from `first` on."""
-
-    def stats(text: Any, *_: Any) -> None:
-        found = re.search(r"(?:Rendered|Sample) (\d+)/(\d+)", str(text))
-        if found and int(found[2]):
-            print(f"progress {first + share * int(found[1]) / int(found[2]):.4f}", flush=True)
-
-    return stats
+def told(text: Any, *_: Any) -> None:
+    """A handler that says what Cycles does, for versions of Blender that do not print it."""
+    if isinstance(text, str):
+        print(text, flush=True)
 
 
 def set_up(scene: bpy.types.Scene, layer: str, samples: int) -> None:
@@ -142,32 +173,32 @@ def set_up(scene: bpy.types.Scene, layer: str, samples: int) -> None:
             setattr(settings, name, value)
 
 
-def render(scene: bpy.types.Scene, first: float, share: float) -> dict[str, np.ndarray]:
-    handler = told(first, share)
-    bpy.app.handlers.render_stats.append(handler)
+def render(scene: bpy.types.Scene, first: float, last: float) -> dict[str, np.ndarray]:
+    """The passes; of the whole work this is from `first` to `last`."""
+    print(f"part {first} {last}", flush=True)
     with tempfile.TemporaryDirectory() as folder:
         scene.render.filepath = str(Path(folder) / "passes.exr")
         bpy.ops.render.render(write_still=True, scene=scene.name)
-        bpy.app.handlers.render_stats.remove(handler)
         return read_exr(Path(scene.render.filepath))
 
 
 def guides(scene: bpy.types.Scene, layer: str, samples: int) -> dict[str, np.ndarray]:
     """The guides, in Blender's units of radiance, (height, width, 3)."""
     set_up(scene, layer, samples)
-    found = render(scene, 0.0, 0.9 * (1 - SECOND))
-    normals, material = found["Normal"], found["Material Index"][..., 0]
+    bpy.app.handlers.render_stats.append(told)
+    found = render(scene, 0.0, 0.6)
     light = {
-        "full": found["Combined"][..., :3],
+        "full": found["Combined"][:3],
         "direct": found["Diffuse Direct"] * found["Diffuse Color"],
         "specular": found["Glossy Direct"] * found["Glossy Color"],
         "indirect": found["Diffuse Indirect"] * found["Diffuse Color"],
     }
     scene.cycles.max_bounces = scene.cycles.diffuse_bounces = 1
     scene.cycles.caustics_reflective = scene.cycles.caustics_refractive = False
-    found = render(scene, 0.9 * (1 - SECOND), 0.9 * SECOND)
-    light["two bounces"] = (found["Diffuse Direct"] + found["Diffuse Indirect"]) * found["Diffuse Color"]
-    return {name: smooth(values.astype(np.float32), normals, material) for name, values in light.items()}
+    short = render(scene, 0.6, 0.9)
+    light["two bounces"] = (short["Diffuse Direct"] + short["Diffuse Indirect"]) * short["Diffuse Color"]
+    smoothed = smooth(list(light.values()), found["Normal"], found["Material Index"][0])
+    return {name: np.moveaxis(values, 0, 2) for name, values in zip(light, smoothed)}
 
 
 def main() -> None:
@@ -177,7 +208,6 @@ def main() -> None:
     addon_utils.enable("cycles")  # the user may have put it away
     bpy.ops.wm.open_mainfile(filepath=settings["blend"], load_ui=False)
     np.savez(settings["out"], **guides(bpy.data.scenes[settings["scene"]], settings["layer"], settings["samples"]))
-    print("progress 1", flush=True)
 
 
 if __name__ == "__main__":

@@ -126,11 +126,14 @@ def cancel() -> None:
         redraw()
 
 
-def redraw() -> None:
+def redraw(pictures: bool = False) -> None:
+    """Draws the panels anew; pictures in Image Editors too, but never a 3D view, which may take long."""
     for window in getattr(bpy.context.window_manager, "windows", ()):
         for area in window.screen.areas:
             if area.type in ("VIEW_3D", "IMAGE_EDITOR"):
-                area.tag_redraw()
+                for region in area.regions:
+                    if region.type == "UI" or (pictures and region.type == "WINDOW" and area.type == "IMAGE_EDITOR"):
+                        region.tag_redraw()
 
 
 class Background:
