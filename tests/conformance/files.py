@@ -1,5 +1,6 @@
-"""Damaged files: the library's own PNG, EXR, GLB and EULUMDAT files, an IES file and a Radiance HDR, with bytes and numbers changed by chance, loaded
-from memory, and texts made of the symbols that light path expressions and strokes are written in. Whatever loads is used.
+"""Damaged files: the library's own PNG, EXR, GLB and EULUMDAT files, parts of renderings, an IES file and a Radiance HDR, with
+bytes and numbers changed by chance, and texts made of the symbols that light path expressions and strokes are written in.
+Whatever loads is used.
 
     python3 files.py FIRST COUNT JOURNAL   loads the files of these seeds in this process
     python3 files.py --seconds 600         goes on with ever new seeds, in processes of their own
@@ -145,6 +146,15 @@ class Loader:
             path = Path(folder, "a.ldt")
             luxfer.Distribution.load_memory(self.context, ies, "ies").save(path)
             self.distributions.append((path.read_bytes(), 1))
+        # Two halves of a rendering: one stays whole, the other does not.
+        self.halves = tempfile.TemporaryDirectory()
+        self.whole, self.other = (str(Path(self.halves.name, name)) for name in ("whole.part", "other.part"))
+        self.size = {"width": 9, "height": 5, "samples": 4}
+        self.merge = luxfer.Render(self.context, lit, expressions={"direct": "LDE"})
+        for index, path in enumerate((self.whole, self.other)):
+            part = self.merge.split(1, 1, 2, index, **self.size)
+            self.merge.start_part(path, part, **self.size).wait()
+        self.part = Path(self.other).read_bytes()
         self.stages = [luxfer.Render(self.context, empty), luxfer.Transfer(self.context, photo, empty, "Ceiling")]
 
     def load(self, seed: int) -> None:
@@ -154,6 +164,9 @@ class Loader:
             return
         if rng.random() < 0.2:
             self.shine(seed, rng)
+            return
+        if rng.random() < 0.2:
+            self.add_up(seed, rng)
             return
         is_scene = rng.random() < 0.6
         data = damaged_glb(rng.choice(self.scenes), rng) if is_scene else damaged_bytes(rng.choice(self.images), rng)
@@ -181,6 +194,25 @@ class Loader:
         check(seed, status, start)
         if status == abi.LUXFER_OK:
             self.library.luxfer_distribution_release(out)
+
+    def add_up(self, seed: int, rng: random.Random) -> None:
+        """A half of a rendering with bytes changed, beside the other half."""
+        from luxfer import _params
+
+        Path(self.other).write_bytes(damaged_bytes(self.part, rng))
+        handle, start = self.merge.handle, time.monotonic()
+        for path in (self.whole, self.other):
+            status = self.library.luxfer_render_add_part(handle, path.encode())
+            check(seed, status, start)
+        if status == abi.LUXFER_OK:
+            job = ctypes.POINTER(abi.luxfer_job)()
+            settings = _params.fill(abi.luxfer_render_params, self.size, [])
+            status = self.library.luxfer_render_start_merge(handle, ctypes.byref(settings), ctypes.byref(job))
+            check(seed, status, start)
+            if status == abi.LUXFER_OK:
+                check(seed, self.library.luxfer_job_wait(job, -1, abi.luxfer_progress_fn(), None), start)
+                self.library.luxfer_job_release(job)
+        self.library.luxfer_render_clear_parts(handle)
 
     def say(self, seed: int, rng: random.Random) -> None:
         which = rng.randrange(2)

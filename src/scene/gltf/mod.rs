@@ -6,8 +6,9 @@
 //!
 //! Read: every node × primitive becomes one mesh in world space, named after its node. Not read: animation, skins and
 //! morph targets (the rest pose is taken), vertex colours, tangents (the renderer derives them), occlusion textures,
-//! points and lines, orthographic cameras, more than two sets of texture coordinates. A required extension that is not
-//! in the list is an error; an optional one is passed over.
+//! points and lines, orthographic cameras, more than two sets of texture coordinates, and what other extensions say of
+//! materials, among them `KHR_materials_specular`, `_clearcoat`, `_sheen` and `_volume`. A required extension that is not in the
+//! list is an error; an optional one is passed over.
 //!
 //! Written: a flat list of nodes, one per mesh, camera and light. glTF cannot hold the environment; it is left out.
 //!
