@@ -55,6 +55,19 @@ by_pkg_config_static() {
   ./by_c_static
 }
 
+# The static library's names clash with nobody's: beside luxfer_* there are only Rust's and its crates' own (mangled, or with a
+# version in them) and the compiler's. A plug-in that has it inside exports its own functions and none of these.
+names_of_static() {
+  nm --extern-only --defined-only "$1/libluxfer.a" 2>/dev/null | awk 'NF == 3 { print $3 }' | sort -u >names
+  [ "$(grep -c '^luxfer_' names)" -gt 100 ] || fail "the static library lacks functions"
+  others="$(grep -vE '^(luxfer_|_R|_ZN|__|anon\.|rust_|DW\.ref\.rust_|libpulp_v[0-9])' names || true)"
+  [ -z "$others" ] || fail "names that may clash: $others"
+  cc -std=c99 $flags -fPIC -shared $cflags "$consumers/plugin.c" -o plugin.so -Wl,--exclude-libs,ALL \
+    $(pkg-config --static --libs luxfer | sed 's/-lluxfer/-l:libluxfer.a/')
+  exports="$(nm -D --extern-only --defined-only plugin.so | awk '{ print $3 }' | xargs)"
+  [ "$exports" = plugin_start ] || fail "the plug-in exports more than its own: $exports"
+}
+
 # The same by CMake: by_cmake folder options...
 by_cmake() {
   folder="$1"
@@ -75,6 +88,7 @@ check_tree "$scratch/prefix"
 step "pkg-config"
 by_pkg_config "$scratch/prefix/$lib"
 by_pkg_config_static
+names_of_static "$scratch/prefix/$lib"
 step "find_package"
 by_cmake found -DCMAKE_PREFIX_PATH="$scratch/prefix"
 
