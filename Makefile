@@ -53,7 +53,7 @@ setup:
 	  $$root apt-get update -qq </dev/null && \
 	  $$root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $$missing </dev/null; \
 	fi
-	@benches/peers/install.sh mitsuba python dask exr onnx docs
+	@benches/peers/install.sh mitsuba python dask exr usd onnx docs
 
 test: setup lib
 	$(CARGO) test
