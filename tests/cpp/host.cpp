@@ -1,17 +1,21 @@
 // What hosts do to their processes: change the floating-point mode and the locale, give threads small stacks, fork, have two
-// plug-ins with a context each. None of it changes a result, and the library changes nothing of theirs.
+// plug-ins with a context each, have threads of OpenMP and TBB of their own. None of it changes a result, and the library changes nothing of theirs.
 #include "check.hpp"
 
 #include <luxfer.hpp>
 
+#include <atomic>
 #include <cfenv>
 #include <clocale>
 #include <cstdint>
 #include <thread>
 #include <vector>
 
+#include <omp.h>
 #include <pthread.h>
 #include <sys/wait.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
 #include <unistd.h>
 
 #ifdef __SSE__
@@ -146,6 +150,23 @@ void two_contexts(const Bytes &expected) {
     CHECK(same_in[0] && same_in[1]);
 }
 
+// Hosts have pools of their own; the library is called from within them, on all of their threads at once, and leaves them as they are.
+void other_pools(const luxfer::Context &context, const Bytes &expected) {
+    const int threads = omp_get_max_threads();
+    int same = 0;
+#pragma omp parallel for num_threads(3) reduction(+ : same)
+    for (int i = 0; i < 3; ++i)
+        same += everything(context) == expected;
+    CHECK(same == 3);
+    CHECK(omp_get_max_threads() == threads);
+
+    const auto allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+    std::atomic<int> also{0};
+    tbb::parallel_for(0, 3, [&](int) { also += everything(context) == expected; });
+    CHECK(also == 3);
+    CHECK(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism) == allowed);
+}
+
 // A child that does not use the library may come and go, also while jobs run.
 void forks(const luxfer::Context &context, const Bytes &expected) {
     luxfer::DemoPhotoParams endless;
@@ -173,6 +194,7 @@ int main() {
     locales(context, expected);
     small_stack(context, expected);
     two_contexts(expected);
+    other_pools(context, expected);
     forks(context, expected);
     return check::summary("host");
 }

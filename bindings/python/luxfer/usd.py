@@ -5,16 +5,16 @@ What USD composes is taken as it is at the default time, in metres and Y up what
 | in USD | becomes |
 |---|---|
 | Mesh | triangles in world space, of the control cage; a mesh for each GeomSubset with a material |
-| UsdPreviewSurface | base colour, metallic, roughness, ior, opacity, emission in cd/m²; textures of diffuseColor and emissiveColor |
+| UsdPreviewSurface | base colour, metallic, roughness, ior, opacity, emission in cd/m²; the textures of both colours |
 | RectLight, DiskLight | a surface that emits, towards -z, intensity · 2^exposure · colour in cd/m² |
 | SphereLight | a point of the same luminous intensity, or with ShapingAPI's cone a spot |
 | DistantLight | a directional light of the same illuminance |
 | DomeLight | the environment, of one colour |
 | Camera | a camera |
 
-Left out: what is invisible, guides and proxies, curves, points, volumes, what a PointInstancer places, skinning, subdivision, other shaders, other textures,
-UsdTransform2d, the images of domes, other lights, light linking. saved() leaves out lights without a surface and the
-environment, all textures but those of base colour and emission, and how textures are moved.
+Left out: what is invisible, guides and proxies, curves, points, volumes, what a PointInstancer places, skinning, subdivision,
+other shaders, other textures, UsdTransform2d, the images of domes, other lights, light linking. save() leaves out lights
+without a surface and the environment, all textures but those of base colour and emission, and how textures are moved.
 """
 
 from __future__ import annotations
