@@ -3800,6 +3800,119 @@ luxfer_status luxfer_transfer_save_fixtures(luxfer_transfer *transfer,
                                             const char *path);
 
 /* ====================================================================================================================
+ * Planning
+ *
+ * Settings for an error or a time, before anything is rendered: state either, and a plan tells with which settings
+ * relighting and rendering come to it, how long each should take, and what error should be left. What a path costs and
+ * how much light scatters depends on the scene, so a plan measures it on a small part of the very work, which takes some
+ * tenths of a second beside making the scene ready. It assumes that the machine stays as quiet as it is meanwhile.
+ *
+ * Errors are those of a picture: the root mean square over its pixels, relative to its mean, of noise and of what the
+ * solution of the emission makes too bright or too dark.
+ * ==================================================================================================================== */
+
+/** A plan. See luxfer_plan_create. */
+typedef struct luxfer_plan luxfer_plan;
+
+/** What a plan is made for: one of its fields must be set. Fill it with luxfer_plan_params_init. */
+typedef struct luxfer_plan_params {
+    /** sizeof(luxfer_plan_params), set by luxfer_plan_params_init. */
+    uint32_t struct_size;
+    /** Milliseconds for all that is planned; default 0: the error counts. */
+    uint32_t time_budget_ms;
+    /**
+     * Error of the picture, root mean square over its pixels relative to its mean, in [1e-5, 1]; default 0: the time counts.
+     */
+    float target_error;
+    /** Must be 0. */
+    uint32_t reserved;
+} luxfer_plan_params;
+
+/** What a plan expects. Set struct_size before the call. */
+typedef struct luxfer_plan_report {
+    /** sizeof(luxfer_plan_report), set by the caller. */
+    uint32_t struct_size;
+    /** 1 if the plan relights, as that of a transfer; 0 if it is of a rendering. */
+    uint32_t relights;
+    /** Seconds for all that is planned. */
+    double seconds;
+    /** Error of the picture. */
+    double error;
+    /** Seconds for relighting, which makes the scene ready first; 0 in a plan of a rendering. */
+    double relight_seconds;
+    /**
+     * The error that luxfer_relight_report should state, half the width of its interval; 0 in a plan of a rendering.
+     */
+    double relight_error;
+    /** Seconds for rendering; in a plan of a transfer it makes the scene ready first. */
+    double render_seconds;
+    /** The error that luxfer_render_report should state. */
+    double render_error;
+} luxfer_plan_report;
+
+/**
+ * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+ */
+luxfer_status luxfer_plan_params_init(luxfer_plan_params *params,
+                                      size_t size);
+
+/** Creates a plan. The caller releases *plan. Any thread. */
+luxfer_status luxfer_plan_create(luxfer_context *context, luxfer_plan **plan);
+
+/**
+ * Starts a job that plans a rendering with the scene and the camera of render. settings gives the size of the picture and
+ * all that is no matter of quality; NULL for the defaults. params says what for. The caller releases *job. Any thread.
+ * LUXFER_INVALID_ARGUMENT if params is NULL, or has not one of its fields set, or a setting is out of range;
+ * LUXFER_INVALID_OPERATION if the scene is missing or a job runs already; LUXFER_NOT_FOUND if the scene has no such camera.
+ */
+luxfer_status luxfer_plan_start_render(luxfer_plan *plan,
+                                       luxfer_render *render,
+                                       const luxfer_render_params *settings,
+                                       const luxfer_plan_params *params,
+                                       luxfer_job **job);
+
+/**
+ * Starts a job that plans the stages RELIGHT and RENDER of a transfer, with the lamps that its stage EMISSION has made.
+ * settings are those the transfer will be started with, of which luxfer_plan_get_relight_params and _get_render_params
+ * replace what is a matter of quality; NULL for the defaults. params says what for. The caller releases *job. Any thread.
+ * LUXFER_INVALID_ARGUMENT if params is NULL, or has not one of its fields set, or a setting is out of range;
+ * LUXFER_INVALID_OPERATION before the stage EMISSION has a result, or if a job runs already. The job may end with
+ * LUXFER_UNREACHABLE if no light of the lamps comes back to their surface.
+ */
+luxfer_status luxfer_plan_start_transfer(luxfer_plan *plan,
+                                         luxfer_transfer *transfer,
+                                         const luxfer_transfer_params *settings,
+                                         const luxfer_plan_params *params,
+                                         luxfer_job **job);
+
+/**
+ * Tells what the plan expects. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded.
+ */
+luxfer_status luxfer_plan_get_report(luxfer_plan *plan, luxfer_plan_report *report);
+
+/**
+ * Gets the settings to render with: those given, with what the plan has chosen. With an error as goal rendering stops when it
+ * is reached; with a time the number of paths is chosen, and time_budget_ms is a quarter more than they should take, so
+ * that the picture is the same every time unless the machine is slower than it was. Set params->struct_size before. Any
+ * thread. LUXFER_NOT_READY before a job has succeeded.
+ */
+luxfer_status luxfer_plan_get_render_params(luxfer_plan *plan,
+                                            luxfer_render_params *params);
+
+/**
+ * Gets the settings to relight with, likewise. Set params->struct_size before. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND in a plan of a rendering.
+ */
+luxfer_status luxfer_plan_get_relight_params(luxfer_plan *plan, luxfer_relight_params *params);
+
+/** Adds a reference. Any thread. */
+luxfer_status luxfer_plan_retain(luxfer_plan *plan);
+
+/** Gives a reference back; a job that runs goes on. Any thread. */
+luxfer_status luxfer_plan_release(luxfer_plan *plan);
+
+/* ====================================================================================================================
  * Guides
  *
  * What the light does in a scene, as images for a stylisation: rendered once for the exemplar, once for the target. Guides

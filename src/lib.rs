@@ -8,10 +8,11 @@
 //! exemplar guides + artwork, target guides ─▶ stylize ─▶ stylised image
 //! ```
 //!
-//! [`transfer`] runs the first line in order and passes the data along; stages never know of each other. `ffi` is the C
-//! boundary, and the only place that does. Engines under both: [`scene`] (description, glTF, acceleration), [`render`]
-//! (light transport), `patch` (nearest-neighbour fields), [`image`], [`geometry`], [`photometry`] (colour temperature, glare,
-//! luminaire files), `network` (ONNX files). `tests/layering.rs` checks these arrows.
+//! [`transfer`] runs the first line in order and passes the data along; stages never know of each other. [`plan`] chooses
+//! settings of its last two for an error or a time. `ffi` is the C boundary, and the only place that knows C. Engines under both:
+//! [`scene`] (description, glTF, acceleration), [`render`] (light transport), `patch` (nearest-neighbour fields), [`image`],
+//! [`geometry`], [`photometry`] (colour temperature, glare, luminaire files), `network` (ONNX files). `tests/layering.rs`
+//! checks these arrows.
 //!
 //! Every stage has the same face: `Params` with defaults, ranges and units; an input; an output that carries its own error
 //! estimate; and a function that runs it with a [`job::Job`], which takes progress and gives cancel requests. All parallel
@@ -59,5 +60,7 @@ pub mod demo;
 pub mod guides;
 pub mod sheet;
 pub mod transfer;
+
+pub mod plan;
 
 pub mod ffi;

@@ -47,6 +47,8 @@ const ARROWS: &[(&str, &[&str])] = &[
             "photometry",
         ],
     ),
+    // What chooses their settings.
+    ("plan", &["error", "job", "scene", "render", "relight", "transfer"]),
 ];
 
 /// Files that may contain `unsafe` beside `ffi`: SIMD kernels, chosen at run time, and the memory they work on.

@@ -30,6 +30,7 @@
 #include "luxfer/core.hpp"
 #include "luxfer/lighting.hpp"
 #include "luxfer/photo.hpp"
+#include "luxfer/plan.hpp"
 #include "luxfer/render.hpp"
 #include "luxfer/result.hpp"
 #include "luxfer/scene.hpp"

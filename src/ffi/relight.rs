@@ -85,20 +85,29 @@ unsafe impl Versioned for luxfer_relight_params {
     const NAME: &'static str = "luxfer_relight_params";
     const SIZES: &'static [usize] = &[32];
     fn defaults() -> Self {
-        let d = relight::Params::default();
-        Self {
-            struct_size: 32,
-            quantity: LUXFER_QUANTITY_OUTGOING,
-            paths: d.paths,
-            target_error: d.target_error,
-            time_budget_ms: d.time_budget_ms,
-            fit: LUXFER_FIT_MEAN,
-            seed: d.seed,
-        }
+        Self::of(&relight::Params::default())
     }
 }
 
 impl luxfer_relight_params {
+    pub(super) fn of(d: &relight::Params) -> Self {
+        Self {
+            struct_size: 32,
+            quantity: match d.quantity {
+                Quantity::Outgoing => LUXFER_QUANTITY_OUTGOING,
+                Quantity::Incident => LUXFER_QUANTITY_INCIDENT,
+            },
+            paths: d.paths,
+            target_error: d.target_error,
+            time_budget_ms: d.time_budget_ms,
+            fit: match d.fit {
+                Fit::Mean => LUXFER_FIT_MEAN,
+                Fit::LeastSquares => LUXFER_FIT_LEAST_SQUARES,
+            },
+            seed: d.seed,
+        }
+    }
+
     pub(super) fn params(&self) -> Result<relight::Params> {
         Ok(relight::Params {
             quantity: quantity(self.quantity)?,

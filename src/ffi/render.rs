@@ -81,7 +81,12 @@ unsafe impl Versioned for luxfer_render_params {
     const NAME: &'static str = "luxfer_render_params";
     const SIZES: &'static [usize] = &[48];
     fn defaults() -> Self {
-        let d = render::Params::default();
+        Self::of(&render::Params::default())
+    }
+}
+
+impl luxfer_render_params {
+    pub(super) fn of(d: &render::Params) -> Self {
         Self {
             struct_size: 48,
             width: d.width as u32,
@@ -96,9 +101,7 @@ unsafe impl Versioned for luxfer_render_params {
             reserved: 0,
         }
     }
-}
 
-impl luxfer_render_params {
     pub(super) fn params(&self) -> Result<render::Params> {
         if self.reserved != 0 {
             return Err(Error::argument(format!("render.reserved is {}; it must be 0", self.reserved)));

@@ -527,15 +527,19 @@ pub unsafe extern "C" fn luxfer_transfer_start(
 ) -> luxfer_status {
     enter(transfer, |stage| {
         let (first, last) = (stage_of("first", first)?, stage_of("last", last)?);
-        let params = params::read(params)?.params()?;
-        let results = stage.output().map(|results| (*results).clone()).unwrap_or_default();
-        let mut transfer = Transfer { input: stage.inputs().input()?, params, results };
+        let mut transfer = snapshot(stage, params::read(params)?)?;
         transfer.check(first, last)?;
         stage.start(job, move |_, stage, job| {
             transfer.run(first, last, job, |results| stage.publish(results.clone()))?;
             Ok(transfer.results)
         })
     })
+}
+
+/// A transfer as it is: its inputs and results, with these settings.
+pub(super) fn snapshot(stage: &Runner<Inputs, Results>, params: luxfer_transfer_params) -> Result<Transfer> {
+    let results = stage.output().map(|results| (*results).clone()).unwrap_or_default();
+    Ok(Transfer { input: stage.inputs().input()?, params: params.params()?, results })
 }
 
 /// Adds a reference. Any thread.

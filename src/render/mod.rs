@@ -39,6 +39,7 @@ mod vertex;
 mod world;
 
 pub use aov::Aov;
+pub use film::probe::{self, Probe};
 pub use layers::{Layer, Outputs};
 pub use requirements::Requirements;
 pub use world::World;

@@ -92,7 +92,7 @@ impl Transfer {
 
 impl Params {
     /// Checks the settings of one stage.
-    fn check(&self, stage: Stage) -> Result<()> {
+    pub(crate) fn check(&self, stage: Stage) -> Result<()> {
         match stage {
             Stage::View => self.rectify.check(),
             Stage::Features => self.features.check(),

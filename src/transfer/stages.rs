@@ -7,6 +7,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::image::pyramid;
 use crate::job::Job;
 use crate::render::World;
+use crate::scene::Camera;
 use crate::scene::surface::{self, Surface};
 use crate::{emission, features, rectify, relight, render, segment};
 use glam::{UVec2, Vec3};
@@ -152,6 +153,12 @@ impl Transfer {
         self.results.target = Some(target.colour);
         self.results.solution = Some(solution);
         Ok(())
+    }
+
+    /// Whence a lit scene is rendered: the input's camera, the scene's first, or one chosen.
+    pub(crate) fn viewpoint(&self, world: &World, lit: &LitScene) -> Camera {
+        let own = self.input.camera.as_ref().or(lit.scene.cameras.first());
+        own.cloned().unwrap_or_else(|| viewpoint::choose(world, &lit.surface))
     }
 
     pub(super) fn render(&mut self, job: Job, publish: &mut dyn FnMut(&Results)) -> Result<()> {

@@ -341,6 +341,28 @@ def transfer() -> Scenario:
     return s
 
 
+def planning() -> Scenario:
+    s = Scenario()
+    scene, (photo, strokes) = s.room(), s.photograph()
+    stage = s.make("plan_create", s.context)
+    s.references("plan", stage)
+    render = s.make("render_create", s.context)
+    s.call("render_set_scene", render, scene)
+    small = struct("render_params", width=16, height=12)
+    s.run("plan_start_render", stage, render, small, struct("plan_params", target_error=0.5))
+    s.call("plan_get_render_params", stage, struct("render_params", "size"))
+    transfer = s.make("transfer_create", s.context)
+    s.call("transfer_set_photo", transfer, photo)
+    s.call("transfer_set_scene", transfer, scene, "Ceiling")
+    s.call("transfer_add_strokes_image", transfer, strokes)
+    settings = struct("transfer_params", max_texels=64, target=1, pattern=struct("pattern_params", scale=3), render=small)
+    s.run("transfer_start", transfer, 0, 5, settings)
+    s.run("plan_start_transfer", stage, transfer, settings, struct("plan_params", time_budget_ms=50))
+    s.call("plan_get_report", stage, struct("plan_report", "size"))
+    s.call("plan_get_relight_params", stage, struct("relight_params", "size"))
+    return s
+
+
 def stylisation() -> Scenario:
     s = Scenario()
     guides = []
@@ -383,7 +405,7 @@ def sheets() -> Scenario:
     return s
 
 
-ALL = [library, images, scenes, jobs, photo, emission, rendering, light, lamps, photometry, transfer, stylisation, sheets]
+ALL = [library, images, scenes, jobs, photo, emission, rendering, light, lamps, photometry, transfer, planning, stylisation, sheets]
 
 
 def programs() -> dict[str, list[Call]]:

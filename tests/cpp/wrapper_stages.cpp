@@ -139,6 +139,44 @@ void lighting_transfer(const Context &context) {
     transfer.save_fixtures("wrapper_stages.csv");
     CHECK(std::ifstream("wrapper_stages.csv").good());
     CHECK(transfer.view().focal == view.focal && transfer.solution().scale[0] > 0);
+
+    const auto plan = luxfer::Plan::create(context);
+    luxfer::PlanParams budget;
+    budget.time_budget_ms = 500;
+    plan.start(transfer, budget, params).wait();
+    const luxfer_plan_report expected = plan.report();
+    CHECK(expected.relights == 1 && expected.relight_seconds > 0 && expected.error >= expected.render_error);
+    CHECK(luxfer_render_params(plan.render_params()).time_budget_ms > 0);
+    CHECK(luxfer_relight_params(plan.relight_params()).paths >= 2048);
+}
+
+// Settings for an error.
+void plans(const Context &context) {
+    const Scene scene = Scene::demo(context, LUXFER_DEMO_EXEMPLAR_ROOM);
+    const auto render = luxfer::Render::create(context);
+    render.set_scene(scene);
+    const auto plan = copied(luxfer::Plan::create(context));
+    luxfer::PlanParams goal;
+    goal.target_error = 0.5f;
+    luxfer::RenderParams tiny;
+    tiny.width = 32;
+    tiny.height = 18;
+    plan.start(render, goal, tiny).wait();
+    luxfer_plan_report expected = plan.report();
+    CHECK(expected.relights == 0 && expected.seconds > 0 && expected.error <= 0.5001);
+    const luxfer_render_params chosen = plan.render_params();
+    CHECK(chosen.width == 32 && chosen.samples >= 4);
+    render.start(chosen).wait();
+    CHECK(luxfer_render_report(render.report()).error < 1);
+
+    const auto transfer = luxfer::Transfer::create(context);
+    bool is_early = false;
+    try {
+        plan.start(transfer, goal);
+    } catch (const luxfer::Error &error) {
+        is_early = error.status() == LUXFER_INVALID_OPERATION;
+    }
+    CHECK(is_early);
 }
 
 // A lamp, textures and an environment of the caller's; the lamp is solved for, and measured.
@@ -266,6 +304,7 @@ int main() {
     CHECK(std::strcmp(luxfer_version_string(), "") != 0);
     lighting_transfer(context);
     light(context);
+    plans(context);
     stylisation(context);
     return check::summary("wrapper_stages");
 }

@@ -222,6 +222,33 @@ class Rendering(Case):
         scale = relight.run(paths=1 << 16).report.scale
         self.assertAlmostEqual(scale[2], (scale[0] + scale[1]) / 2, delta=1e-9 * scale[2])
 
+    def test_plans_come_true(self):
+        render = luxfer.Render(context(), lit_room())
+        plan = luxfer.Plan(context())
+        plan.run_render(render, target_error=0.3, settings={"width": 48, "height": 32, "seed": 5})
+        self.assertEqual((plan.report.relights, plan.render_params["seed"]), (0, 5))
+        self.assertLessEqual(plan.report.error, 0.3001)
+        self.assertLess(render.run(**plan.render_params).report.error, 0.4)
+        with self.assertRaises(errors.NotFound):
+            plan.relight_params
+        with self.assertRaisesRegex(errors.InvalidArgument, "one of them must be above 0"):
+            plan.run_render(render)
+
+        photo, strokes = demo()
+        transfer = luxfer.Transfer(context(), photo, luxfer.Scene.demo(context(), "target-room"), "Ceiling")
+        transfer.add_strokes_image(strokes)
+        settings = {"render": {"width": 48, "height": 27}}
+        with self.assertRaisesRegex(errors.InvalidOperation, "run stage Emission first"):
+            plan.run_transfer(transfer, target_error=0.3, settings=settings)
+        transfer.run(last="emission")
+        plan.run_transfer(transfer, target_error=0.3, settings=settings)
+        self.assertEqual(plan.report.relights, 1)
+        transfer.run(first="relight", relight=plan.relight_params, render=plan.render_params)
+        self.assertLessEqual(transfer.solution.error, plan.relight_params["target_error"])
+        self.assertLess(transfer.report.render_error, 0.4)
+        plan.run_transfer(transfer, time_budget_ms=2000, settings=settings)
+        self.assertGreater(plan.relight_params["paths"], 2048)
+
     def test_two_lamps_light_two_desks(self):
         scene = luxfer.Scene.demo(context(), "target-room")
         texture = np.zeros((8, 12, 3))

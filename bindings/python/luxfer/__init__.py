@@ -32,6 +32,7 @@ from .photometry import (
     power_density,
     presets,
 )
+from .plan import Plan
 from .rectify import Rectify
 from .relight import Relight
 from .render import Render
@@ -56,6 +57,7 @@ __all__ = [
     "Importance",
     "Job",
     "Lamps",
+    "Plan",
     "Rectify",
     "Relight",
     "Render",

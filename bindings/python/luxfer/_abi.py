@@ -269,6 +269,10 @@ class luxfer_transfer(Structure):
     """A lighting transfer. See luxfer_transfer_create."""
 
 
+class luxfer_plan(Structure):
+    """A plan. See luxfer_plan_create."""
+
+
 class luxfer_guides(Structure):
     """The guides of a scene. See luxfer_guides_create."""
 
@@ -1074,6 +1078,33 @@ class luxfer_fixture(Structure):
     result = types.Fixture
 
 
+class luxfer_plan_params(Structure):
+    """What a plan is made for: one of its fields must be set."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("time_budget_ms", c_uint32),
+        ("target_error", c_float),
+        ("reserved", c_uint32),
+    ]
+
+
+class luxfer_plan_report(Structure):
+    """What a plan expects."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("relights", c_uint32),
+        ("seconds", c_double),
+        ("error", c_double),
+        ("relight_seconds", c_double),
+        ("relight_error", c_double),
+        ("render_seconds", c_double),
+        ("render_error", c_double),
+    ]
+    result = types.PlanReport
+
+
 class luxfer_guides_params(Structure):
     """Settings of guides."""
 
@@ -1437,6 +1468,15 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_transfer_get_solution": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("solution", POINTER(luxfer_relight_report))]),
     "luxfer_transfer_get_fixture": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("index", c_uint32), ("fixture", POINTER(luxfer_fixture))]),
     "luxfer_transfer_save_fixtures": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("path", c_char_p)]),
+    "luxfer_plan_params_init": (c_int32, [("params", POINTER(luxfer_plan_params)), ("size", c_size_t)]),
+    "luxfer_plan_create": (c_int32, [("context", POINTER(luxfer_context)), ("plan", POINTER(POINTER(luxfer_plan)))]),
+    "luxfer_plan_start_render": (c_int32, [("plan", POINTER(luxfer_plan)), ("render", POINTER(luxfer_render)), ("settings", POINTER(luxfer_render_params)), ("params", POINTER(luxfer_plan_params)), ("job", POINTER(POINTER(luxfer_job)))]),
+    "luxfer_plan_start_transfer": (c_int32, [("plan", POINTER(luxfer_plan)), ("transfer", POINTER(luxfer_transfer)), ("settings", POINTER(luxfer_transfer_params)), ("params", POINTER(luxfer_plan_params)), ("job", POINTER(POINTER(luxfer_job)))]),
+    "luxfer_plan_get_report": (c_int32, [("plan", POINTER(luxfer_plan)), ("report", POINTER(luxfer_plan_report))]),
+    "luxfer_plan_get_render_params": (c_int32, [("plan", POINTER(luxfer_plan)), ("params", POINTER(luxfer_render_params))]),
+    "luxfer_plan_get_relight_params": (c_int32, [("plan", POINTER(luxfer_plan)), ("params", POINTER(luxfer_relight_params))]),
+    "luxfer_plan_retain": (c_int32, [("plan", POINTER(luxfer_plan))]),
+    "luxfer_plan_release": (c_int32, [("plan", POINTER(luxfer_plan))]),
     "luxfer_guides_params_init": (c_int32, [("params", POINTER(luxfer_guides_params)), ("size", c_size_t)]),
     "luxfer_guides_create": (c_int32, [("context", POINTER(luxfer_context)), ("guides", POINTER(POINTER(luxfer_guides)))]),
     "luxfer_guides_set_scene": (c_int32, [("guides", POINTER(luxfer_guides)), ("scene", POINTER(luxfer_scene))]),

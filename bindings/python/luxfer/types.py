@@ -1663,6 +1663,36 @@ class Fixture:
     """Distance from the blackbody in the CIE 1960 diagram."""
 
 
+class PlanParams(TypedDict, total=False):
+    """What a plan is made for: one of its fields must be set."""
+
+    time_budget_ms: int
+    """Milliseconds for all that is planned; default 0: the error counts."""
+    target_error: float
+    """Error of the picture, root mean square over its pixels relative to its mean, in [1e-5, 1]; default 0: the
+    time counts."""
+
+
+@dataclass(frozen=True)
+class PlanReport:
+    """What a plan expects."""
+
+    relights: int
+    """1 if the plan relights, as that of a transfer; 0 if it is of a rendering."""
+    seconds: float
+    """Seconds for all that is planned."""
+    error: float
+    """Error of the picture."""
+    relight_seconds: float
+    """Seconds for relighting, which makes the scene ready first; 0 in a plan of a rendering."""
+    relight_error: float
+    """The error that RelightReport should state, half the width of its interval; 0 in a plan of a rendering."""
+    render_seconds: float
+    """Seconds for rendering; in a plan of a transfer it makes the scene ready first."""
+    render_error: float
+    """The error that RenderReport should state."""
+
+
 class GuidesParams(TypedDict, total=False):
     """Settings of guides."""
 

@@ -7,7 +7,7 @@
 //! they are the same for any number of threads.
 //!
 //! For renders that are done in parts, `sums` adds up the paths of some pixels apart from all others, by the light of a
-//! `survey` instead of the passes before.
+//! `survey` instead of the passes before. What an image will take, a `probe` tells from a few of its tiles.
 
 mod block;
 mod clock;
@@ -15,6 +15,7 @@ mod grid;
 mod interval;
 mod pixel;
 mod plan;
+pub mod probe;
 mod sums;
 mod survey;
 mod tile;

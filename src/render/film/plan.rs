@@ -40,6 +40,11 @@ pub struct Pass {
 }
 
 impl Pass {
+    /// So many paths for every pixel.
+    pub fn alike(tiles: usize, count: u32) -> Result<Self> {
+        Ok(Self { counts: try_vec(tiles, count)?, stride: 1 })
+    }
+
     pub fn count(&self, tile: usize, x: usize, y: usize) -> u32 {
         if (x | y) & (self.stride - 1) == 0 { self.counts[tile] } else { 0 }
     }
@@ -187,7 +192,7 @@ impl<'p> Plan<'p> {
     }
 
     fn alike(&self, canvas: &Canvas, count: u32) -> Result<Option<Pass>> {
-        Ok(Some(Pass { counts: try_vec(canvas.grid.tiles(), count)?, stride: self.stride }))
+        Ok(Some(Pass { stride: self.stride, ..Pass::alike(canvas.grid.tiles(), count)? }))
     }
 
     /// Doubles the tiles that need it most.

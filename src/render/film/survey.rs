@@ -44,6 +44,11 @@ impl<'a> Survey<'a> {
         Ok(survey)
     }
 
+    /// The brightness of the middling tile, per channel; none of nothing.
+    pub fn level(&self) -> Option<DVec3> {
+        self.level
+    }
+
     /// What light of the brightness of the middling tile is worth in the tile with this corner.
     pub fn worth(&self, [left, top]: [usize; 2]) -> Option<Vec3> {
         let end = |start: usize, size: usize| (start + TILE).min(size);
@@ -55,7 +60,7 @@ impl<'a> Survey<'a> {
     }
 
     /// Some paths of a pixel.
-    fn look(&self, at: [usize; 2], count: u32) -> Pixel {
+    pub fn look(&self, at: [usize; 2], count: u32) -> Pixel {
         let length = Length { most: self.eye.most, worth: None };
         // What is no number is left out of the survey as of the image, but counted only there.
         let (mut pixel, discarded) = (Pixel::default(), AtomicU64::new(0));

@@ -1,0 +1,43 @@
+// Settings for an error or a time, before anything is rendered.
+//
+// SPDX-License-Identifier: MIT OR Apache-2.0
+#pragma once
+
+#include "render.hpp"
+#include "transfer.hpp"
+
+namespace luxfer {
+
+/// Set one of its fields.
+using PlanParams = Params<luxfer_plan_params, luxfer_plan_params_init>;
+
+/// Which settings come to an error or a time, and what to expect. See luxfer_plan.
+class Plan : public Handle<luxfer_plan, luxfer_plan_retain, luxfer_plan_release> {
+public:
+    using Handle::Handle;
+
+    static Result<Plan> create(const Context &context) { return make_in<Plan>(context, luxfer_plan_create); }
+
+    Result<Job> start(const Render &render, const luxfer_plan_params &params,
+                      const luxfer_render_params &settings = RenderParams()) const {
+        return make<Job>(luxfer_plan_start_render, render.get(), &settings, &params);
+    }
+
+    /// What follows the stage EMISSION, which must have run.
+    Result<Job> start(const Transfer &transfer, const luxfer_plan_params &params,
+                      const luxfer_transfer_params &settings = TransferParams()) const {
+        return make<Job>(luxfer_plan_start_transfer, transfer.get(), &settings, &params);
+    }
+
+    Result<luxfer_plan_report> report() const { return value<luxfer_plan_report>(luxfer_plan_get_report); }
+
+    /// To render and to relight with.
+    Result<luxfer_render_params> render_params() const {
+        return value<luxfer_render_params>(luxfer_plan_get_render_params);
+    }
+    Result<luxfer_relight_params> relight_params() const {
+        return value<luxfer_relight_params>(luxfer_plan_get_relight_params);
+    }
+};
+
+} // namespace luxfer

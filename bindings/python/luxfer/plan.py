@@ -1,0 +1,76 @@
+"""Settings for an error or a time, before anything is rendered: which they are, how long relighting and rendering should take,
+and what error should be left."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, cast
+
+from . import _abi, _params
+from .job import Job, Progress, StageBase
+from .types import PlanReport
+
+if TYPE_CHECKING:
+    from .render import Render
+    from .transfer import Transfer
+    from .types import RelightParams, RenderParams, TransferParams
+
+
+class Plan(StageBase):
+    """Either target_error, the noise of the picture relative to its mean, or time_budget_ms is what a plan is made for.
+
+    >>> render = Render(context, lit_room)
+    >>> plan = Plan(context).run_render(render, target_error=0.5, settings={"width": 32, "height": 24})
+    >>> render.run(**plan.render_params).report.error < 1
+    True
+    """
+
+    kind = "plan"
+
+    def start_render(
+        self, render: Render, *, target_error: float = 0.0, time_budget_ms: int = 0, settings: RenderParams | None = None
+    ) -> Job[Plan]:
+        """Starts to plan a rendering, with its scene and camera."""
+        goal = {"target_error": target_error, "time_budget_ms": time_budget_ms}
+        params = _params.fill(_abi.luxfer_render_params, settings or {}, [])
+        return self._job("start_render", render, params, _params.fill(_abi.luxfer_plan_params, goal, []))
+
+    def run_render(self, render: Render, progress: Progress | None = None, **goal: Any) -> Plan:
+        """Starts to plan a rendering and waits for it."""
+        return self.start_render(render, **goal).wait(progress)
+
+    def start_transfer(
+        self,
+        transfer: Transfer,
+        *,
+        target_error: float = 0.0,
+        time_budget_ms: int = 0,
+        settings: TransferParams | None = None,
+    ) -> Job[Plan]:
+        """Starts to plan the stages RELIGHT and RENDER of a transfer whose stage EMISSION has run."""
+        keep: list[Any] = []
+        goal = {"target_error": target_error, "time_budget_ms": time_budget_ms}
+        params = _params.fill(_abi.luxfer_transfer_params, settings or {}, keep)
+        return self._job("start_transfer", transfer, params, _params.fill(_abi.luxfer_plan_params, goal, []))
+
+    def run_transfer(self, transfer: Transfer, progress: Progress | None = None, **goal: Any) -> Plan:
+        """Starts to plan those stages and waits for it."""
+        return self.start_transfer(transfer, **goal).wait(progress)
+
+    @property
+    def report(self) -> PlanReport:
+        """What the plan expects."""
+        return cast(PlanReport, self._read("get_report", _abi.luxfer_plan_report))
+
+    @property
+    def render_params(self) -> RenderParams:
+        """The settings to render with."""
+        params = _params.sized(_abi.luxfer_render_params)
+        self._call("get_render_params", params)
+        return cast("RenderParams", _params.settings(params))
+
+    @property
+    def relight_params(self) -> RelightParams:
+        """The settings to relight with."""
+        params = _params.sized(_abi.luxfer_relight_params)
+        self._call("get_relight_params", params)
+        return cast("RelightParams", _params.settings(params))

@@ -1,0 +1,64 @@
+/* A picture in a given time, or of a given quality: a plan says with which settings, and what to expect.
+ *
+ * Renders the generated office twice: with at most 10 % of noise, and in a second. Prints what was expected and what came
+ * out, and writes plan.png.
+ */
+#include "common.h"
+
+int main(void) {
+    const char *goals[] = {"10 % of noise", "one second"};
+    luxfer_scene *scene = NULL;
+    luxfer_render *render = NULL;
+    luxfer_plan *plan = NULL;
+    luxfer_image *picture = NULL;
+    luxfer_job *job = NULL;
+    luxfer_render_params settings;
+    luxfer_render_report report;
+    int i;
+    report.struct_size = sizeof report;
+
+    check(luxfer_context_create(NULL, &context), "context");
+    check(luxfer_demo_scene(context, LUXFER_DEMO_EXEMPLAR_ROOM, &scene), "scene");
+    check(luxfer_render_create(context, &render), "render");
+    check(luxfer_render_set_scene(render, scene), "render");
+
+    for (i = 0; i < 2; i++) {
+        /* --8<-- [start:plan] */
+        luxfer_plan_params params;
+        luxfer_plan_report expected;
+        expected.struct_size = sizeof expected;
+        check(luxfer_plan_params_init(&params, sizeof params), "plan");
+        if (i == 0) params.target_error = 0.1f; /* of the picture, relative to its mean */
+        else params.time_budget_ms = 1000;
+
+        /* What is no matter of quality is the caller's: the size of the picture, the seed. */
+        check(luxfer_render_params_init(&settings, sizeof settings), "settings");
+        settings.width = 160;
+        settings.height = 90;
+
+        check(luxfer_plan_create(context, &plan), "plan");
+        check(luxfer_plan_start_render(plan, render, &settings, &params, &job), "plan");
+        finish(job, "planning");
+        check(luxfer_plan_get_report(plan, &expected), "plan");
+        check(luxfer_plan_get_render_params(plan, &settings), "plan");
+        luxfer_plan_release(plan);
+        /* --8<-- [end:plan] */
+
+        check(luxfer_render_start(render, &settings, &job), "render");
+        finish(job, "rendering");
+        check(luxfer_render_get_report(render, &report), "report");
+        printf("%s: %.2f s and an error of %.1f %% expected; it is %.1f %% with %u paths per pixel\n", goals[i],
+               expected.seconds, 100 * expected.error, 100 * report.error, report.samples);
+        /* What was asked for is kept by the stage itself: it stops at the error. */
+        if (i == 0 && report.error > 0.15) return 1;
+    }
+
+    check(luxfer_render_get_image(render, LUXFER_RENDER_BEAUTY, &picture), "picture");
+    check(luxfer_image_save(picture, "plan.png", 0.005f), "picture");
+    printf("look at plan.png\n");
+    luxfer_image_release(picture);
+    luxfer_render_release(render);
+    luxfer_scene_release(scene);
+    luxfer_context_release(context);
+    return 0;
+}

@@ -1,0 +1,279 @@
+//! Planning
+//!
+//! Settings for an error or a time, before anything is rendered: state either, and a plan tells with which settings
+//! relighting and rendering come to it, how long each should take, and what error should be left. What a path costs and
+//! how much light scatters depends on the scene, so a plan measures it on a small part of the very work, which takes some
+//! tenths of a second beside making the scene ready. It assumes that the machine stays as quiet as it is meanwhile.
+//!
+//! Errors are those of a picture: the root mean square over its pixels, relative to its mean, of noise and of what the
+//! solution of the emission makes too bright or too dark.
+
+use super::context::luxfer_context;
+use super::guard::{enter, guard};
+use super::handle::{self, Handle, Owned, tag};
+use super::job::luxfer_job;
+use super::params::{self, Report, Versioned};
+use super::pointer::Out;
+use super::relight::luxfer_relight_params;
+use super::render::{luxfer_render, luxfer_render_params};
+use super::stage::Stage;
+use super::status::luxfer_status;
+use super::transfer::{luxfer_transfer, luxfer_transfer_params};
+use crate::error::{Error, ErrorKind, Result};
+use crate::plan::{self, Expected, Goal};
+use crate::relight;
+use crate::render;
+use std::sync::Arc;
+
+/// A plan. See luxfer_plan_create.
+pub struct luxfer_plan {
+    _opaque: [u8; 0],
+}
+
+/// What a plan is made for: one of its fields must be set. Fill it with luxfer_plan_params_init.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_plan_params {
+    /// sizeof(luxfer_plan_params), set by luxfer_plan_params_init.
+    pub struct_size: u32,
+    /// Milliseconds for all that is planned; default 0: the error counts.
+    pub time_budget_ms: u32,
+    /// Error of the picture, root mean square over its pixels relative to its mean, in [1e-5, 1]; default 0: the time counts.
+    pub target_error: f32,
+    /// Must be 0.
+    pub reserved: u32,
+}
+
+// SAFETY: plain numbers.
+unsafe impl Versioned for luxfer_plan_params {
+    const NAME: &'static str = "luxfer_plan_params";
+    const SIZES: &'static [usize] = &[16];
+    fn defaults() -> Self {
+        Self { struct_size: 16, time_budget_ms: 0, target_error: 0.0, reserved: 0 }
+    }
+}
+
+impl luxfer_plan_params {
+    fn goal(&self) -> Result<Goal> {
+        if self.reserved != 0 {
+            return Err(Error::argument(format!("plan.reserved is {}; it must be 0", self.reserved)));
+        }
+        let goal = match (self.time_budget_ms, self.target_error) {
+            (0, error) if error != 0.0 => Goal::Error(error.into()),
+            (milliseconds, 0.0) if milliseconds > 0 => Goal::Seconds(f64::from(milliseconds) / 1e3),
+            (milliseconds, error) => {
+                return Err(Error::argument(format!(
+                    "plan.time_budget_ms is {milliseconds} and plan.target_error is {error}; one of them must be above 0, the other 0"
+                )));
+            }
+        };
+        goal.check()?;
+        Ok(goal)
+    }
+}
+
+/// What a plan expects. Set struct_size before the call.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_plan_report {
+    /// sizeof(luxfer_plan_report), set by the caller.
+    pub struct_size: u32,
+    /// 1 if the plan relights, as that of a transfer; 0 if it is of a rendering.
+    pub relights: u32,
+    /// Seconds for all that is planned.
+    pub seconds: f64,
+    /// Error of the picture.
+    pub error: f64,
+    /// Seconds for relighting, which makes the scene ready first; 0 in a plan of a rendering.
+    pub relight_seconds: f64,
+    /// The error that luxfer_relight_report should state, half the width of its interval; 0 in a plan of a rendering.
+    pub relight_error: f64,
+    /// Seconds for rendering; in a plan of a transfer it makes the scene ready first.
+    pub render_seconds: f64,
+    /// The error that luxfer_render_report should state.
+    pub render_error: f64,
+}
+
+// SAFETY: plain numbers.
+unsafe impl Versioned for luxfer_plan_report {
+    const NAME: &'static str = "luxfer_plan_report";
+    const SIZES: &'static [usize] = &[56];
+    fn defaults() -> Self {
+        Self {
+            struct_size: 56,
+            relights: 0,
+            seconds: 0.0,
+            error: 0.0,
+            relight_seconds: 0.0,
+            relight_error: 0.0,
+            render_seconds: 0.0,
+            render_error: 0.0,
+        }
+    }
+}
+
+/// What a plan has come to.
+pub(super) struct Made {
+    render: render::Params,
+    rendering: Expected,
+    relight: Option<(relight::Params, Expected)>,
+    whole: Expected,
+}
+
+impl From<plan::Rendering> for Made {
+    fn from(plan: plan::Rendering) -> Self {
+        Self { render: plan.params, rendering: plan.expected, relight: None, whole: plan.expected }
+    }
+}
+
+impl From<plan::Lighting> for Made {
+    fn from(plan: plan::Lighting) -> Self {
+        let plan::Lighting { relight, render, solving, rendering, whole } = plan;
+        Self { render, rendering, relight: Some((relight, solving)), whole }
+    }
+}
+
+impl Handle for luxfer_plan {
+    type Object = Stage<(), Made>;
+    const TAG: u64 = tag(b"lux.plan");
+    const NAME: &'static str = "luxfer_plan";
+}
+
+/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_plan_params_init(params: *mut luxfer_plan_params, size: usize) -> luxfer_status {
+    guard(|| params::init(params, size))
+}
+
+/// Creates a plan. The caller releases *plan. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_plan_create(
+    context: *mut luxfer_context,
+    plan: *mut *mut luxfer_plan,
+) -> luxfer_status {
+    enter(context, |object| {
+        Out::new(plan, "plan")?.set(handle::give(Stage::new(object.context(), ())));
+        Ok(())
+    })
+}
+
+/// Starts a job that plans a rendering with the scene and the camera of render. settings gives the size of the picture and
+/// all that is no matter of quality; NULL for the defaults. params says what for. The caller releases *job. Any thread.
+/// LUXFER_INVALID_ARGUMENT if params is NULL, or has not one of its fields set, or a setting is out of range;
+/// LUXFER_INVALID_OPERATION if the scene is missing or a job runs already; LUXFER_NOT_FOUND if the scene has no such camera.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_plan_start_render(
+    plan: *mut luxfer_plan,
+    render: *mut luxfer_render,
+    settings: *const luxfer_render_params,
+    params: *const luxfer_plan_params,
+    job: *mut *mut luxfer_job,
+) -> luxfer_status {
+    enter(plan, |stage| {
+        let (object, scene, camera) = handle::borrow_in(stage.context(), render, "render")?.inputs().view()?;
+        let settings = params::read(settings)?.params()?;
+        settings.check()?;
+        let goal = params::read_required(params)?.goal()?;
+        stage.start(job, move |(), _, job| {
+            let world = object.world(&scene, job.part(0.0, 0.3))?;
+            plan::rendering(&world, &camera, &settings, goal, &plan::wall(), job.part(0.3, 1.0)).map(Made::from)
+        })
+    })
+}
+
+/// Starts a job that plans the stages RELIGHT and RENDER of a transfer, with the lamps that its stage EMISSION has made.
+/// settings are those the transfer will be started with, of which luxfer_plan_get_relight_params and _get_render_params
+/// replace what is a matter of quality; NULL for the defaults. params says what for. The caller releases *job. Any thread.
+/// LUXFER_INVALID_ARGUMENT if params is NULL, or has not one of its fields set, or a setting is out of range;
+/// LUXFER_INVALID_OPERATION before the stage EMISSION has a result, or if a job runs already. The job may end with
+/// LUXFER_UNREACHABLE if no light of the lamps comes back to their surface.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_plan_start_transfer(
+    plan: *mut luxfer_plan,
+    transfer: *mut luxfer_transfer,
+    settings: *const luxfer_transfer_params,
+    params: *const luxfer_plan_params,
+    job: *mut *mut luxfer_job,
+) -> luxfer_status {
+    enter(plan, |stage| {
+        let transfer = handle::borrow_in(stage.context(), transfer, "transfer")?;
+        let planned = super::transfer::snapshot(&transfer, params::read(settings)?)?;
+        let goal = params::read_required(params)?.goal()?;
+        plan::check(&planned, goal)?;
+        stage.start(job, move |(), _, job| plan::lighting(&planned, goal, &plan::wall(), job).map(Made::from))
+    })
+}
+
+/// Tells what the plan expects. Any thread.
+/// LUXFER_NOT_READY before a job has succeeded.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_plan_get_report(
+    plan: *mut luxfer_plan,
+    report: *mut luxfer_plan_report,
+) -> luxfer_status {
+    enter(plan, |stage| {
+        let out = Report::new(report)?;
+        let made = stage.output()?;
+        let solving = made.relight.as_ref().map_or(Expected::default(), |(_, expected)| *expected);
+        out.set(luxfer_plan_report {
+            relights: u32::from(made.relight.is_some()),
+            seconds: made.whole.seconds,
+            error: made.whole.error,
+            relight_seconds: solving.seconds,
+            relight_error: solving.error,
+            render_seconds: made.rendering.seconds,
+            render_error: made.rendering.error,
+            ..luxfer_plan_report::defaults()
+        });
+        Ok(())
+    })
+}
+
+/// Gets the settings to render with: those given, with what the plan has chosen. With an error as goal rendering stops when it
+/// is reached; with a time the number of paths is chosen, and time_budget_ms is a quarter more than they should take, so
+/// that the picture is the same every time unless the machine is slower than it was. Set params->struct_size before. Any
+/// thread. LUXFER_NOT_READY before a job has succeeded.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_plan_get_render_params(
+    plan: *mut luxfer_plan,
+    params: *mut luxfer_render_params,
+) -> luxfer_status {
+    enter(plan, |stage| {
+        let out = Report::new(params)?;
+        out.set(luxfer_render_params::of(&stage.output()?.render));
+        Ok(())
+    })
+}
+
+/// Gets the settings to relight with, likewise. Set params->struct_size before. Any thread.
+/// LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND in a plan of a rendering.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_plan_get_relight_params(
+    plan: *mut luxfer_plan,
+    params: *mut luxfer_relight_params,
+) -> luxfer_status {
+    enter(plan, |stage| {
+        let out = Report::new(params)?;
+        let made: Arc<Made> = stage.output()?;
+        let (relight, _) = made.relight.as_ref().ok_or_else(|| {
+            Error::new(
+                ErrorKind::NotFound,
+                "the plan is of a rendering, which relights nothing; start it for a transfer",
+            )
+        })?;
+        out.set(luxfer_relight_params::of(relight));
+        Ok(())
+    })
+}
+
+/// Adds a reference. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_plan_retain(plan: *mut luxfer_plan) -> luxfer_status {
+    handle::retain(plan)
+}
+
+/// Gives a reference back; a job that runs goes on. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_plan_release(plan: *mut luxfer_plan) -> luxfer_status {
+    handle::release(plan)
+}

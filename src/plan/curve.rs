@@ -1,0 +1,118 @@
+//! Curves of error against time, and how to give time out along several of them.
+
+use super::Goal;
+
+/// A stage's error as it gets time.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Curve {
+    /// Least and most time it can use, in seconds; 0 < least <= most.
+    pub least: f64,
+    pub most: f64,
+    /// Seconds, rising, and the squares of the errors they leave: between them they fall with powers of the time that lie
+    /// in [`POWERS`], and beyond as between the last two.
+    pub points: [[f64; 2]; 3],
+}
+
+/// By which power of the time squared errors fall at least and at most: that of independent samples, and what stratified
+/// ones come to.
+const POWERS: [f64; 2] = [1.0, 2.0];
+
+/// Growth of a stage's time in a step.
+const STEP: f64 = 1.01;
+
+impl Curve {
+    /// A squared error that falls with time as that of independent samples does.
+    pub fn of_independent(least: f64, most: f64, square: f64) -> Self {
+        let point = |times: f64| [times * least, square / times];
+        Self { least, most, points: [point(1.0), point(2.0), point(4.0)] }
+    }
+
+    /// Squared error after so many seconds.
+    pub fn square(&self, seconds: f64) -> f64 {
+        let [first, middle, last] = self.points;
+        let ([s, a], [t, b]) = if seconds < middle[0] { (first, middle) } else { (middle, last) };
+        if a <= 0.0 || b <= 0.0 {
+            return b.max(0.0);
+        }
+        let power = ((a / b).ln() / (t / s).ln()).clamp(POWERS[0], POWERS[1]);
+        // Both stretches begin where they meet.
+        middle[1] * (middle[0] / seconds).powf(power)
+    }
+
+    /// How much a step from `seconds` lowers the squared error, per second; 0 at the end of the curve.
+    fn gain(&self, seconds: f64) -> f64 {
+        let next = (seconds * STEP).min(self.most);
+        if next > seconds { (self.square(seconds) - self.square(next)) / (next - seconds) } else { 0.0 }
+    }
+}
+
+/// Seconds for each stage: at least what it can do with, then step by step to the one where they lower the sum of the squared
+/// errors most, until the goal is reached or no stage has use for more. Where gains fall along every curve, as here, no
+/// other division of the time does better by more than a step.
+pub(super) fn allocate(curves: &[Curve], goal: Goal) -> Vec<f64> {
+    let mut seconds: Vec<f64> = curves.iter().map(|c| c.least).collect();
+    loop {
+        let total: f64 = seconds.iter().sum();
+        let square: f64 = curves.iter().zip(&seconds).map(|(c, &s)| c.square(s)).sum();
+        let left = match goal {
+            Goal::Error(error) if square <= error * error => return seconds,
+            Goal::Error(_) => f64::INFINITY,
+            Goal::Seconds(budget) => budget - total,
+        };
+        let best = (0..curves.len()).max_by(|&a, &b| curves[a].gain(seconds[a]).total_cmp(&curves[b].gain(seconds[b])));
+        let Some(best) = best.filter(|&i| left > 0.0 && curves[i].gain(seconds[i]) > 0.0) else { return seconds };
+        let next = (seconds[best] * STEP).min(curves[best].most);
+        if next - seconds[best] >= left {
+            seconds[best] += left;
+            return seconds;
+        }
+        seconds[best] = next;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn monte_carlo(square: f64) -> Curve {
+        Curve::of_independent(0.01, 1e6, square)
+    }
+
+    #[test]
+    fn errors_pass_through_what_is_known_of_them() {
+        let curve = Curve { least: 1.0, most: 1e6, points: [[1.0, 64.0], [4.0, 8.0], [16.0, 2.0]] };
+        for ([seconds, square], expected) in curve.points.iter().map(|p| (*p, p[1])) {
+            assert!((curve.square(seconds) - expected).abs() < 1e-9, "{square} after {seconds} s");
+        }
+        assert!((curve.square(64.0) - 0.5).abs() < 1e-9 && (curve.square(2.0) - 64.0 / 8f64.sqrt()).abs() < 1e-9);
+        // What chance brings about does not rise with time, nor fall without bound.
+        let odd = Curve { points: [[1.0, 1.0], [4.0, 2.0], [16.0, 1e-9]], ..curve };
+        assert!(odd.square(1.0) > odd.square(4.0) && odd.square(64.0) > 1e-12);
+        assert_eq!(Curve { points: [[1.0, 0.0], [4.0, 0.0], [16.0, 0.0]], ..curve }.square(9.0), 0.0);
+    }
+
+    #[test]
+    fn time_goes_where_it_lowers_the_error_most() {
+        // Of errors squared a / t and b / t the best division is as the roots of a and b.
+        let curves = [monte_carlo(1.0), monte_carlo(9.0)];
+        let seconds = allocate(&curves, Goal::Seconds(8.0));
+        assert!((seconds.iter().sum::<f64>() - 8.0).abs() < 1e-9);
+        assert!((seconds[0] - 2.0).abs() < 0.05, "{seconds:?}");
+        // The same division for an error, whose square is (sqrt a + sqrt b)² / t.
+        let seconds = allocate(&curves, Goal::Error(0.2));
+        let square: f64 = curves.iter().zip(&seconds).map(|(c, &s)| c.square(s)).sum();
+        assert!(square <= 0.04 && square > 0.039, "{square}");
+        assert!((seconds[1] / seconds[0] - 3.0).abs() < 0.1, "{seconds:?}");
+    }
+
+    #[test]
+    fn least_and_most_are_kept() {
+        let short = Curve { most: 0.5, ..monte_carlo(1.0) };
+        assert_eq!(allocate(&[short], Goal::Seconds(9.0)), [0.5]);
+        assert_eq!(allocate(&[short], Goal::Error(1e-5)), [0.5]);
+        assert_eq!(allocate(&[short, short], Goal::Seconds(0.001)), [0.01, 0.01]);
+        // A stage without error is given no more than it needs.
+        let exact = monte_carlo(0.0);
+        assert_eq!(allocate(&[exact, monte_carlo(1.0)], Goal::Seconds(1.0))[0], 0.01);
+    }
+}

@@ -1,0 +1,68 @@
+//! What follows the emissive texture in a lighting transfer: the solution of its strength, and the picture.
+
+use super::curve::allocate;
+use super::picture::{Picture, Rendering};
+use super::strength::Strength;
+use super::{Clock, Expected, Goal, timed};
+use crate::error::{Error, ErrorKind, Result};
+use crate::job::Job;
+use crate::relight;
+use crate::render::{self, World};
+use crate::transfer::{LitScene, Stage, Transfer};
+use std::sync::Arc;
+
+/// The last two stages of a transfer as they are to be.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lighting {
+    pub relight: relight::Params,
+    pub render: render::Params,
+    /// Of [`Stage::Relight`]: the error is half the width of the solution's interval, relative.
+    pub solving: Expected,
+    /// Of [`Stage::Render`]: the error is the picture's by its paths alone.
+    pub rendering: Expected,
+    /// Of both, and of the picture they make.
+    pub whole: Expected,
+}
+
+/// Plans the stages RELIGHT and RENDER of a transfer whose stage EMISSION has run: of its settings what is no matter of
+/// quality is kept.
+///
+/// # Errors
+/// A goal or a setting out of range; no result of the stage EMISSION; no light that comes back to the surface; cancelled.
+pub fn lighting(transfer: &Transfer, goal: Goal, clock: Clock, job: Job) -> Result<Lighting> {
+    let lit = check(transfer, goal)?;
+    let (building, world) = timed(clock, || World::build(lit.scene.clone(), job.part(0.0, 0.2)));
+    let world = world?;
+    let mesh = lit.placed.mesh;
+    let triangles: Vec<_> = (0..lit.scene.meshes[mesh].triangles.len()).map(|t| (mesh, t)).collect();
+    let camera = transfer.viewpoint(&world, &lit);
+    let strength =
+        Strength::new((&world, lit.placed.material, &triangles), &transfer.params.relight, clock, job.part(0.2, 0.5))?;
+    let picture = Picture::new(&world, &camera, &transfer.params.render, clock, job.part(0.5, 1.0))?;
+
+    // Both stages make the scene ready; what time is left is shared out along their curves.
+    let light = match goal {
+        Goal::Seconds(budget) => Goal::Seconds((budget - 2.0 * building).max(0.0)),
+        error => error,
+    };
+    let contrast = picture.contrast();
+    let seconds = allocate(&[strength.curve(contrast), picture.curve()], light);
+    let (relight, mut solving) = strength.plan(&transfer.params.relight, goal, seconds[0]);
+    let Rendering { params: render, expected: mut rendering } = picture.plan(&transfer.params.render, goal, seconds[1]);
+    let error = strength.adds(solving.error, contrast).hypot(rendering.error);
+    solving.seconds += building;
+    rendering.seconds += building;
+    let whole = Expected { seconds: solving.seconds + rendering.seconds, error };
+    job.report(1.0);
+    Ok(Lighting { relight, render, solving, rendering, whole })
+}
+
+/// Checks what a plan needs, and gives the scene with the lamps that are to be solved for; takes no time worth speaking of.
+pub fn check(transfer: &Transfer, goal: Goal) -> Result<Arc<LitScene>> {
+    goal.check()?;
+    transfer.params.check(Stage::Relight)?;
+    transfer.params.check(Stage::Render)?;
+    transfer.results.unsolved.clone().ok_or_else(|| {
+        Error::new(ErrorKind::InvalidOperation, "run stage Emission first: a plan looks at the light of its lamps")
+    })
+}

@@ -1,0 +1,148 @@
+//! Plans come true: on rooms and sizes of picture that nothing was fitted to, what they expect is what comes out.
+//!
+//! Times are those of one thread, by its own clock, so that what else the machine does weighs on neither side. More cases, and
+//! whole transfers: `make bench ONLY=plan`.
+
+use glam::Vec3;
+use luxfer::demo;
+use luxfer::error::ErrorKind;
+use luxfer::exec::Pool;
+use luxfer::image::Image;
+use luxfer::job::Monitor;
+use luxfer::plan::{self, Goal};
+use luxfer::render::{self, Params, World};
+use luxfer::scene::surface;
+use luxfer::scene::{Camera, Scene};
+use luxfer::transfer::{Input, Stage, Transfer};
+use std::sync::Arc;
+use std::time::Duration;
+
+/// Processor time of the calling thread.
+fn cpu() -> Duration {
+    let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
+    // SAFETY: the call fills the structure it is given.
+    unsafe { libc::clock_gettime(libc::CLOCK_THREAD_CPUTIME_ID, &mut time) };
+    Duration::new(time.tv_sec as u64, time.tv_nsec as u32)
+}
+
+fn timed<T>(work: impl FnOnce() -> T) -> (f64, T) {
+    let start = cpu();
+    let value = work();
+    ((cpu() - start).as_secs_f64(), value)
+}
+
+/// The furnished room under nine lamps in its ceiling, and the office under its own.
+fn rooms() -> [(Scene, Camera); 2] {
+    let mut room = demo::target_room().unwrap();
+    let ceiling = surface::find(&room, "Ceiling").unwrap();
+    let lamps = Image::from_fn(60, 40, |x, y| [f32::from(x % 20 < 6 && y % 13 < 4); 3]).unwrap();
+    surface::place(&mut room, &ceiling, lamps, Vec3::splat(2000.0)).unwrap();
+    let office = demo::exemplar_room().unwrap();
+    [room, office.scene].map(|scene| {
+        let camera = scene.cameras[0].clone();
+        (scene, camera)
+    })
+}
+
+/// Root mean square error of two pictures with independent errors, relative to their mean.
+fn error_of(a: &Image, b: &Image) -> f64 {
+    let mean = |image: &Image| image.data.iter().map(|&v| f64::from(v)).sum::<f64>() / image.data.len() as f64;
+    let square = a.data.iter().zip(&b.data).map(|(&a, &b)| f64::from(a - b).powi(2)).sum::<f64>();
+    (square / a.data.len() as f64 / 2.0).sqrt() / (0.5 * (mean(a) + mean(b)))
+}
+
+#[test]
+fn renderings_take_the_time_and_leave_the_error_that_was_expected() {
+    let (mut times, mut errors) = (Vec::new(), Vec::new());
+    Pool::new(1).unwrap().run(|| {
+        let monitor = Monitor::default();
+        for (scene, camera) in rooms() {
+            let world = World::build(Arc::new(scene), monitor.job()).unwrap();
+            for (width, height) in [(72, 48), (140, 90)] {
+                for goal in [Goal::Seconds(0.3), Goal::Error(0.25)] {
+                    let params = Params { width, height, ..Params::default() };
+                    let plan = plan::rendering(&world, &camera, &params, goal, &cpu, monitor.job()).unwrap();
+                    let shoot = |seed| {
+                        let params = Params { seed, time_budget_ms: 0, ..plan.params.clone() };
+                        timed(|| render::run(&world, &camera, &params, monitor.job(), &mut |_| ()).unwrap())
+                    };
+                    let [(s, a), (t, b)] = [shoot(11), shoot(12)];
+                    times.push(0.5 * (s + t) / plan.expected.seconds);
+                    errors.push(error_of(&a.beauty, &b.beauty) / plan.expected.error);
+                    if let Goal::Error(error) = goal {
+                        assert!(
+                            plan.expected.error <= error * 1.001 && a.error < 1.25 * error,
+                            "{plan:?}: {}",
+                            a.error
+                        );
+                    }
+                }
+            }
+        }
+    });
+    println!("times {times:.2?}\nerrors {errors:.2?}");
+    for ratios in [times, errors] {
+        let off = ratios.iter().filter(|r| (*r - 1.0).abs() > 0.25).count();
+        assert!(off <= 1, "{off} of {} are off by more than a quarter: {ratios:.2?}", ratios.len());
+    }
+}
+
+#[test]
+fn the_light_of_a_transfer_is_planned() {
+    let pool = Pool::new(2).unwrap();
+    let monitor = Monitor::default();
+    let room = demo::exemplar_room().unwrap();
+    let camera = room.scene.cameras[room.camera].clone();
+    let size = demo::photo::Params { width: 300, height: 200, samples: 8, seed: 3 };
+    let (photo, _) =
+        pool.run(|| demo::photo::photograph(Arc::new(room.scene.clone()), &camera, &size, monitor.job())).unwrap();
+    let input = Input {
+        strokes: demo::strokes(&room, size.width, size.height).unwrap(),
+        photo: Some(Arc::new(photo)),
+        scene: Some(Arc::new(demo::target_room().unwrap())),
+        surface: "Ceiling".into(),
+        ..Input::default()
+    };
+    let mut transfer = Transfer { input, ..Transfer::default() };
+    (transfer.params.render.width, transfer.params.render.height) = (64, 36);
+    let clock = plan::wall();
+    let plan = |transfer: &Transfer, goal| pool.run(|| plan::lighting(transfer, goal, &clock, monitor.job()));
+    let early = plan(&transfer, Goal::Error(0.3)).unwrap_err();
+    assert_eq!(
+        (early.kind, early.message.contains("run stage Emission")),
+        (ErrorKind::InvalidOperation, true),
+        "{early}"
+    );
+
+    pool.run(|| transfer.run(Stage::View, Stage::Emission, monitor.job(), |_| ())).unwrap();
+    let planned = plan(&transfer, Goal::Error(0.3)).unwrap();
+    assert!(planned.whole.error <= 0.3 * 1.001 && planned.whole.error > 0.2, "{planned:?}");
+    assert!((planned.solving.seconds + planned.rendering.seconds - planned.whole.seconds).abs() < 1e-9);
+    (transfer.params.relight, transfer.params.render) = (planned.relight.clone(), planned.render.clone());
+    pool.run(|| transfer.run(Stage::Relight, Stage::Render, monitor.job(), |_| ())).unwrap();
+    let film = transfer.results.film.as_ref().unwrap();
+    let expected = planned.rendering.error;
+    assert!((film.error / expected - 1.0).abs() < 0.4, "{} where {expected} was expected", film.error);
+    let solved = transfer.results.solution.as_ref().unwrap().error();
+    assert!(solved <= f64::from(planned.relight.target_error), "{solved}: {planned:?}");
+
+    // More time, less error; and none is given to a stage that cannot use it.
+    let [short, long] = [1.0, 20.0].map(|seconds| plan(&transfer, Goal::Seconds(seconds)).unwrap());
+    assert!(long.whole.error < 0.6 * short.whole.error, "{short:?} {long:?}");
+    assert!(long.relight.paths > short.relight.paths && long.render.samples > short.render.samples);
+    let kept = render::Params {
+        samples: long.render.samples,
+        time_budget_ms: long.render.time_budget_ms,
+        ..Params::default()
+    };
+    assert_eq!(long.render, Params { width: 64, height: 36, target_error: 0.0, ..kept });
+
+    // What cannot be planned is named.
+    for goal in [Goal::Error(0.0), Goal::Error(f64::NAN), Goal::Seconds(-1.0)] {
+        assert_eq!(plan(&transfer, goal).unwrap_err().kind, ErrorKind::InvalidArgument);
+    }
+    let cancelled = Monitor::default();
+    cancelled.cancel();
+    let run = pool.run(|| plan::lighting(&transfer, Goal::Error(0.1), &clock, cancelled.job()));
+    assert_eq!(run.unwrap_err().kind, ErrorKind::Cancelled);
+}
