@@ -1,13 +1,19 @@
 //! Whether plans come true: seconds and errors that `plan` expects against those of the runs it plans.
 //!
-//! Of renderings, on scenes and sizes of all kinds; nothing was fitted to any. Times are of one thread, by its own clock, so
-//! that what else the machine does weighs on neither side; time budgets, which are of the clock on the wall, are taken off
-//! for that, and the paths that they bound stay. The error of a picture is that of two pictures of different seeds, which
-//! needs no reference: half the mean square of their difference.
+//! Of renderings and of the light of whole transfers, on scenes, sizes and photos of all kinds; nothing was fitted to any.
+//! Times are of one thread, by its own clock, so that what else the machine does weighs on neither side; time budgets, which
+//! are of the clock on the wall, are taken off for that, and the paths that they bound stay. The error of a picture is that
+//! of two pictures of different seeds, which needs no reference: half the mean square of their difference.
+//!
+//! `cargo bench --bench plan -- renderings` or `-- transfers` makes the one or the other alone.
 
 mod harness;
+#[path = "plan/photos.rs"]
+mod photos;
 #[path = "plan/renderings.rs"]
 mod renderings;
+#[path = "plan/transfers.rs"]
+mod transfers;
 
 use harness::{Table, figure, quantile};
 use luxfer::exec::Pool;
@@ -16,9 +22,15 @@ use std::time::Duration;
 
 fn main() {
     let pool = Pool::new(1).expect("a thread");
+    let asked = |what: &str| std::env::args().any(|a| a == what);
     pool.run(|| {
         let mut all = Outcomes::default();
-        renderings::measure(&mut all);
+        if !asked("transfers") {
+            renderings::measure(&mut all);
+        }
+        if !asked("renderings") {
+            transfers::measure(&mut all);
+        }
         for (name, ratios) in [("time", &all.times), ("error", &all.errors)] {
             figure(&format!("plan.{name}.within_25"), 100.0 * within(ratios), "%");
             figure(&format!("plan.{name}.median"), quantile(ratios, 0.5), "x");
