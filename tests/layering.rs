@@ -20,7 +20,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     // Stages: never each other. Segmentation knows how many channels the features have.
     ("features", &["simd", "error", "job", "exec", "rng", "image", "geometry", "network"]),
     ("segment", &["simd", "error", "job", "exec", "rng", "image", "geometry", "features"]),
-    ("rectify", &["error", "job", "exec", "rng", "image", "geometry"]),
+    ("rectify", &["simd", "error", "job", "exec", "rng", "image", "geometry"]),
     ("emission", &["error", "job", "exec", "rng", "image", "geometry", "patch"]),
     ("relight", &["error", "job", "exec", "rng", "image", "geometry", "scene", "render"]),
     ("stylize", &["error", "job", "exec", "rng", "image", "geometry", "patch"]),

@@ -36,20 +36,25 @@ pub enum Clock {
     Wall,
     /// Processor time of the calling thread: for work on one thread, blind to what else the machine does.
     Thread,
+    /// Processor time of all threads of this process: what work on several of them costs, whoever else is there.
+    Process,
 }
 
 impl Clock {
     fn seconds(self, start: Instant) -> f64 {
         match self {
             Self::Wall => start.elapsed().as_secs_f64(),
-            Self::Thread => {
-                let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
-                // SAFETY: the call fills the structure it is given.
-                unsafe { libc::clock_gettime(libc::CLOCK_THREAD_CPUTIME_ID, &mut time) };
-                time.tv_sec as f64 + time.tv_nsec as f64 * 1e-9
-            }
+            Self::Thread => processor_seconds(libc::CLOCK_THREAD_CPUTIME_ID),
+            Self::Process => processor_seconds(libc::CLOCK_PROCESS_CPUTIME_ID),
         }
     }
+}
+
+fn processor_seconds(clock: libc::clockid_t) -> f64 {
+    let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
+    // SAFETY: the call fills the structure it is given.
+    unsafe { libc::clock_gettime(clock, &mut time) };
+    time.tv_sec as f64 + time.tv_nsec as f64 * 1e-9
 }
 
 /// Seconds that `work` takes, and what it gives.

@@ -2,7 +2,7 @@
 "interpolation", "out"}.
 
 Files hold float32 RGB; `map` leads from pixels of the result to those of the image, row by row, pixel centres at whole
-coordinates. Answers each with the seconds that the warp took.
+coordinates. Answers each with the seconds that the warp took, on the wall and of processor time.
 """
 
 import json
@@ -22,8 +22,8 @@ for line in sys.stdin:
     matrix = np.array(job["map"]).reshape(3, 3)
     size = (job["out_width"], job["out_height"])
     flags = INTERPOLATIONS[job["interpolation"]] | cv2.WARP_INVERSE_MAP
-    start = time.perf_counter()
+    start, busy = time.perf_counter(), time.process_time()
     out = cv2.warpPerspective(image, matrix, size, flags=flags)
-    seconds = time.perf_counter() - start
+    seconds, busy = time.perf_counter() - start, time.process_time() - busy
     out.tofile(job["out"])
-    print(json.dumps({"seconds": seconds}), flush=True)
+    print(json.dumps({"seconds": seconds, "busy": busy}), flush=True)

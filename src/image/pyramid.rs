@@ -53,6 +53,24 @@ fn weights(from: usize, to: usize) -> Vec<(usize, Vec<f32>)> {
         .collect()
 }
 
+/// The image at half the size, rounded up, each new pixel the mean of two by two; the last column and row count twice where
+/// there is an odd one.
+pub fn half(image: &Image, job: Job) -> Result<Image> {
+    let c = image.channels;
+    let mut out = Image::new(image.width.div_ceil(2), image.height.div_ceil(2), c)?;
+    let row_len = out.row_len();
+    exec::for_rows(&mut out.data, row_len, job, |y, row| {
+        let (above, below) = (image.row(2 * y), image.row((2 * y + 1).min(image.height - 1)));
+        for (x, pixel) in row.chunks_exact_mut(c).enumerate() {
+            let (left, right) = (2 * x * c, (2 * x + 1).min(image.width - 1) * c);
+            for (k, out) in pixel.iter_mut().enumerate() {
+                *out = 0.25 * ((above[left + k] + above[right + k]) + (below[left + k] + below[right + k]));
+            }
+        }
+    })?;
+    Ok(out)
+}
+
 /// Gaussian blur with standard deviation `sigma` pixels, cut at three; the border is extended by its nearest pixel.
 pub fn blur(image: &Image, sigma: f32, job: Job) -> Result<Image> {
     if sigma <= 0.0 {
@@ -110,6 +128,16 @@ mod tests {
         let large = resize(&image, 100, 90, monitor.job()).unwrap();
         assert!(large.data.iter().skip(1).step_by(2).all(|&v| (v - 2.0).abs() < 1e-5));
         assert_eq!(resize(&image, 37, 23, monitor.job()).unwrap(), image);
+    }
+
+    #[test]
+    fn halving_takes_means_and_counts_odd_ends_twice() {
+        let image = Image::from_fn(5, 3, |x, y| [(x + 10 * y) as f32, 1.0]).unwrap();
+        let small = half(&image, Monitor::default().job()).unwrap();
+        assert_eq!((small.width, small.height), (3, 2));
+        let first: Vec<f32> = small.data.iter().step_by(2).copied().collect();
+        assert_eq!(first, [5.5, 7.5, 9.0, 20.5, 22.5, 24.0]);
+        assert!(small.data.iter().skip(1).step_by(2).all(|&v| v == 1.0));
     }
 
     #[test]

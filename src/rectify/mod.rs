@@ -16,14 +16,15 @@
 //! Known weaknesses. Stated errors presume five segments per independent observation and a floor of 0.2°, calibrated on
 //! re-projected panoramas: half of their true errors lie below 0.75 of the stated ones, as they should, but one in twenty
 //! beyond 2.5. A direction that few lines show can be lost to chance lines of a floor, and its stated error does not say
-//! so. Short segments share a bias of about 0.01 rad on re-projected photos, whose cause is not known. Warping takes more
-//! than ten times as long as OpenCV's and is not everywhere more exact (`make bench ONLY=warp`).
+//! so. Short segments share a bias of about 0.01 rad on re-projected photos, whose cause is not known.
 //!
 //! Not modelled: lens distortion, pixels that are not square, rooms whose walls are not at right angles (their directions
 //! are found, but the axes are made orthogonal).
 
 mod camera;
 pub mod canny;
+mod footprint;
+mod gather;
 pub mod gradient;
 pub mod hough;
 mod manhattan;
@@ -34,6 +35,7 @@ mod resample;
 pub mod segments;
 mod sphere;
 mod successive;
+mod taps;
 #[cfg(test)]
 mod tests;
 mod unwarp;

@@ -1,0 +1,106 @@
+//! What the pixels of a run see of the source: where, and how much of it.
+
+/// Neighbouring pixels of a row that are worked on together.
+pub const RUN: usize = 64;
+
+/// Neighbours that share the footprint in their middle, which changes more slowly than the place.
+const SHARED: usize = 8;
+
+/// Derivatives beyond it are those of pixels on the horizon.
+const STEEPEST: f32 = 1e8;
+
+/// The places in the source that the pixels of a run show, each with its footprint: the sheared rectangle that has the
+/// same second moments as the parallelogram that the pixel covers, in every direction at least as wide as a pixel of
+/// the source.
+pub struct Footprints {
+    /// Whether the place is inside the source and in front of the camera.
+    pub is_seen: [bool; RUN],
+    pub x: [f64; RUN],
+    pub y: [f64; RUN],
+    /// Length of the sides along x.
+    pub width: [f32; RUN],
+    /// Their distance along y.
+    pub height: [f32; RUN],
+    /// How far the middle moves along x to a pixel along y.
+    pub shear: [f32; RUN],
+    /// Square of the longest axis of the pixel's ellipse, before it was made at least 1.
+    pub longest: [f32; RUN],
+}
+
+impl Footprints {
+    pub const EMPTY: Self = Self {
+        is_seen: [false; RUN],
+        x: [0.0; RUN],
+        y: [0.0; RUN],
+        width: [1.0; RUN],
+        height: [1.0; RUN],
+        shear: [0.0; RUN],
+        longest: [1.0; RUN],
+    };
+}
+
+/// The footprints of the pixels from `first` on of a row. `map` leads to the source, by columns; `front` is the sign
+/// of the third coordinate in front of the camera, `size` that of the source.
+#[inline(always)]
+pub fn locate(map: &[f64; 9], front: f64, size: [f64; 2], row: usize, first: usize, to: &mut Footprints) {
+    let y = row as f64 + 0.5;
+    let (from_x, from_y, from_z) = (map[3] * y + map[6], map[4] * y + map[7], map[5] * y + map[8]);
+    for i in 0..RUN {
+        let x = first as f64 + (i as f64 + 0.5);
+        let z = map[2] * x + from_z;
+        let per_z = 1.0 / z;
+        let (qx, qy) = ((map[0] * x + from_x) * per_z, (map[1] * x + from_y) * per_z);
+        let seen = (z * front > 0.0) & (qx >= 0.0) & (qy >= 0.0) & (qx <= size[0]) & (qy <= size[1]);
+        to.is_seen[i] = seen;
+        (to.x[i], to.y[i]) = if seen { (qx, qy) } else { (0.0, 0.0) };
+    }
+
+    let mut shapes = [[0.0f32; RUN / SHARED]; 4];
+    for i in 0..RUN / SHARED {
+        let x = first as f64 + (i * SHARED + SHARED / 2) as f64;
+        let per_z = 1.0 / (map[2] * x + from_z);
+        let (qx, qy) = ((map[0] * x + from_x) * per_z, (map[1] * x + from_y) * per_z);
+        // The Jacobian J, and the squares of the axes of its ellipse: the eigenvalues of J Jᵀ.
+        let part = |v: f64| ((v * per_z) as f32).max(-STEEPEST).min(STEEPEST);
+        let (a, b) = (part(map[0] - qx * map[2]), part(map[3] - qx * map[5]));
+        let (c, d) = (part(map[1] - qy * map[2]), part(map[4] - qy * map[5]));
+        let (xx, xy, yy, determinant) = (a * a + b * b, a * c + b * d, c * c + d * d, a * d - b * c);
+        let half = 0.5 * (xx - yy);
+        let radius = (half * half + xy * xy).sqrt();
+        let longest = 0.5 * (xx + yy) + radius;
+        let shortest = determinant * determinant / longest.max(f32::MIN_POSITIVE);
+
+        // Neither below 1: J Jᵀ is scaled and a multiple of the identity added.
+        let (high, low) = (longest.max(1.0), shortest.max(1.0));
+        let scale = if shortest >= 1.0 {
+            1.0
+        } else if longest <= 1.0 {
+            0.0
+        } else {
+            (high - low) / (2.0 * radius)
+        };
+        let added = if shortest >= 1.0 { 0.0 } else { low - scale * shortest };
+        let yy = scale * yy + added;
+        let height = yy.sqrt();
+        (shapes[0][i], shapes[1][i]) = ((high * low).sqrt() / height, height);
+        (shapes[2][i], shapes[3][i]) = (scale * xy / yy, longest);
+    }
+    for (shape, to) in shapes.iter().zip([&mut to.width, &mut to.height, &mut to.shear, &mut to.longest]) {
+        to.chunks_exact_mut(SHARED).zip(shape).for_each(|(to, value)| to.fill(*value));
+    }
+}
+
+/// The shortest side of the footprints that are seen, the greatest width and the greatest height. None is negative,
+/// so that their bits compare as they do, and unlike them on vectors.
+#[inline(always)]
+pub fn extent(of: &Footprints) -> Option<[f32; 3]> {
+    let (mut shortest, mut widest, mut highest) = (u32::MAX, 0, 0);
+    for i in 0..RUN {
+        let (width, height) = (of.width[i].to_bits(), of.height[i].to_bits());
+        let seen = of.is_seen[i];
+        shortest = shortest.min(if seen { width.min(height) } else { u32::MAX });
+        widest = widest.max(if seen { width } else { 0 });
+        highest = highest.max(if seen { height } else { 0 });
+    }
+    (widest > 0).then(|| [shortest, widest, highest].map(f32::from_bits))
+}

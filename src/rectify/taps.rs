@@ -1,0 +1,142 @@
+//! The 4 × 4 samples about each pixel of a run, and their weights.
+//!
+//! Where the source is magnified the weights are those of bicubic interpolation (Catmull-Rom). Where it is minified a
+//! sample weighs by the share of the footprint that falls on it: row by row, as the footprint is a sheared rectangle.
+//! Both are the same for a footprint of one pixel but for what the cubic sharpens, which fades out in between.
+
+use super::footprint::{Footprints, RUN};
+
+/// Samples along each side.
+pub const TAPS: usize = 4;
+
+/// Longest side of a rectangle that they hold wherever it lies.
+pub const LONGEST_SIDE: f32 = 3.0;
+
+/// Square of a pixel's longest axis in the source up to which cubics interpolate, and from which on they have no part.
+const SHARP: f32 = 1.0;
+const SOFT: f32 = 1.5;
+
+/// One of the equal parts of every footprint of a run, which together are the whole.
+#[derive(Clone, Copy)]
+pub struct Part {
+    /// Its number along x and y, and how many there are.
+    pub at: [usize; 2],
+    pub of: [usize; 2],
+    /// Pixels of the level of the pyramid it is taken from to a pixel of the source, and that level's size.
+    pub scale: f32,
+    pub size: [usize; 2],
+}
+
+pub struct Taps {
+    /// The first of the four rows; the first column of each, or of all if nothing is sheared.
+    pub line: [i32; RUN],
+    pub column: [[i32; RUN]; TAPS],
+    /// Weights of the rows, and in each row, or in all if nothing is sheared, of the columns. Both sum to 1.
+    pub down: [[f32; TAPS]; RUN],
+    pub across: [[[f32; TAPS]; RUN]; TAPS],
+    /// Whether the pixel is seen and all of its samples lie inside the source.
+    pub is_inside: [bool; RUN],
+    pub is_sheared: bool,
+    /// Whether some weights are negative.
+    pub is_sharp: bool,
+}
+
+impl Taps {
+    pub const EMPTY: Self = Self {
+        line: [0; RUN],
+        column: [[0; RUN]; TAPS],
+        down: [[0.0; TAPS]; RUN],
+        across: [[[0.0; TAPS]; RUN]; TAPS],
+        is_inside: [false; RUN],
+        is_sheared: false,
+        is_sharp: false,
+    };
+}
+
+/// Length of a sample's side that a side of the given length covers whose middle is `offset` away.
+#[inline(always)]
+fn overlap(offset: f32, length: f32) -> f32 {
+    (0.5 * length + 0.5 - offset.abs()).max(0.0).min(length.min(1.0))
+}
+
+/// What Catmull-Rom's weights are beyond those of a straight line, `t` of the way from the second sample to the third.
+#[inline(always)]
+fn sharpening(t: f32) -> [f32; TAPS] {
+    let u = 1.0 - t;
+    let (first, last) = (-0.5 * t * u * u, -0.5 * u * t * t);
+    [first, last - 2.0 * first, first - 2.0 * last, last]
+}
+
+/// Weights along one direction; `at` is how far the middle is beyond that of the second sample.
+#[inline(always)]
+fn weights(at: &[f32; RUN], length: &[f32; RUN], sharp: &[f32; RUN], is_sharp: bool, to: &mut [[f32; TAPS]; RUN]) {
+    if is_sharp {
+        for i in 0..RUN {
+            let (share, more) = (1.0 / length[i], sharpening(at[i]));
+            let weight = |k: usize| overlap(k as f32 - 1.0 - at[i], length[i]) * share + sharp[i] * more[k];
+            to[i] = [weight(0), weight(1), weight(2), weight(3)];
+        }
+    } else {
+        for i in 0..RUN {
+            let share = 1.0 / length[i];
+            let weight = |k: usize| overlap(k as f32 - 1.0 - at[i], length[i]) * share;
+            to[i] = [weight(0), weight(1), weight(2), weight(3)];
+        }
+    }
+}
+
+/// A whole number as an integer. A sum puts it into the last bits, which goes on vectors as a cast does not.
+#[inline(always)]
+fn integer(whole: f64) -> i32 {
+    (whole + 1.5 * (1u64 << 52) as f64).to_bits() as i32
+}
+
+/// The same, within four millions.
+#[inline(always)]
+fn integer_of_single(whole: f32) -> i32 {
+    const SHIFT: f32 = 12_582_912.0;
+    (whole.max(-4e6).min(4e6) + SHIFT).to_bits() as i32 - SHIFT.to_bits() as i32
+}
+
+#[inline(always)]
+pub fn weigh(footprints: &Footprints, part: &Part, taps: &mut Taps) {
+    let share = [0, 1].map(|k| 1.0 / part.of[k] as f32);
+    let offset = [0, 1].map(|k| (part.at[k] as f32 + 0.5) * share[k] - 0.5);
+    let can_be_sharp = if part.of == [1, 1] && part.scale == 1.0 { 1.0 } else { 0.0 };
+    let scale = f64::from(part.scale);
+    let (mut width, mut height, mut sharp) = ([0.0; RUN], [0.0; RUN], [0.0; RUN]);
+    let (mut left, mut x, mut y) = ([0; RUN], [0.0; RUN], [0.0; RUN]);
+    for i in 0..RUN {
+        let (w, h) = ((footprints.width[i] * part.scale).max(1.0), (footprints.height[i] * part.scale).max(1.0));
+        let (right, below) = (offset[0] * w, offset[1] * h);
+        let at_x = footprints.x[i] * scale + f64::from(right + footprints.shear[i] * below) - 0.5;
+        let at_y = footprints.y[i] * scale + f64::from(below) - 0.5;
+        let (column, line) = (at_x.floor(), at_y.floor());
+        (x[i], y[i]) = ((at_x - column) as f32, (at_y - line) as f32);
+        (left[i], taps.line[i]) = (integer(column) - 1, integer(line) - 1);
+        (width[i], height[i]) = ((w * share[0]).min(LONGEST_SIDE), (h * share[1]).min(LONGEST_SIDE));
+        sharp[i] = can_be_sharp * ((SOFT - footprints.longest[i]) / (SOFT - SHARP)).max(0.0).min(1.0);
+    }
+    taps.is_sharp = sharp.iter().fold(0, |any, s| any | s.to_bits()) != 0;
+    taps.is_sheared = footprints.shear.iter().fold(0, |any, s| any | (s.to_bits() << 1)) != 0;
+    weights(&y, &height, &sharp, taps.is_sharp, &mut taps.down);
+
+    let last = if taps.is_sheared { TAPS - 1 } else { 0 };
+    for j in 0..=last {
+        let mut along = [0.0; RUN];
+        for i in 0..RUN {
+            let at = x[i] + footprints.shear[i] * (j as f32 - 1.0 - y[i]);
+            let column = at.floor();
+            along[i] = at - column;
+            taps.column[j][i] = left[i] + integer_of_single(column);
+        }
+        weights(&along, &width, &sharp, taps.is_sharp, &mut taps.across[j]);
+    }
+    // Columns move one way from row to row.
+    let most = part.size.map(|side| side as i32 - TAPS as i32);
+    for i in 0..RUN {
+        let (a, b, line) = (taps.column[0][i], taps.column[last][i], taps.line[i]);
+        let is_inside = (a.min(b) >= 0) & (a.max(b) <= most[0]) & (line >= 0) & (line <= most[1]);
+        taps.is_inside[i] = footprints.is_seen[i] & is_inside;
+    }
+}
