@@ -91,7 +91,8 @@ pub struct Params {
     pub hough_band: f64,
     /// Focal length in pixels, if known; > 0.
     pub focal: Option<f64>,
-    /// Principal point in pixels; the image centre if absent.
+    /// Principal point in pixels, where the lens's axis meets the picture, which is the lens's centre as the photo has it;
+    /// the image centre if absent. Cropped photos and those of shifted lenses have it elsewhere, some outside.
     pub principal: Option<DVec2>,
     pub seed: u64,
 }

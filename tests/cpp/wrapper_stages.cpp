@@ -46,6 +46,15 @@ void lighting_transfer(const Context &context) {
     rectify.start().wait();
     CHECK(rectify.report().segments > 0 && rectify.report().is_unwarped == 0);
 
+    luxfer::RectifyParams shifted;
+    shifted.principal[0] = 160;
+    shifted.principal[1] = 90;
+    const auto told = luxfer::Rectify::create(context);
+    told.set_photo(photo);
+    told.start(shifted).wait();
+    CHECK(told.report().principal[0] == 160 && told.report().principal[1] == 90);
+    CHECK(rectify.report().principal[0] == 150 && rectify.report().principal[1] == 100);
+
     const auto features = copied(luxfer::Features::create(context));
     features.set_photo(photo);
     features.set_view(rectify);

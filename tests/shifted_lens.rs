@@ -1,0 +1,120 @@
+//! Photos whose principal point is not their centre: of shifted lenses, as those for buildings are, and cropped ones.
+
+use glam::{DMat3, DQuat, DVec2, DVec3};
+use luxfer::geometry::{FocalSource, Perspective, Segment};
+use luxfer::image::Image;
+use luxfer::job::Monitor;
+use luxfer::rectify::{self, Params, UnwarpParams, View};
+use luxfer::rng::Rng;
+
+const SIZE: [usize; 2] = [800, 600];
+const FOCAL: f64 = 640.0;
+
+/// Looks nearly level; the lens is shifted up so far that its axis meets the plane of the photo below its border.
+fn camera() -> Perspective {
+    Perspective {
+        focal: FOCAL,
+        focal_source: FocalSource::Given,
+        principal: DVec2::new(330.0, 650.0),
+        axes: DMat3::from_quat(
+            DQuat::from_rotation_z(0.02) * DQuat::from_rotation_x(0.06) * DQuat::from_rotation_y(0.45),
+        ),
+    }
+}
+
+/// Where the ray through a pixel meets a ceiling one unit above the camera.
+fn on_ceiling(camera: &Perspective, pixel: DVec2) -> Option<DVec2> {
+    let ray = camera.axes.transpose() * camera.ray(pixel);
+    (ray.y < 0.0).then(|| DVec2::new(ray.x, ray.z) / -ray.y)
+}
+
+/// A ceiling of square lamps, and dark beyond it.
+fn photo(camera: &Perspective) -> Image {
+    const SUB: usize = 4;
+    let shade = |pixel: DVec2| match on_ceiling(camera, pixel) {
+        Some(at) if at.abs().max_element() < 4.0 => {
+            let tile = DVec2::new(at.x.rem_euclid(0.5), at.y.rem_euclid(0.5));
+            if tile.min_element() > 0.1 && tile.max_element() < 0.4 { 0.9 } else { 0.25 }
+        }
+        _ => 0.05f32,
+    };
+    Image::from_fn(SIZE[0], SIZE[1], |x, y| {
+        let at = |k: usize| DVec2::new((k % SUB) as f64 + 0.5, (k / SUB) as f64 + 0.5) / SUB as f64;
+        let corner = DVec2::new(x as f64, y as f64);
+        [(0..SUB * SUB).map(|k| shade(corner + at(k))).sum::<f32>() / (SUB * SUB) as f32; 3]
+    })
+    .unwrap()
+}
+
+fn mask(camera: &Perspective) -> Image {
+    Image::from_fn(SIZE[0], SIZE[1], |x, y| {
+        let at = on_ceiling(camera, DVec2::new(x as f64 + 0.5, y as f64 + 0.5));
+        [f32::from(at.is_some_and(|q| q.abs().max_element() < 3.5))]
+    })
+    .unwrap()
+}
+
+/// Exact segments along the three axes.
+fn segments(camera: &Perspective) -> Vec<Segment> {
+    let mut rng = Rng::new(3, &[]);
+    let mut between = |low: f64, high: f64| low + (high - low) * rng.next_f64();
+    (0..120)
+        .map(|i| {
+            let vanishing = camera.vanishing_point(i % 3);
+            let a = DVec2::new(between(0.0, SIZE[0] as f64), between(0.0, SIZE[1] as f64));
+            let towards = (vanishing.truncate() - a * vanishing.z).normalize();
+            Segment { a, b: a + towards * between(40.0, 160.0) }
+        })
+        .collect()
+}
+
+/// How far a view's nearest axes are from the true ones, in degrees, and the natural logarithm of its aspect ratio over
+/// the true one.
+fn errors(view: &View, truth: &Perspective, photo: &Image) -> (f64, f64) {
+    let axes = [0, 1, 2].map(|k| view.perspective.axes.col(k));
+    let off = |axis: DVec3| axes.iter().map(|a| a.dot(axis).abs().min(1.0).acos()).fold(9.0, f64::min);
+    let degrees = (0..3).map(|k| off(truth.axes.col(k)).to_degrees()).fold(0.0, f64::max);
+    let horizontal = UnwarpParams { axes: Some([0, 2]), ..UnwarpParams::default() };
+    let flat = rectify::unwarp(photo, view, &mask(truth), &horizontal, Monitor::default().job()).unwrap();
+    let corner = flat.corners.map(|c| on_ceiling(truth, c).unwrap());
+    let (across, down) = (corner[1] - corner[0], corner[3] - corner[0]);
+    let (w, h) = (flat.image.width as f64, flat.image.height as f64);
+    (degrees, (across.length() / down.length() * h / w).ln().abs())
+}
+
+#[test]
+fn exact_lines_give_the_camera_where_the_principal_point_is_told() {
+    let (truth, job) = (camera(), Monitor::default());
+    let photo = photo(&truth);
+    let read = |principal: Option<DVec2>| {
+        let params = Params { principal, ..Params::default() };
+        rectify::view_from_segments(&segments(&truth), SIZE[0], SIZE[1], &params, job.job()).unwrap()
+    };
+    let view = read(Some(truth.principal));
+    let (degrees, aspect) = errors(&view, &truth, &photo);
+    println!("told: focal {:.2}, axes {degrees:.4} degrees, aspect {aspect:.4}", view.perspective.focal);
+    assert_eq!(view.perspective.principal, truth.principal);
+    assert!((view.perspective.focal / FOCAL - 1.0).abs() < 5e-3 && degrees < 0.1 && aspect < 0.01);
+    // Taken for one whose axis meets its centre it is a photo of another room.
+    let view = read(None);
+    let (degrees, _) = errors(&view, &truth, &photo);
+    println!("not told: focal {:.2}, axes {degrees:.4} degrees", view.perspective.focal);
+    assert!(degrees > 3.0);
+}
+
+#[test]
+fn a_photo_of_a_shifted_lens_is_read_from_its_pixels() {
+    let (truth, job) = (camera(), Monitor::default());
+    let photo = photo(&truth);
+    let read = |principal: Option<DVec2>| {
+        let params = Params { principal, ..Params::default() };
+        errors(&rectify::find_view(&photo, &params, job.job()).unwrap(), &truth, &photo)
+    };
+    let (told, untold) = (read(Some(truth.principal)), read(None));
+    println!(
+        "axes off by {:.2} degrees, untold by {:.2}; aspect by {:.3} and {:.3}",
+        told.0, untold.0, told.1, untold.1
+    );
+    assert!(told.0 < 2.0 && told.1 < 0.05);
+    assert!(untold.0 > 2.0 * told.0);
+}
