@@ -149,6 +149,7 @@ fn panoramas(photos: &[Labelled]) {
     if photos.is_empty() {
         absent("vp.panorama.median_deg", "the panoramas are not there");
         absent("vp.panorama.failures", "the panoramas are not there");
+        absent("vp.megapixel.ms", "the panoramas are not there");
         return;
     }
     let mut table =
@@ -181,22 +182,39 @@ fn panoramas(photos: &[Labelled]) {
     }
     table.print("From pixels of re-projected panoramas, focal length unknown");
     plot.write("vp_pixels").unwrap();
+    figure("vp.megapixel.ms", megapixel(photos), "ms");
+}
+
+/// Milliseconds from the pixels of a photo of one megapixel to its vanishing points: the median of the photos, each the
+/// median of five.
+fn megapixel(photos: &[Labelled]) -> f64 {
+    let params = Params::default();
+    let each = photos.iter().map(|photo| {
+        let scale = (1e6 / (photo.photo.width * photo.photo.height) as f64).sqrt();
+        let small = resized(photo, scale);
+        let timings = interleaved(Clock::Wall, 5, &mut [&mut || drop(found(&small, &params))]);
+        1e3 * timings.median(0)
+    });
+    let ms: Vec<f64> = each.collect();
+    println!("one megapixel to vanishing points: {:.1} to {:.1} ms", quantile(&ms, 0.0), quantile(&ms, 1.0));
+    quantile(&ms, 0.5)
 }
 
 /// Median milliseconds and median error on photos reduced to a share of their sides.
 fn reduced(photos: &[Labelled], params: &Params, scale: f64) -> [f64; 2] {
-    let monitor = Monitor::default();
     let (mut ms, mut angles) = (Vec::new(), Vec::new());
     for photo in photos {
-        let [width, height] =
-            [photo.photo.width, photo.photo.height].map(|side| (side as f64 * scale).round() as usize);
-        let small = pyramid::resize(&photo.photo, width, height, monitor.job()).unwrap();
-        let k = glam::DMat3::from_diagonal(glam::DVec3::new(scale, scale, 1.0)) * photo.intrinsics;
-        let small =
-            Labelled { name: photo.name.clone(), photo: small, intrinsics: k, directions: photo.directions.clone() };
-        let (taken, list) = found(&small, params);
+        let (taken, list) = found(&resized(photo, scale), params);
         ms.push(taken);
         angles.extend(list.iter().map(|e| e[0]));
     }
     [quantile(&ms, 0.5), quantile(&angles, 0.5)]
+}
+
+/// A photo with its sides times `scale`.
+fn resized(photo: &Labelled, scale: f64) -> Labelled {
+    let [width, height] = [photo.photo.width, photo.photo.height].map(|side| (side as f64 * scale).round() as usize);
+    let small = pyramid::resize(&photo.photo, width, height, Monitor::default().job()).unwrap();
+    let k = glam::DMat3::from_diagonal(glam::DVec3::new(scale, scale, 1.0)) * photo.intrinsics;
+    Labelled { name: photo.name.clone(), photo: small, intrinsics: k, directions: photo.directions.clone() }
 }
