@@ -82,7 +82,30 @@ fn vanishing_points_of_labelled_segments_meet_the_published_protocol() {
     }
 }
 
-/// Unwarps ceilings whose homographies are known; pictures go to the folder named by `LUXFER_TEST_PICTURES`, if any.
+/// The photo, dimmed, with its lines in a colour for each axis they run along, grey for none, and a quadrilateral in white.
+fn drawn(photo: &Image, view: &rectify::View, quad: [DVec2; 4]) -> Image {
+    let mut picture = photo.to_rgb().unwrap();
+    picture.data.iter_mut().for_each(|v| *v *= 0.3);
+    let [width, height] = [photo.width as f64, photo.height as f64];
+    let mut line = |a: DVec2, b: DVec2, colour: [f32; 3]| {
+        let steps = (b - a).abs().max_element().ceil().clamp(1.0, 1e5) as usize;
+        for p in (0..=steps).map(|k| a.lerp(b, k as f64 / steps as f64)) {
+            if p.x >= 0.0 && p.y >= 0.0 && p.x < width && p.y < height {
+                picture.pixel_mut(p.x as usize, p.y as usize).copy_from_slice(&colour);
+            }
+        }
+    };
+    const COLOURS: [[f32; 3]; 3] = [[1.0, 0.1, 0.1], [0.1, 1.0, 0.1], [0.2, 0.4, 1.0]];
+    for (segment, axis) in &view.segments {
+        line(segment.a, segment.b, axis.map_or([0.3; 3], |k| COLOURS[k]));
+    }
+    for k in 0..4 {
+        line(quad[k], quad[(k + 1) % 4], [1.0; 3]);
+    }
+    picture
+}
+
+/// Unwarps ceilings whose homographies are known; pictures go to the folder named by `LUXFER_TEST_OUTPUT`, if any.
 #[test]
 fn ceilings_unwarp_to_their_true_shape() {
     let monitor = Monitor::default();
@@ -129,14 +152,16 @@ fn ceilings_unwarp_to_their_true_shape() {
              {:.2}, corner error {:.1?} px",
             flat.aspect_confidence, flat.corner_error,
         );
-        if let Some(folder) = std::env::var_os("LUXFER_TEST_PICTURES") {
+        if let Some(folder) = std::env::var_os("LUXFER_TEST_OUTPUT") {
             let stem = file.file_stem().unwrap().to_string_lossy().into_owned();
             let write = |suffix: &str, image: &Image| {
                 let path = PathBuf::from(&folder).join(format!("{stem}{suffix}.png"));
                 io::write_file(&path, &io::encode_png(image, 1.0).unwrap()).unwrap();
             };
-            write("", &flat.image);
+            write("_unwarped", &flat.image);
             write("_valid", &flat.valid);
+            write("_mask", &mask);
+            write("_lines", &drawn(&photo, &view, flat.corners));
         }
         assert!((aspect - 1.0).abs() < 0.05, "{name}: {aspect}");
     }
