@@ -1,5 +1,6 @@
 //! The camera from its vanishing points: focal length, principal point and orthonormal room axes.
 
+use super::sphere::round_covariance;
 use super::vanishing::Vanishing;
 use super::{Params, VanishingPoint};
 use crate::geometry::linear::symmetric_eigen;
@@ -12,7 +13,7 @@ const USUAL_FOCAL: f64 = 0.85;
 pub const USUAL_SPREAD: f64 = 0.35;
 
 /// The error in radians of an axis that nothing but convention fixes.
-const FREE_ERROR: f64 = 0.5;
+pub const FREE_ERROR: f64 = 0.5;
 
 /// A camera with the vanishing point of each of its axes.
 pub struct Oriented {
@@ -25,18 +26,8 @@ pub struct Oriented {
 /// Names the vanishing points, finds the focal length and makes the axes orthonormal.
 pub fn orient(found: &Vanishing, width: usize, height: usize, params: &Params) -> Oriented {
     let principal = params.principal(width, height);
-    let usual = USUAL_FOCAL * width as f64;
     let orthogonal = &found.points[..found.points.len().min(3)];
-    let (focal, focal_source) = match (params.focal, focal_from_points(orthogonal, principal, usual)) {
-        (Some(f), _) => (f, FocalSource::Given),
-        (None, Some((log_focal, spread))) => {
-            // The usual focal length is one more observation; it decides only where the points say little.
-            let (a, b) = (spread.powi(-2), USUAL_SPREAD.powi(-2));
-            let focal = ((log_focal * a + usual.ln() * b) / (a + b)).exp();
-            (focal, if a > b { FocalSource::VanishingPoints } else { FocalSource::Assumed })
-        }
-        (None, None) => (usual, FocalSource::Assumed),
-    };
+    let (focal, focal_source) = focal_length(orthogonal, principal, params.focal, usual_focal(width));
 
     // Directions in camera space; those far from orthogonal to a better supported one are no room axes.
     let ray = |p: &VanishingPoint| direction(p.point, principal, focal);
@@ -72,21 +63,56 @@ pub fn orient(found: &Vanishing, width: usize, height: usize, params: &Params) -
         None => {
             let error = named.iter().flatten().map(|&k| orthogonal[k].error.powi(2)).sum::<f64>().sqrt();
             let error = if named.iter().flatten().count() == 2 { error } else { FREE_ERROR };
-            VanishingPoint { point: perspective.vanishing_point(axis).normalize(), support: 0, error }
+            VanishingPoint {
+                point: perspective.vanishing_point(axis).normalize(),
+                support: 0,
+                error,
+                covariance: round_covariance(axes.col(axis), error),
+            }
         }
     });
     let axis_of = (0..found.points.len()).map(|k| named.iter().position(|&n| n == Some(k))).collect();
     Oriented { perspective, vanishing_points, axis_of }
 }
 
+/// The focal length that is expected of a photo of the given width.
+pub fn usual_focal(width: usize) -> f64 {
+    USUAL_FOCAL * width as f64
+}
+
+/// The focal length: as given, or else from the points and what is usual.
+fn focal_length(points: &[VanishingPoint], principal: DVec2, given: Option<f64>, usual: f64) -> (f64, FocalSource) {
+    match (given, focal_from_points(points, principal, usual)) {
+        (Some(f), _) => (f, FocalSource::Given),
+        (None, Some((log_focal, spread))) => {
+            // The usual focal length is one more observation; it decides only where the points say little.
+            let (a, b) = (spread.powi(-2), USUAL_SPREAD.powi(-2));
+            let focal = ((log_focal * a + usual.ln() * b) / (a + b)).exp();
+            (focal, if a > b { FocalSource::VanishingPoints } else { FocalSource::Assumed })
+        }
+        (None, None) => (usual, FocalSource::Assumed),
+    }
+}
+
+/// The camera anew from the vanishing points of its axes, of which those without support say nothing.
+pub fn again(camera: &Perspective, points: &[VanishingPoint; 3], usual: f64) -> Perspective {
+    let known: Vec<VanishingPoint> = points.iter().filter(|v| v.support > 0).cloned().collect();
+    let given = (camera.focal_source == FocalSource::Given).then_some(camera.focal);
+    let (focal, _) = focal_length(&known, camera.principal, given, usual);
+    let axes = orthonormal(
+        points.each_ref().map(|p| (p.support > 0).then(|| (direction(p.point, camera.principal, focal), p.error))),
+    );
+    Perspective { focal, axes, ..*camera }
+}
+
 /// Camera-space unit direction that vanishes in a homogeneous pixel.
-fn direction(point: DVec3, principal: DVec2, focal: f64) -> DVec3 {
+pub fn direction(point: DVec3, principal: DVec2, focal: f64) -> DVec3 {
     (point.truncate() - principal * point.z).extend(point.z * focal).normalize()
 }
 
 /// The logarithm of the focal length in pixels and its standard deviation, from every pair of points that should be
 /// orthogonal: `(v1 - c) · (v2 - c) + f² w1 w2 = 0`, linear in f², each pair weighted by the certainty of its angle.
-pub fn focal_from_points(points: &[VanishingPoint], principal: DVec2, start: f64) -> Option<(f64, f64)> {
+fn focal_from_points(points: &[VanishingPoint], principal: DVec2, start: f64) -> Option<(f64, f64)> {
     let mut square = start * start;
     let mut deviation = f64::INFINITY;
     for _ in 0..20 {

@@ -5,7 +5,7 @@
 
 use super::metric::Line;
 use crate::geometry::{Segment, linear::symmetric_eigen};
-use glam::{DVec2, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 
 /// Largest distance of a segment's endpoints from the line to its vanishing point, in units of half the image's longer
 /// side: about 2 pixels of 640.
@@ -103,8 +103,30 @@ pub fn unproject(p: DVec3, focal: f64) -> DVec3 {
 pub struct Refined {
     /// Unit direction in camera space.
     pub direction: DVec3,
-    /// Standard deviation of that direction in radians.
-    pub error: f64,
+    /// Covariance of that direction in radians squared: nothing along it.
+    pub covariance: DMat3,
+}
+
+impl Refined {
+    /// Standard deviation of the direction in radians: of the angle to the true one, whichever way that is.
+    pub fn error(&self) -> f64 {
+        deviation(&self.covariance)
+    }
+}
+
+/// The root of the trace of a direction's covariance, at most a right angle.
+pub fn deviation(covariance: &DMat3) -> f64 {
+    let trace = covariance.x_axis.x + covariance.y_axis.y + covariance.z_axis.z;
+    trace.sqrt().min(std::f64::consts::FRAC_PI_2)
+}
+
+/// The covariance of a direction that is as uncertain every way, of the given standard deviation.
+pub fn round_covariance(direction: DVec3, error: f64) -> DMat3 {
+    (DMat3::IDENTITY - outer(direction, direction)) * (0.5 * error * error)
+}
+
+fn outer(a: DVec3, b: DVec3) -> DMat3 {
+    DMat3::from_cols(a * b.x, a * b.y, a * b.z)
 }
 
 /// A direction that another is at right angles to, but for an angle of the given variance.
@@ -119,22 +141,20 @@ pub struct RightAngle {
 /// where fewer than two different lines remain.
 pub fn refine(lines: &[Evidence], start: DVec3, focal: f64) -> Option<Refined> {
     let direction = iterate(lines, start, focal, NO_MATRIX)?;
-    let error = covariance(lines, direction, focal)?.deviation();
-    Some(Refined { direction, error })
+    Some(Refined { direction, covariance: covariance(lines, direction, focal)?.of_direction })
 }
 
 /// The same where right angles are expected besides: what the lines say weighs by its own covariance at the start.
 pub fn refine_near(lines: &[Evidence], start: DVec3, focal: f64, expected: &[RightAngle]) -> Option<Refined> {
     let own = covariance(lines, start, focal)?;
     // The lines' normal matrix is the inverse of their covariance but for a factor: in its unit.
-    let unit = own.deviation().powi(2) / own.inverse_trace;
+    let unit = deviation(&own.of_direction).powi(2) / own.inverse_trace;
     let mut prior = NO_MATRIX;
     for RightAngle { to, variance } in expected {
         add_square(&mut prior, *to, unit / variance);
     }
     let direction = iterate(lines, start, focal, prior)?;
-    let error = covariance(lines, direction, focal)?.deviation();
-    Some(Refined { direction, error })
+    Some(Refined { direction, covariance: covariance(lines, direction, focal)?.of_direction })
 }
 
 fn iterate(lines: &[Evidence], start: DVec3, focal: f64, prior: [[f64; 3]; 3]) -> Option<DVec3> {
@@ -199,17 +219,11 @@ fn smallest_eigenvector(lines: &[Evidence], direction: DVec3, focal: f64, mut no
     (values[1] > values[2] * 1e-12 && values[2] > 0.0).then(|| DVec3::from_array(vectors[0]).normalize())
 }
 
-/// Covariance of a direction, of which its trace is kept.
 struct Covariance {
-    trace: f64,
+    /// Of the direction, with what lines share and what they all have.
+    of_direction: DMat3,
     /// Trace of the inverse of the normal matrix in the tangent plane.
     inverse_trace: f64,
-}
-
-impl Covariance {
-    fn deviation(&self) -> f64 {
-        (PER_OBSERVATION * self.trace + STRAIGHTNESS * STRAIGHTNESS).sqrt().min(std::f64::consts::FRAC_PI_2)
-    }
 }
 
 /// The sandwich formula `N⁻¹ M N⁻¹` in the tangent plane: `N` is what the weights presume, `M` what independent endpoint
@@ -233,12 +247,19 @@ fn covariance(lines: &[Evidence], direction: DVec3, focal: f64) -> Option<Covari
         return None;
     }
     let inverse = [n[2] / determinant, -n[1] / determinant, n[0] / determinant];
-    // Trace of N⁻¹ M N⁻¹ = sum over the elements of M and N⁻².
-    let square = [
-        inverse[0] * inverse[0] + inverse[1] * inverse[1],
-        inverse[1] * (inverse[0] + inverse[2]),
-        inverse[1] * inverse[1] + inverse[2] * inverse[2],
+    // N⁻¹ M N⁻¹.
+    let product = [
+        inverse[0] * m[0] + inverse[1] * m[1],
+        inverse[0] * m[1] + inverse[1] * m[2],
+        inverse[1] * m[0] + inverse[2] * m[1],
+        inverse[1] * m[1] + inverse[2] * m[2],
     ];
-    let trace = variance * (square[0] * m[0] + 2.0 * square[1] * m[1] + square[2] * m[2]);
-    Some(Covariance { trace, inverse_trace: inverse[0] + inverse[2] })
+    let scale = PER_OBSERVATION * variance;
+    let uu = scale * (product[0] * inverse[0] + product[1] * inverse[1]);
+    let uv = scale * (product[0] * inverse[1] + product[1] * inverse[2]);
+    let vv = scale * (product[2] * inverse[1] + product[3] * inverse[2]);
+    let cross = outer(e1, e2) + outer(e2, e1);
+    let of_lines = outer(e1, e1) * uu + outer(e2, e2) * vv + cross * uv;
+    let of_direction = of_lines + round_covariance(direction, STRAIGHTNESS);
+    Some(Covariance { of_direction, inverse_trace: inverse[0] + inverse[2] })
 }

@@ -1,11 +1,12 @@
 //! Texture unwarping (§5.3): the homography of the plane from the room axes and the focal length, so that the aspect
 //! ratio is true, and its expected error.
 
-use super::camera::{USUAL_SPREAD, focal_from_points};
+use super::camera::{self, FREE_ERROR, USUAL_SPREAD, usual_focal};
 use super::plane::{Plane, choose, marked_pixels};
 use super::{UnwarpParams, Unwarped, View, quad, resample};
 use crate::error::Result;
-use crate::geometry::{FocalSource, Homography};
+use crate::geometry::linear::symmetric_eigen;
+use crate::geometry::{Homography, Perspective};
 use crate::image::Image;
 use crate::job::Job;
 use glam::{DMat3, DQuat, DVec2, DVec3};
@@ -42,7 +43,7 @@ pub fn unwarp(photo: &Image, view: &View, mask: &Image, params: &UnwarpParams, j
 
     let (w, h) = (width as f64, height as f64);
     let corners = [DVec2::ZERO, DVec2::new(w, 0.0), DVec2::new(w, h), DVec2::new(0.0, h)].map(|c| to_photo.apply(c));
-    let uncertainty = uncertainty(&plane, view, corners, pixel_size);
+    let uncertainty = uncertainty(&plane, view, corners, pixel_size, photo.width);
     job.report(1.0);
     Ok(Unwarped {
         image,
@@ -60,43 +61,61 @@ struct Uncertainty {
     corner_error: [f64; 4],
 }
 
-/// Carries the errors of the vanishing points and of the focal length over to the rectified corners, to first order:
-/// each of three small rotations and a small change of focal length moves them by so much.
-fn uncertainty(plane: &Plane, view: &View, corners: [DVec2; 4], pixel_size: f64) -> Uncertainty {
-    const AXES: [DVec3; 3] = [DVec3::X, DVec3::Y, DVec3::Z];
-    let errors: [f64; 3] = std::array::from_fn(|k| view.vanishing_points[k].error.max(1e-9));
-    let nominal = rectified(plane, corners);
+/// Carries the covariances of the vanishing points and the uncertainty of the focal length over to the rectified corners, to
+/// first order: each is moved by a little and the camera found anew, focal length and axes, as it was found from them.
+fn uncertainty(plane: &Plane, view: &View, corners: [DVec2; 4], pixel_size: f64, width: usize) -> Uncertainty {
+    let camera = &view.perspective;
+    let usual = usual_focal(width);
+    let points = &view.vanishing_points;
+    let nominal = camera::again(camera, points, usual);
+    let flat = |found: &Perspective| {
+        let turn = found.axes * nominal.axes.transpose();
+        rectified(&plane.seen_by(turn, camera.focal * found.focal / nominal.focal), corners)
+    };
     let aspect = |c: &[DVec2; 4]| {
         ((c[1].distance(c[0]) + c[2].distance(c[3])) / (c[3].distance(c[0]) + c[2].distance(c[1]))).ln()
     };
 
-    // A rotation about one axis turns the other two, each of which fixes it to its error across one of two directions.
-    let mut moved: Vec<([DVec2; 4], f64)> = (0..3)
-        .map(|k| {
-            let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-            let deviation = (2.0 / errors[i].powi(2) + 2.0 / errors[j].powi(2)).powf(-0.5);
-            let axes = view.perspective.axes;
-            let turn = DMat3::from_quat(DQuat::from_axis_angle(axes * AXES[k], SMALL));
-            (rectified(&plane.turned(turn), corners), deviation)
-        })
-        .collect();
-    moved.push((rectified(&plane.with_focal(plane.perspective.focal * SMALL.exp()), corners), focal_deviation(view)));
+    let mut moved: Vec<[DVec2; 4]> = Vec::new();
+    for (k, point) in points.iter().enumerate().filter(|(_, p)| p.support > 0) {
+        for step in deviations(&point.covariance) {
+            let mut points = points.clone();
+            let ray = camera::direction(point.point, camera.principal, camera.focal);
+            points[k].point = (camera.intrinsics() * (ray + step * SMALL)).normalize();
+            moved.push(flat(&camera::again(camera, &points, usual)));
+        }
+    }
+    moved.push(flat(&camera::again(camera, points, usual * (USUAL_SPREAD * SMALL).exp())));
+    // One point says nothing of the turn about it: that stays as uncertain as an axis that convention fixes.
+    if points.iter().filter(|p| p.support > 0).count() < 2 {
+        for axis in (0..3).filter(|&k| points[k].support > 0).map(|k| camera.axes.col(k)) {
+            let turn = DMat3::from_quat(DQuat::from_axis_angle(axis, FREE_ERROR * SMALL));
+            moved.push(rectified(&plane.seen_by(turn, camera.focal), corners));
+        }
+    }
 
+    let still = rectified(plane, corners);
     let mut squares = [0.0; 4];
     let mut aspect_variance = 0.0;
-    for (corners, deviation) in &moved {
-        let factor = deviation / SMALL;
-        for (square, (a, b)) in squares.iter_mut().zip(corners.iter().zip(&nominal)) {
-            *square += (a.distance(*b) * factor / pixel_size).powi(2);
+    for corners in &moved {
+        for (square, (a, b)) in squares.iter_mut().zip(corners.iter().zip(&still)) {
+            *square += (a.distance(*b) / (SMALL * pixel_size)).powi(2);
         }
-        aspect_variance += ((aspect(corners) - aspect(&nominal)) * factor).powi(2);
+        aspect_variance += ((aspect(corners) - aspect(&still)) / SMALL).powi(2);
     }
     // One half where the aspect ratio is uncertain by 10 %.
     Uncertainty { aspect_confidence: 1.0 / (1.0 + aspect_variance / 0.01), corner_error: squares.map(f64::sqrt) }
 }
 
-/// Step of the finite differences.
-const SMALL: f64 = 1e-5;
+/// Share of a standard deviation that is the step of the finite differences.
+const SMALL: f64 = 1e-3;
+
+/// Vectors whose squares add up to a covariance.
+fn deviations(covariance: &DMat3) -> [DVec3; 3] {
+    let rows = covariance.to_cols_array_2d();
+    let (values, vectors) = symmetric_eigen::<3>(rows);
+    std::array::from_fn(|k| DVec3::from_array(vectors[k]) * values[k].max(0.0).sqrt())
+}
 
 /// Plane coordinates of photo points relative to their mean, which is of no consequence.
 fn rectified(plane: &Plane, corners: [DVec2; 4]) -> [DVec2; 4] {
@@ -106,41 +125,14 @@ fn rectified(plane: &Plane, corners: [DVec2; 4]) -> [DVec2; 4] {
     at.map(|p| p - mean)
 }
 
-/// Standard deviation of the logarithm of the focal length.
-fn focal_deviation(view: &View) -> f64 {
-    let camera = &view.perspective;
-    match camera.focal_source {
-        FocalSource::Given => 0.0,
-        FocalSource::Assumed => USUAL_SPREAD,
-        FocalSource::VanishingPoints => {
-            let known: Vec<_> = view.vanishing_points.iter().filter(|v| v.support > 0).cloned().collect();
-            let spread = focal_from_points(&known, camera.principal, camera.focal).map_or(USUAL_SPREAD, |f| f.1);
-            (spread.powi(-2) + USUAL_SPREAD.powi(-2)).powf(-0.5)
-        }
-    }
-}
-
 impl Plane {
-    fn turned(&self, turn: DMat3) -> Self {
-        Self { right: turn * self.right, down: turn * self.down, normal: turn * self.normal, ..self.clone() }
-    }
-
-    /// The plane that the same two vanishing points mean under another focal length.
-    fn with_focal(&self, focal: f64) -> Self {
-        let ratio = self.perspective.focal / focal;
-        let again = |d: DVec3| (d.truncate() * ratio).extend(d.z).normalize();
-        let (right, down) = (again(self.right), again(self.down));
-        // No longer quite orthogonal: share the difference.
-        let normal = right.cross(down).normalize();
-        let half = (right + down).normalize();
-        let other = normal.cross(half);
-        let (right, down) = ((half - other).normalize(), (half + other).normalize());
+    /// The plane after the camera's axes turned and its focal length changed.
+    fn seen_by(&self, turn: DMat3, focal: f64) -> Self {
         Self {
-            right,
-            down,
-            normal,
-            perspective: crate::geometry::Perspective { focal, ..self.perspective },
-            ..self.clone()
+            right: turn * self.right,
+            down: turn * self.down,
+            normal: turn * self.normal,
+            perspective: Perspective { focal, ..self.perspective },
         }
     }
 }

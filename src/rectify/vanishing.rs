@@ -1,12 +1,12 @@
 //! Vanishing points from line segments (§5.2): up to three directions, orthogonal where the search is Manhattan's, each
 //! then refined freely with its own covariance.
 
-use super::sphere::{Evidence, Frame, Refined, RightAngle, project, refine, refine_near, unproject};
+use super::sphere::{Evidence, Frame, Refined, RightAngle, project, refine, refine_near, round_covariance, unproject};
 use super::{Params, Search, VanishingPoint, manhattan, successive};
 use crate::error::{Error, Result, check_range};
 use crate::geometry::Segment;
 use crate::job::Job;
-use glam::{DVec2, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 
 /// Lines used to search and refine; further ones, the shortest, are only assigned.
 const MOST_LINES: usize = 2500;
@@ -63,7 +63,7 @@ pub fn from_segments(
                 let rest: Vec<Evidence> =
                     lines.iter().filter(|e| points.iter().all(|&p| e.agreement(p) == 0.0)).copied().collect();
                 let Some(start) = manhattan::strongest(&rest, focal, params.seed, job.part(0.8, 0.9))? else { break };
-                let Some(point) = refine(&rest, start, focal).filter(|r| r.error < WORST_ERROR) else { break };
+                let Some(point) = refine(&rest, start, focal).filter(|r| r.error() < WORST_ERROR) else { break };
                 found.push(point);
             }
         }
@@ -71,8 +71,9 @@ pub fn from_segments(
             let points = successive::search(&frame, segments, width, height, count, params, job.part(0.0, 0.8))?;
             found.extend(points.iter().map(|&p| {
                 let direction = unproject(frame.from_pixels(p), focal);
-                let error = refine(&lines, direction, focal).map_or(WORST_ERROR, |r| r.error);
-                Refined { direction, error }
+                let covariance = refine(&lines, direction, focal)
+                    .map_or_else(|| round_covariance(direction, WORST_ERROR), |r| r.covariance);
+                Refined { direction, covariance }
             }));
         }
     }
@@ -105,7 +106,12 @@ pub fn from_segments(
     }
     let points = order
         .iter()
-        .map(|&k| VanishingPoint { point: frame.to_pixels(points[k]), support: support[k].0, error: found[k].error })
+        .map(|&k| VanishingPoint {
+            point: frame.to_pixels(points[k]),
+            support: support[k].0,
+            error: found[k].error(),
+            covariance: found[k].covariance,
+        })
         .collect();
     job.report(1.0);
     Ok(Vanishing { points, members, focal: focal * frame.scale })
@@ -115,7 +121,8 @@ pub fn from_segments(
 /// right angles that the others, as their own lines have them, lead one to expect: those help where a direction has few
 /// lines. Directions that no two lines fix, or that drift into another, are dropped.
 fn refine_freely(lines: &[Evidence], axes: &[DVec3], focal: f64) -> Vec<Refined> {
-    let mut current: Vec<Refined> = axes.iter().map(|&direction| Refined { direction, error: 0.0 }).collect();
+    let mut current: Vec<Refined> =
+        axes.iter().map(|&direction| Refined { direction, covariance: DMat3::ZERO }).collect();
     for _ in 0..3 {
         let groups = nearest(lines, &current, focal);
         current = current.iter().zip(&groups).filter_map(|(r, group)| refine(group, r.direction, focal)).collect();
@@ -127,7 +134,7 @@ fn refine_freely(lines: &[Evidence], axes: &[DVec3], focal: f64) -> Vec<Refined>
             let expected: Vec<RightAngle> = (0..current.len())
                 .filter(|&j| j != i)
                 .map(|j| {
-                    let Refined { direction: to, error } = current[j];
+                    let (to, error) = (current[j].direction, current[j].error());
                     let by_focal = 2.0 * from.direction.z * to.z * FOCAL_SPREAD;
                     RightAngle { to, variance: SQUARENESS * SQUARENESS + error * error + by_focal * by_focal }
                 })
@@ -138,7 +145,7 @@ fn refine_freely(lines: &[Evidence], axes: &[DVec3], focal: f64) -> Vec<Refined>
     let mut kept: Vec<Refined> = Vec::new();
     for r in squared {
         let apart = kept.iter().all(|k| k.direction.dot(r.direction).abs() < 0.9);
-        if apart && r.error < WORST_ERROR {
+        if apart && r.error() < WORST_ERROR {
             kept.push(r);
         }
     }
