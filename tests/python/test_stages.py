@@ -48,11 +48,11 @@ class Transfer(Case):
         self.assertTrue((before != transfer.image("emission").numpy()).any())
 
     def test_the_principal_point_makes_up_for_a_crop(self):
-        photo, _ = demo()
+        photo = luxfer.DemoPhoto(context()).run(width=480, height=320, samples=8).image("picture")
         whole = luxfer.Rectify(context(), photo).run().report
         pixels = photo.numpy()
         height, width = pixels.shape[:2]
-        rows = np.ascontiguousarray(pixels[: height * 5 // 8])
+        rows = np.ascontiguousarray(pixels[: height * 3 // 4])
         told = luxfer.Rectify(context(), rows).run(principal=(width / 2, height / 2)).report
         self.assertEqual(told.principal, (width / 2, height / 2))
         untold = luxfer.Rectify(context(), rows).run().report
@@ -62,8 +62,8 @@ class Transfer(Case):
             axes = [np.reshape(r.axes, (3, 3)) for r in (whole, report)]
             return np.degrees(np.arccos(np.clip(np.abs(np.sum(axes[0] * axes[1], axis=0)), 0, 1))).max()
 
-        self.assertLess(turned(told), 2)
-        self.assertGreater(turned(untold), 2 * turned(told))
+        self.assertLess(turned(told), 1)
+        self.assertGreater(turned(untold), 5)
 
     def test_the_stages_one_by_one_make_what_the_transfer_makes(self):
         photo, strokes = demo()
