@@ -71,6 +71,18 @@ fn squared_distance(a: &Image, b: &Image) -> f64 {
     a.data.iter().zip(&b.data).map(|(&a, &b)| f64::from(a - b).powi(2)).sum::<f64>() / a.data.len() as f64
 }
 
+/// The same relative to what each pixel of the truth shows, as `relative_error` has it.
+fn squared_relative_distance(image: &Image, truth: &Image) -> f64 {
+    let least = 0.01 * mean(truth);
+    let pixels = image.data.chunks_exact(3).zip(truth.data.chunks_exact(3));
+    let of_pixel = |(image, truth): (&[f32], &[f32])| {
+        let shown = truth.iter().map(|&v| f64::from(v)).sum::<f64>() / 3.0;
+        let square = image.iter().zip(truth).map(|(&a, &b)| f64::from(a - b).powi(2)).sum::<f64>() / 3.0;
+        square / shown.max(least).powi(2)
+    };
+    3.0 * pixels.map(of_pixel).sum::<f64>() / image.data.len() as f64
+}
+
 /// Mean of independent values, and the half width of its 95 % interval.
 fn mean_and_interval(values: &[f64]) -> (f64, f64) {
     let n = values.len() as f64;
@@ -150,13 +162,18 @@ fn targets(ready: &[Ready]) {
     for (name, world, camera) in ready.iter().filter(|r| r.0 != "kitchen") {
         let size = Params { width: 48, height: 32, samples: 1 << 12, ..Params::default() };
         let truth = shoot(world, camera, &Params { samples: REFERENCE, seed: 1 << 40, ..size.clone() }).beauty;
-        for (target_error, pixel_error) in [(0.2, 0.0), (0.0, 0.5)] {
+        for (target_error, relative_error, pixel_error) in [(0.2, 0.0, 0.0), (0.0, 0.2, 0.0), (0.0, 0.0, 0.5)] {
+            let targets = Params { target_error, relative_error, pixel_error, ..size.clone() };
+            let distance = |film: &Film| match relative_error {
+                0.0 => squared_distance(&film.beauty, &truth) / mean(&truth).powi(2),
+                _ => squared_relative_distance(&film.beauty, &truth),
+            };
             let (mut paths, mut squares) = (0.0, 0.0);
             let mut shifts = Vec::new();
             for seed in 0..TARGETED {
-                let film = shoot(world, camera, &Params { target_error, pixel_error, seed, ..size.clone() });
+                let film = shoot(world, camera, &Params { seed, ..targets.clone() });
                 paths += f64::from(film.samples) / TARGETED as f64;
-                squares += squared_distance(&film.beauty, &truth) / TARGETED as f64;
+                squares += distance(&film) / TARGETED as f64;
                 shifts.push(100.0 * (mean(&film.beauty) / mean(&truth) - 1.0));
             }
             // As many everywhere: between powers of two, where points are stratified best, on a line of logarithms.
@@ -164,7 +181,7 @@ fn targets(ready: &[Ready]) {
             let [low, high] = [below, 2 * below].map(|samples| {
                 let seeds = TARGETED / 2;
                 let film = |seed| shoot(world, camera, &Params { samples, seed, ..size.clone() });
-                (0..seeds).map(|seed| squared_distance(&film(seed).beauty, &truth) / seeds as f64).sum::<f64>()
+                (0..seeds).map(|seed| distance(&film(seed)) / seeds as f64).sum::<f64>()
             });
             let even = low * (high / low).powf((paths / f64::from(below)).log2());
             let (bias, interval) = mean_and_interval(&shifts);
@@ -172,10 +189,14 @@ fn targets(ready: &[Ready]) {
             most = if bias.abs() > most.abs() { bias } else { most };
             table.row([
                 name.to_string(),
-                if target_error > 0.0 { format!("image {target_error}") } else { format!("pixel {pixel_error}") },
+                match (target_error, relative_error) {
+                    (0.0, 0.0) => format!("pixel {pixel_error}"),
+                    (0.0, error) => format!("relative {error}"),
+                    (error, _) => format!("image {error}"),
+                },
                 format!("{paths:.0}"),
-                format!("{:.4}", squares.sqrt() / mean(&truth)),
-                format!("{:.4}", even.sqrt() / mean(&truth)),
+                format!("{:.4}", squares.sqrt()),
+                format!("{:.4}", even.sqrt()),
                 format!("{:.2} x", even / squares),
                 format!("{bias:+.2} %"),
                 format!("{interval:.2} %"),

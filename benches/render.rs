@@ -6,7 +6,9 @@
 //! (that of the mean of all images, plus 1 % of the mean pixel, for pixels near black). That all renderers converge to
 //! the same picture is printed beside it: mean values, and how far the means of blocks of pixels differ.
 //!
-//! Loading the scene, building trees and compiling kernels are not counted.
+//! Ours is asked for the least such error that so many paths per pixel allow on the average (`relative_error`), and as
+//! "luxfer, even" for as many paths in every pixel, as Mitsuba makes them. Loading the scene, building trees and compiling
+//! kernels are not counted.
 
 mod harness;
 
@@ -26,6 +28,8 @@ use std::time::Instant;
 
 /// Paths per pixel of the points of a curve.
 const LADDER: [u32; 4] = [16, 64, 256, 1024];
+/// A relative error that no number of paths of the ladder brings about.
+const LEAST: f32 = 1e-6;
 /// Images per point.
 const SEEDS: u32 = 4;
 /// Seconds that an image may take: from the third point on, a renderer is not asked for four times as many paths if they
@@ -64,7 +68,7 @@ fn compare(setting: &Setting, key: &str, names: &[&str]) {
     std::fs::create_dir_all(&folder).expect("out/bench can be made");
     let bytes = gltf::export(&scene).expect("the scene is written");
     std::fs::write(&path, bytes).expect("out/bench can be written to");
-    let mut renderers: Vec<Renderer> = vec![ours(setting)];
+    let mut renderers: Vec<Renderer> = vec![ours(setting, "luxfer", LEAST), ours(setting, "luxfer_even", 0.0)];
     for name in names {
         match peer(name, &path, setting.size) {
             Ok(renderer) => renderers.push(renderer),
@@ -77,7 +81,7 @@ fn compare(setting: &Setting, key: &str, names: &[&str]) {
         for curve in &mut curves {
             curve.done |= curve.points.len() > 1 && curve.points.last().is_some_and(|p| 4.0 * p.seconds > ENOUGH);
             if !curve.done {
-                curve.points.push(Point { spp, ..Point::default() });
+                curve.points.push(Point::default());
             }
         }
         for seed in 1..=SEEDS {
@@ -85,9 +89,10 @@ fn compare(setting: &Setting, key: &str, names: &[&str]) {
                 if curve.done {
                     continue;
                 }
-                let (seconds, image) = (renderer.render)(spp, seed);
+                let (seconds, image, paths) = (renderer.render)(spp, seed);
                 let point = curve.points.last_mut().expect("a point was begun");
                 point.seconds += seconds / f64::from(SEEDS);
+                point.paths += paths / f64::from(SEEDS);
                 point.images.push(image);
             }
         }
@@ -95,8 +100,9 @@ fn compare(setting: &Setting, key: &str, names: &[&str]) {
     report(setting, key, &renderers, &mut curves);
 }
 
-/// Makes an image of so many paths per pixel with a seed; gives the seconds it took and its pixels.
-type Render = Box<dyn FnMut(u32, u32) -> (f64, Vec<Vec3>)>;
+/// Makes an image of at most so many paths per pixel with a seed; gives the seconds it took, its pixels, and how many paths
+/// they have on the average.
+type Render = Box<dyn FnMut(u32, u32) -> (f64, Vec<Vec3>, f64)>;
 
 struct Renderer {
     name: String,
@@ -111,25 +117,29 @@ struct Curve {
 
 #[derive(Default)]
 struct Point {
-    spp: u32,
+    /// Paths per pixel.
+    paths: f64,
     seconds: f64,
     images: Vec<Vec<Vec3>>,
     error: f64,
 }
 
-fn ours(setting: &Setting) -> Renderer {
+fn ours(setting: &Setting, name: &str, relative_error: f32) -> Renderer {
     let pool = Pool::new(2).expect("two threads");
     let monitor = Monitor::default();
     let world = pool.run(|| World::build(Arc::new(setting.scene.clone()), monitor.job())).expect("the scene is valid");
     let (camera, [width, height]) = (setting.camera.clone(), setting.size);
     let render = move |spp, seed: u32| {
-        let params = render::Params { width, height, samples: spp, seed: u64::from(seed), ..Default::default() };
+        let seed = u64::from(seed);
+        let params = render::Params { width, height, samples: spp, seed, relative_error, ..Default::default() };
         let start = Instant::now();
         let film = pool.run(|| render::run(&world, &camera, &params, monitor.job(), &mut |_| {}));
         let film = film.expect("the parameters are valid");
-        (start.elapsed().as_secs_f64(), film.beauty.data.chunks_exact(3).map(Vec3::from_slice).collect())
+        let seconds = start.elapsed().as_secs_f64();
+        let paths = film.paths.data.iter().map(|&n| f64::from(n)).sum::<f64>() / (width * height) as f64;
+        (seconds, film.beauty.data.chunks_exact(3).map(Vec3::from_slice).collect(), paths)
     };
-    Renderer { name: "luxfer".into(), render: Box::new(render) }
+    Renderer { name: name.into(), render: Box::new(render) }
 }
 
 /// Another renderer, in a process of its own that takes jobs line by line.
@@ -169,7 +179,10 @@ fn peer(name: &str, scene: &Path, [width, height]: [usize; 2]) -> Result<Rendere
     let answers = BufReader::new(process.stdout.take().ok_or("no standard output")?);
     let mut peer = Peer { process, jobs, answers, out };
     peer.answer().map_err(|e| format!("{package} did not start: {e}"))?;
-    let render = move |spp, seed| peer.render(spp, seed).expect("the peer renders");
+    let render = move |spp, seed| {
+        let (seconds, image) = peer.render(spp, seed).expect("the peer renders");
+        (seconds, image, f64::from(spp))
+    };
     Ok(Renderer { name: name.into(), render: Box::new(render) })
 }
 
@@ -207,8 +220,8 @@ fn report(setting: &Setting, key: &str, renderers: &[Renderer], curves: &mut [Cu
         let mean = mean_image(curve);
         for point in &mut curve.points {
             point.error = relative_error(&point.images, &mean);
-            let paths = f64::from(point.spp) * (width * height) as f64 / 1e6;
-            let cells = [f64::from(point.spp), point.seconds, 100.0 * point.error, paths / point.seconds];
+            let paths = point.paths * (width * height) as f64 / 1e6;
+            let cells = [point.paths, point.seconds, 100.0 * point.error, paths / point.seconds];
             let cells = cells.map(|v| format!("{v:.3}"));
             table.row([renderer.name.clone()].into_iter().chain(cells));
         }
@@ -245,7 +258,7 @@ fn report(setting: &Setting, key: &str, renderers: &[Renderer], curves: &mut [Cu
 
 /// The mean of all images of a curve, by paths.
 fn mean_image(curve: &Curve) -> Vec<Vec3> {
-    let images = || curve.points.iter().flat_map(|p| p.images.iter().map(|i| (p.spp as f32, i)));
+    let images = || curve.points.iter().flat_map(|p| p.images.iter().map(|i| (p.paths as f32, i)));
     let total: f32 = images().map(|(weight, _)| weight).sum();
     let mut mean = vec![Vec3::ZERO; images().next().map_or(0, |(_, i)| i.len())];
     for (weight, image) in images() {
@@ -287,7 +300,7 @@ fn block_difference(a: &[Vec3], b: &[Vec3], [width, height]: [usize; 2]) -> f64 
 /// When a curve comes down to an error, and whether it was seen to: paths against error on straight lines of the logarithms,
 /// the last one prolonged, times what a path takes as a rule. (Errors scatter less than single times do.)
 fn time_to(points: &[Point], error: f64) -> (f64, bool) {
-    let logs: Vec<[f64; 2]> = points.iter().map(|p| [f64::from(p.spp).ln(), p.error.ln()]).collect();
+    let logs: Vec<[f64; 2]> = points.iter().map(|p| [p.paths.ln(), p.error.ln()]).collect();
     let target = error.ln();
     let end = logs.iter().position(|p| p[1] <= target);
     let measured = end.is_some();
@@ -296,6 +309,6 @@ fn time_to(points: &[Point], error: f64) -> (f64, bool) {
         return (f64::NAN, false);
     };
     let paths = (n0 + (target - e0) * (n1 - n0) / (e1 - e0)).exp();
-    let per_path: Vec<f64> = points.iter().map(|p| p.seconds / f64::from(p.spp)).collect();
+    let per_path: Vec<f64> = points.iter().map(|p| p.seconds / p.paths).collect();
     (paths * harness::median(&per_path), measured)
 }

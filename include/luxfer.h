@@ -2017,8 +2017,11 @@ typedef struct luxfer_render_params {
      * final images are made. The other images are the same with and without it.
      */
     float preview;
-    /** Must be 0. */
-    uint32_t reserved;
+    /**
+     * Stop when the relative_error of the report falls to this, >= 0, and give paths to where they lower it most: as noise is
+     * seen, in the shade as in the light. Default 0: never. With several targets all are reached.
+     */
+    float relative_error;
 } luxfer_render_params;
 
 /** An image of a rendering: a LUXFER_RENDER_ value. */
@@ -2042,6 +2045,11 @@ typedef struct luxfer_render_report {
      * image's mean, estimated. 0 without a preview.
      */
     double preview_bias;
+    /**
+     * Root mean square over the pixels of the standard error, relative to the pixel itself (the mean of its channels, but at
+     * least a hundredth of the image's mean); infinite while a pixel has less than two paths.
+     */
+    double relative_error;
 } luxfer_render_report;
 
 /** Mean radiance of each pixel, linear RGB in cd/m². */
@@ -2256,8 +2264,8 @@ luxfer_status luxfer_render_write_exr(luxfer_render *render,
  * merges the files. The image is that of one machine which renders all of it in a single part, but for the rounding of sums in
  * double precision, whatever the parts and their order. A part that was lost is rendered again, to the same bits.
  *
- * Parts have a fixed number of paths: target_error, pixel_error and time_budget_ms must be 0. The scene, the camera, the
- * layers and luxfer_render_params must be the same for all parts and for the merge, which checks it.
+ * Parts have a fixed number of paths: target_error, relative_error, pixel_error and time_budget_ms must be 0. The scene,
+ * the camera, the layers and luxfer_render_params must be the same for all parts and for the merge, which checks it.
  *
  * The files are OpenEXR: R, G, B show the part in its place in the image, and integer channels keep its sums.
  * ==================================================================================================================== */

@@ -363,8 +363,8 @@ layouts! {
     luxfer_requirements: struct_size scattering lights textures bounces brightest_material albedo
         flat_triangles;
     luxfer_render_params: struct_size width height samples target_error time_budget_ms seed pixel_error bounce_error
-        preview reserved;
-    luxfer_render_report: struct_size samples error discarded preview_bias;
+        preview relative_error;
+    luxfer_render_report: struct_size samples error discarded preview_bias relative_error;
     luxfer_render_part: struct_size x y width height first_sample samples;
     luxfer_illuminance_params: struct_size columns rows samples seed;
     luxfer_illuminance_grid: struct_size origin across down normal reserved;

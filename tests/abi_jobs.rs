@@ -110,8 +110,7 @@ fn progress_rises_and_ends_at_one() {
         assert_eq!(luxfer_job_status(job), LUXFER_OK);
         assert_eq!(luxfer_job_cancel(job), LUXFER_OK);
         assert_eq!(luxfer_job_wait(job, 0, None, null_mut()), LUXFER_OK);
-        let mut report =
-            luxfer_render_report { struct_size: 32, samples: 0, error: 0.0, discarded: 0, preview_bias: 0.0 };
+        let mut report = luxfer_render_report { struct_size: 40, ..std::mem::zeroed() };
         assert_eq!(luxfer_render_get_report(render, &mut report), LUXFER_OK);
         assert_eq!(report.samples, 64);
         assert_eq!(luxfer_job_release(job), LUXFER_OK);

@@ -208,7 +208,7 @@ fn previews_and_bounds_on_bounces_are_asked_for() {
         for wrong in [
             luxfer_render_params { bounce_error: 1.0, ..params },
             luxfer_render_params { preview: -1.0, ..params },
-            luxfer_render_params { reserved: 1, ..params },
+            luxfer_render_params { relative_error: f32::NAN, ..params },
         ] {
             let mut job = null_mut();
             let status = match luxfer_render_start(render, &wrong, &mut job) {

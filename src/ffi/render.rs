@@ -72,8 +72,9 @@ pub struct luxfer_render_params {
     /// Strength of the filter for LUXFER_RENDER_PREVIEW, in [0, 10]; 1 is usual, more blurs more. Default 0: no preview, as
     /// final images are made. The other images are the same with and without it.
     pub preview: f32,
-    /// Must be 0.
-    pub reserved: u32,
+    /// Stop when the relative_error of the report falls to this, >= 0, and give paths to where they lower it most: as noise is
+    /// seen, in the shade as in the light. Default 0: never. With several targets all are reached.
+    pub relative_error: f32,
 }
 
 // SAFETY: plain numbers.
@@ -98,15 +99,12 @@ impl luxfer_render_params {
             pixel_error: d.pixel_error,
             bounce_error: d.bounce_error,
             preview: d.preview,
-            reserved: 0,
+            relative_error: d.relative_error,
         }
     }
 
-    pub(super) fn params(&self) -> Result<render::Params> {
-        if self.reserved != 0 {
-            return Err(Error::argument(format!("render.reserved is {}; it must be 0", self.reserved)));
-        }
-        Ok(render::Params {
+    pub(super) fn params(&self) -> render::Params {
+        render::Params {
             width: self.width as usize,
             height: self.height as usize,
             samples: self.samples,
@@ -115,9 +113,10 @@ impl luxfer_render_params {
             time_budget_ms: self.time_budget_ms,
             bounce_error: self.bounce_error,
             preview: self.preview,
+            relative_error: self.relative_error,
             seed: self.seed,
             ..render::Params::default()
-        })
+        }
     }
 }
 
@@ -137,14 +136,17 @@ pub struct luxfer_render_report {
     /// How far the mean of such previews is from the truth: root mean square over squares of 8 x 8 pixels, relative to the
     /// image's mean, estimated. 0 without a preview.
     pub preview_bias: f64,
+    /// Root mean square over the pixels of the standard error, relative to the pixel itself (the mean of its channels, but at
+    /// least a hundredth of the image's mean); infinite while a pixel has less than two paths.
+    pub relative_error: f64,
 }
 
 // SAFETY: plain numbers.
 unsafe impl Versioned for luxfer_render_report {
     const NAME: &'static str = "luxfer_render_report";
-    const SIZES: &'static [usize] = &[32];
+    const SIZES: &'static [usize] = &[40];
     fn defaults() -> Self {
-        Self { struct_size: 32, samples: 0, error: 0.0, discarded: 0, preview_bias: 0.0 }
+        Self { struct_size: 40, samples: 0, error: 0.0, discarded: 0, preview_bias: 0.0, relative_error: 0.0 }
     }
 }
 
@@ -262,7 +264,7 @@ pub unsafe extern "C" fn luxfer_render_start(
     enter(render, |stage| {
         let inputs = stage.inputs();
         let (object, scene, camera) = inputs.view()?;
-        let params = render::Params { outputs: inputs.outputs, ..params::read(params)?.params()? };
+        let params = render::Params { outputs: inputs.outputs, ..params::read(params)?.params() };
         stage.start(job, move |_, stage, job| {
             let world = object.world(&scene, job.part(0.0, 0.05))?;
             render::run(&world, &camera, &params, job.part(0.05, 1.0), &mut |film| {
@@ -329,6 +331,7 @@ pub unsafe extern "C" fn luxfer_render_get_report(
             error: output.error,
             discarded: output.discarded,
             preview_bias: output.preview.as_ref().map_or(0.0, |p| p.bias),
+            relative_error: output.relative_error,
             ..luxfer_render_report::defaults()
         });
         Ok(())

@@ -4,8 +4,8 @@
 //! merges the files. The image is that of one machine which renders all of it in a single part, but for the rounding of sums in
 //! double precision, whatever the parts and their order. A part that was lost is rendered again, to the same bits.
 //!
-//! Parts have a fixed number of paths: target_error, pixel_error and time_budget_ms must be 0. The scene, the camera, the
-//! layers and luxfer_render_params must be the same for all parts and for the merge, which checks it.
+//! Parts have a fixed number of paths: target_error, relative_error, pixel_error and time_budget_ms must be 0. The scene,
+//! the camera, the layers and luxfer_render_params must be the same for all parts and for the merge, which checks it.
 //!
 //! The files are OpenEXR: R, G, B show the part in its place in the image, and integer channels keep its sums.
 
@@ -86,7 +86,7 @@ pub unsafe extern "C" fn luxfer_render_split(
 ) -> luxfer_status {
     enter(render, |_| {
         let out = Report::new(part)?;
-        let part = Part::split(&params::read(params)?.params()?, [columns, rows, ranges], index)?;
+        let part = Part::split(&params::read(params)?.params(), [columns, rows, ranges], index)?;
         out.set(luxfer_render_part {
             x: part.x as u32,
             y: part.y as u32,
@@ -117,7 +117,7 @@ pub unsafe extern "C" fn luxfer_render_start_part(
     enter(render, |stage| {
         let inputs = stage.inputs();
         let (object, scene, camera) = inputs.view()?;
-        let params = Params { outputs: inputs.outputs, ..params::read(params)?.params()? };
+        let params = Params { outputs: inputs.outputs, ..params::read(params)?.params() };
         let part = params::read(part)?.part(&params);
         let path = PathBuf::from(text(path, "path")?);
         stage.start(job, move |_, _, job| {
@@ -169,7 +169,7 @@ pub unsafe extern "C" fn luxfer_render_start_merge(
     enter(render, |stage| {
         let inputs = stage.inputs();
         let (object, scene, camera) = inputs.view()?;
-        let params = Params { outputs: inputs.outputs, ..params::read(params)?.params()? };
+        let params = Params { outputs: inputs.outputs, ..params::read(params)?.params() };
         let files = inputs.parts;
         stage.start(job, move |_, _, job| -> Result<Film> {
             let world = object.world(&scene, job.part(0.0, 0.1))?;

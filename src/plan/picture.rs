@@ -81,7 +81,13 @@ impl Picture {
     /// The settings with which rendering takes so many seconds with as many paths for every pixel, or reaches the error
     /// that they stand for.
     pub fn plan(&self, params: &render::Params, goal: Goal, seconds: f64) -> Rendering {
-        let plain = render::Params { target_error: 0.0, pixel_error: 0.0, time_budget_ms: 0, ..params.clone() };
+        let plain = render::Params {
+            target_error: 0.0,
+            relative_error: 0.0,
+            pixel_error: 0.0,
+            time_budget_ms: 0,
+            ..params.clone()
+        };
         let even = seconds / self.seconds(1.0);
         let alike = |paths: f64| {
             let paths = paths.clamp(FEWEST, MOST);

@@ -128,8 +128,10 @@ pub struct Params {
     /// interval that holds the luminance of a pixel with a probability of 95 %, relative to that luminance. 0.1 means
     /// "within 10 % of its value, 19 times out of 20". Pixels darker than a tenth of the image's mean luminance need not
     /// be known better than that tenth. A part gets at most 64 times `samples`, though it may miss the target. 0 = never.
-    /// With both targets both are reached.
+    /// With several targets all are reached.
     pub pixel_error: f32,
+    /// Stop when the image's [`Film::relative_error`] falls to this, and give paths to where they lower it most; 0 = never.
+    pub relative_error: f32,
     /// Stop after this many milliseconds; 0 = never.
     pub time_budget_ms: u32,
     /// End every path where what is left is at most this share of all light that surfaces scatter, in `[0, 1)`
@@ -151,6 +153,7 @@ impl Default for Params {
             samples: 64,
             target_error: 0.0,
             pixel_error: 0.0,
+            relative_error: 0.0,
             time_budget_ms: 0,
             bounce_error: 0.0,
             preview: 0.0,
@@ -168,6 +171,7 @@ impl Params {
         check_range("samples", self.samples, 1, 1 << 20)?;
         check_range("target_error", self.target_error, 0.0, f32::MAX)?;
         check_range("pixel_error", self.pixel_error, 0.0, f32::MAX)?;
+        check_range("relative_error", self.relative_error, 0.0, f32::MAX)?;
         check_range("bounce_error", self.bounce_error, 0.0, 1.0f32.next_down())?;
         check_range("preview", self.preview, 0.0, 10.0)?;
         Ok(())
@@ -188,6 +192,9 @@ pub struct Film {
     pub samples: u32,
     /// Root mean square over pixels and channels of the standard error, relative to the mean of the image.
     pub error: f64,
+    /// The same relative to what each pixel shows, the mean of its channels; one darker than a hundredth of the image's mean
+    /// counts as if it were as bright.
+    pub relative_error: f64,
     /// Paths that were left out because their radiance was no finite number.
     pub discarded: u64,
     /// The images beside it: those of expressions in their order, then those of surfaces in theirs.

@@ -686,7 +686,7 @@ class luxfer_render_params(Structure):
         ("pixel_error", c_float),
         ("bounce_error", c_float),
         ("preview", c_float),
-        ("reserved", c_uint32),
+        ("relative_error", c_float),
     ]
 
 
@@ -699,6 +699,7 @@ class luxfer_render_report(Structure):
         ("error", c_double),
         ("discarded", c_uint64),
         ("preview_bias", c_double),
+        ("relative_error", c_double),
     ]
     result = types.RenderReport
 

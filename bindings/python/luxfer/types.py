@@ -1192,6 +1192,10 @@ class RenderParams(TypedDict, total=False):
     preview: float
     """Strength of the filter for RenderImage.PREVIEW, in [0, 10]; 1 is usual, more blurs more. Default 0: no
     preview, as final images are made. The other images are the same with and without it."""
+    relative_error: float
+    """Stop when the relative_error of the report falls to this, >= 0, and give paths to where they lower it
+    most: as noise is seen, in the shade as in the light. Default 0: never. With several targets all are
+    reached."""
 
 
 @dataclass(frozen=True)
@@ -1208,6 +1212,9 @@ class RenderReport:
     preview_bias: float
     """How far the mean of such previews is from the truth: root mean square over squares of 8 x 8 pixels,
     relative to the image's mean, estimated. 0 without a preview."""
+    relative_error: float
+    """Root mean square over the pixels of the standard error, relative to the pixel itself (the mean of its
+    channels, but at least a hundredth of the image's mean); infinite while a pixel has less than two paths."""
 
 
 class RenderPart(TypedDict, total=False):

@@ -189,6 +189,7 @@ impl<'a> Canvas<'a> {
             paths,
             samples: (total.paths / (self.grid.width * self.grid.height) as u64) as u32,
             error: total.error(),
+            relative_error: self.relative_total(job)?.error(),
             discarded: self.discarded.load(Ordering::Relaxed),
             preview: None,
         })

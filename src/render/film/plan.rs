@@ -2,8 +2,9 @@
 //!
 //! First a coarse image, then a few paths for every pixel, then twice as many, and so on: at powers of two the points are
 //! stratified best. With a target, tiles go on alone from [`EVEN`] paths on. For the error of the whole image the least
-//! paths are those in proportion to the standard deviation of a tile's paths (Neyman 1934); for the error of each pixel
-//! they follow from the tile's own. The tiles that lack most of what they need are doubled first.
+//! paths are those in proportion to the standard deviation of a tile's paths (Neyman 1934), or to that relative to what its
+//! pixels show; for the error of each pixel they follow from the tile's own. The tiles that lack most of what they need are
+//! doubled first.
 //!
 //! Stopping where the scatter is small by chance makes an image too dark: where it is small, a bright path has not been
 //! found yet. So a decision is about a whole tile, and heeds what is around it (after Dammertz et al. 2010, "A hierarchical
@@ -12,12 +13,14 @@
 
 use super::grid::{AREA, TILE};
 use super::interval::{NORMAL_95, pooled};
+use super::pixel::Pixel;
 use super::{Canvas, Clock};
 use crate::error::Result;
 use crate::exec;
 use crate::image::{colour::luminance, try_vec};
 use crate::job::Job;
 use crate::render::Params;
+use glam::DVec3;
 
 /// Pixels of the coarsest image.
 const COARSE: usize = 1024;
@@ -30,6 +33,8 @@ const EVEN: u32 = 16;
 const SHARE: u32 = 64;
 /// Pixels darker than this share of the mean luminance count as if they were as bright.
 const DARK: f64 = 0.1;
+/// The same where the errors of all pixels are one figure: darker ones may count for more in it, as none holds up the others.
+const BLACK: f64 = 0.01;
 
 /// How many paths pixels are to have.
 pub struct Pass {
@@ -90,29 +95,44 @@ impl Tally {
         self.spread += other.spread;
     }
 
+    /// Mean of the pixels.
+    fn level(&self) -> f64 {
+        self.mean / f64::from(self.pixels.max(1))
+    }
+
     /// Root mean square of the standard errors, relative to the mean.
     pub fn error(&self) -> f64 {
-        let pixels = f64::from(self.pixels.max(1));
-        let (variance, mean) = (self.variance / pixels, self.mean / pixels);
-        if variance == 0.0 { 0.0 } else { variance.sqrt() / mean }
+        let variance = self.variance / f64::from(self.pixels.max(1));
+        if variance == 0.0 { 0.0 } else { variance.sqrt() / self.level() }
     }
 }
 
 impl Canvas<'_> {
     /// Of the whole image.
     pub fn total(&self, job: Job) -> Result<Tally> {
-        Ok(whole(&self.tallies(job)?))
+        Ok(whole(&self.tallies(|_| 1.0, job)?))
     }
 
-    fn tallies(&self, job: Job) -> Result<Vec<Tally>> {
+    /// The same with the error of each pixel relative to what it shows, not to the mean of the image.
+    pub fn relative_total(&self, job: Job) -> Result<Tally> {
+        let mean = self.total(job.part(0.0, 0.0))?.level();
+        Ok(whole(&self.relative_tallies(mean, job)?))
+    }
+
+    fn relative_tallies(&self, mean: f64, job: Job) -> Result<Vec<Tally>> {
+        self.tallies(|pixel| if mean > 0.0 { mean / average(pixel.mean()).max(BLACK * mean) } else { 1.0 }, job)
+    }
+
+    /// `weight` is what a pixel's error counts for.
+    fn tallies(&self, weight: impl Fn(&Pixel) -> f64 + Sync, job: Job) -> Result<Vec<Tally>> {
         exec::map(self.grid.tiles(), job, |tile| {
             let mut tally = Tally::default();
             for pixel in self.tile(tile) {
-                let variance = pixel.variance().element_sum() / 3.0;
+                let variance = average(pixel.variance()) * weight(pixel).powi(2);
                 tally.paths += u64::from(pixel.count());
                 tally.pixels += 1;
                 tally.most = tally.most.max(pixel.count());
-                tally.mean += pixel.mean().element_sum() / 3.0;
+                tally.mean += average(pixel.mean());
                 tally.variance += variance;
                 tally.spread += variance * f64::from(pixel.count());
             }
@@ -164,7 +184,7 @@ impl<'p> Plan<'p> {
 
     /// The next pass; none if the image is as good as was asked for, or there is no time left.
     pub fn next(&mut self, canvas: &Canvas, clock: &Clock, job: Job) -> Result<Option<Pass>> {
-        let Params { samples, target_error, pixel_error, .. } = *self.params;
+        let Params { samples, target_error, relative_error, pixel_error, .. } = *self.params;
         if self.even > 0 && clock.is_over() {
             return Ok(None);
         }
@@ -174,7 +194,7 @@ impl<'p> Plan<'p> {
             self.even = 1;
             return self.alike(canvas, 1);
         }
-        let has_target = target_error > 0.0 || pixel_error > 0.0;
+        let has_target = target_error > 0.0 || relative_error > 0.0 || pixel_error > 0.0;
         if has_target && self.even >= EVEN.min(samples) {
             return self.where_needed(canvas, clock, job);
         }
@@ -197,7 +217,7 @@ impl<'p> Plan<'p> {
 
     /// Doubles the tiles that need it most.
     fn where_needed(&self, canvas: &Canvas, clock: &Clock, job: Job) -> Result<Option<Pass>> {
-        let tallies = canvas.tallies(job)?;
+        let tallies = canvas.tallies(|_| 1.0, job)?;
         let wanted = self.wanted(canvas, &tallies, job)?;
         let whole = whole(&tallies);
 
@@ -234,22 +254,14 @@ impl<'p> Plan<'p> {
 
     /// Paths per pixel that each tile should have in the end.
     fn wanted(&self, canvas: &Canvas, tallies: &[Tally], job: Job) -> Result<Vec<f64>> {
-        let Params { samples, target_error, pixel_error, .. } = *self.params;
-        let whole = whole(tallies);
-        let mean = whole.mean / f64::from(whole.pixels);
+        let Params { target_error, relative_error, pixel_error, .. } = *self.params;
+        let mean = whole(tallies).level();
         let mut wanted = try_vec(tallies.len(), 0.0)?;
-        if target_error > 0.0 && whole.error() > f64::from(target_error) {
-            let spreads: Vec<f64> = tallies.iter().map(|t| t.spread / f64::from(t.pixels)).collect();
-            let deviations: Vec<f64> = canvas.heeding_neighbours(&spreads).into_iter().map(f64::sqrt).collect();
-            // In proportion n = k d they leave the mean square error mean(s / k d), with s the variance of single paths.
-            let mean_of = |value: &dyn Fn(usize) -> f64| {
-                (0..tallies.len()).map(|t| value(t) * f64::from(tallies[t].pixels)).sum::<f64>()
-                    / f64::from(whole.pixels)
-            };
-            let left = mean_of(&|t| if spreads[t] > 0.0 { spreads[t] / deviations[t] } else { 0.0 });
-            let needed = left / (f64::from(target_error) * mean).powi(2);
-            let allowed = f64::from(samples) / mean_of(&|t| deviations[t]);
-            wanted.iter_mut().zip(&deviations).for_each(|(w, d)| *w = needed.min(allowed) * d);
+        if target_error > 0.0 {
+            self.want_together(canvas, tallies, target_error, &mut wanted);
+        }
+        if relative_error > 0.0 {
+            self.want_together(canvas, &canvas.relative_tallies(mean, job)?, relative_error, &mut wanted);
         }
         if pixel_error > 0.0 {
             let doubts = canvas.doubts(DARK * mean, job)?;
@@ -259,6 +271,29 @@ impl<'p> Plan<'p> {
         }
         Ok(wanted)
     }
+
+    /// Raises what is wanted to the least paths that bring the error of all tiles together down to a target.
+    fn want_together(&self, canvas: &Canvas, tallies: &[Tally], target: f32, wanted: &mut [f64]) {
+        let (whole, target) = (whole(tallies), f64::from(target));
+        if whole.error() <= target {
+            return;
+        }
+        let spreads: Vec<f64> = tallies.iter().map(|t| t.spread / f64::from(t.pixels)).collect();
+        let deviations: Vec<f64> = canvas.heeding_neighbours(&spreads).into_iter().map(f64::sqrt).collect();
+        // In proportion n = k d they leave the mean square error mean(s / k d), with s the variance of single paths.
+        let mean_of = |value: &dyn Fn(usize) -> f64| {
+            (0..tallies.len()).map(|t| value(t) * f64::from(tallies[t].pixels)).sum::<f64>() / f64::from(whole.pixels)
+        };
+        let left = mean_of(&|t| if spreads[t] > 0.0 { spreads[t] / deviations[t] } else { 0.0 });
+        let needed = left / (target * whole.level()).powi(2);
+        let allowed = f64::from(self.params.samples) / mean_of(&|t| deviations[t]);
+        wanted.iter_mut().zip(&deviations).for_each(|(w, d)| *w = w.max(needed.min(allowed) * d));
+    }
+}
+
+/// Of the channels.
+fn average(v: DVec3) -> f64 {
+    v.element_sum() / 3.0
 }
 
 /// Distance between the pixels of the coarsest image of a size: a power of two.

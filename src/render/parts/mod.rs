@@ -165,9 +165,12 @@ fn check(camera: &Camera, params: &Params) -> Result<()> {
     params.check()?;
     check_camera(camera)?;
     let milliseconds = params.time_budget_ms as f32;
-    for (name, value) in
-        [("target_error", params.target_error), ("pixel_error", params.pixel_error), ("time_budget_ms", milliseconds)]
-    {
+    for (name, value) in [
+        ("target_error", params.target_error),
+        ("relative_error", params.relative_error),
+        ("pixel_error", params.pixel_error),
+        ("time_budget_ms", milliseconds),
+    ] {
         if value != 0.0 {
             return Err(Error::argument(format!(
                 "{name} is {value}; it must be 0 in a part, whose paths are fixed: set samples to what is needed"

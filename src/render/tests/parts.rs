@@ -173,6 +173,7 @@ fn what_does_not_belong_together_is_refused_by_name() {
     };
     assert!(run(&with(&|p| p.target_error = 0.1), &half(0)).contains("target_error"));
     assert!(run(&with(&|p| p.pixel_error = 0.1), &half(0)).contains("pixel_error"));
+    assert!(run(&with(&|p| p.relative_error = 0.1), &half(0)).contains("relative_error"));
     assert!(run(&with(&|p| p.time_budget_ms = 5), &half(0)).contains("time_budget_ms"));
     for part in [
         Part { width: 0, ..half(0) },
