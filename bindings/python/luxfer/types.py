@@ -1214,7 +1214,8 @@ class RenderReport:
     relative to the image's mean, estimated. 0 without a preview."""
     relative_error: float
     """Root mean square over the pixels of the standard error, relative to the pixel itself (the mean of its
-    channels, but at least a hundredth of the image's mean); infinite while a pixel has less than two paths."""
+    channels, but at least a hundredth of the image's mean); infinite while a pixel has less than two paths. Of
+    few paths it states rather too much, of 8 about a quarter."""
 
 
 class RenderPart(TypedDict, total=False):

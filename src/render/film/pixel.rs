@@ -71,6 +71,18 @@ impl Pixel {
         })
     }
 
+    /// What it shows but for the luck of a single bright path: the mean of the replications between the brightest and the
+    /// darkest, averaged over the channels.
+    pub fn middling(&self) -> f64 {
+        let mut means: [f64; REPLICATIONS as usize] = std::array::from_fn(|i| {
+            let paths = share(self.count, i as u32).max(1);
+            f64::from(self.sums[i].element_sum()) / 3.0 / f64::from(paths)
+        });
+        means.sort_unstable_by(f64::total_cmp);
+        let middle = &means[1..means.len() - 1];
+        middle.iter().sum::<f64>() / middle.len() as f64
+    }
+
     /// Unbiased estimate of the variance of the mean; infinite below two paths, which have no scatter.
     pub fn variance(&self) -> DVec3 {
         if self.count < 2 {
@@ -108,6 +120,7 @@ mod tests {
             assert_eq!((pixel.count(), pixel.mean()), (count, DVec3::ONE));
             assert_eq!(pixel.halves(), [DVec3::ONE; 2]);
         }
+        assert_eq!(pixel.middling(), 1.0);
         seen.sort_unstable();
         assert!(seen.iter().copied().eq(0..64));
         assert_eq!(pixel.variance(), DVec3::ZERO);

@@ -14,6 +14,7 @@
 use super::grid::{AREA, TILE};
 use super::interval::{NORMAL_95, pooled};
 use super::pixel::Pixel;
+use super::worth::{mean, trust};
 use super::{Canvas, Clock};
 use crate::error::Result;
 use crate::exec;
@@ -110,7 +111,7 @@ impl Tally {
 impl Canvas<'_> {
     /// Of the whole image.
     pub fn total(&self, job: Job) -> Result<Tally> {
-        Ok(whole(&self.tallies(|_| 1.0, job)?))
+        Ok(whole(&self.tallies(|_, _| 1.0, job)?))
     }
 
     /// The same with the error of each pixel relative to what it shows, not to the mean of the image.
@@ -119,16 +120,23 @@ impl Canvas<'_> {
         Ok(whole(&self.relative_tallies(mean, job)?))
     }
 
+    /// A pixel with a rare bright path is bright where its scatter is large; it counts for what it shows without. Few paths
+    /// leave the word to the tile.
     fn relative_tallies(&self, mean: f64, job: Job) -> Result<Vec<Tally>> {
-        self.tallies(|pixel| if mean > 0.0 { mean / average(pixel.mean()).max(BLACK * mean) } else { 1.0 }, job)
+        let weight = |pixel: &Pixel, tile: f64| {
+            let shown = tile + (pixel.middling() - tile) * trust(f64::from(pixel.count()));
+            if mean > 0.0 { mean / shown.max(BLACK * mean) } else { 1.0 }
+        };
+        self.tallies(weight, job)
     }
 
-    /// `weight` is what a pixel's error counts for.
-    fn tallies(&self, weight: impl Fn(&Pixel) -> f64 + Sync, job: Job) -> Result<Vec<Tally>> {
+    /// `weight` is what the error of a pixel counts for, whose tile has this mean.
+    fn tallies(&self, weight: impl Fn(&Pixel, f64) -> f64 + Sync, job: Job) -> Result<Vec<Tally>> {
         exec::map(self.grid.tiles(), job, |tile| {
             let mut tally = Tally::default();
+            let shown = mean(self.tile(tile)).map_or(0.0, |(mean, _)| average(mean));
             for pixel in self.tile(tile) {
-                let variance = average(pixel.variance()) * weight(pixel).powi(2);
+                let variance = average(pixel.variance()) * weight(pixel, shown).powi(2);
                 tally.paths += u64::from(pixel.count());
                 tally.pixels += 1;
                 tally.most = tally.most.max(pixel.count());
@@ -217,7 +225,7 @@ impl<'p> Plan<'p> {
 
     /// Doubles the tiles that need it most.
     fn where_needed(&self, canvas: &Canvas, clock: &Clock, job: Job) -> Result<Option<Pass>> {
-        let tallies = canvas.tallies(|_| 1.0, job)?;
+        let tallies = canvas.tallies(|_, _| 1.0, job)?;
         let wanted = self.wanted(canvas, &tallies, job)?;
         let whole = whole(&tallies);
 

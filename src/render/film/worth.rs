@@ -35,17 +35,17 @@ pub fn median(means: &[DVec3]) -> Option<DVec3> {
 }
 
 /// Mean of the pixels that have paths, and how many paths they have.
-fn mean(pixels: &[Pixel]) -> Option<(DVec3, f64)> {
+pub fn mean<'a>(pixels: impl IntoIterator<Item = &'a Pixel>) -> Option<(DVec3, f64)> {
     let (mut sum, mut count, mut paths) = (DVec3::ZERO, 0.0, 0.0);
-    for pixel in pixels.iter().filter(|p| p.count() > 0) {
+    for pixel in pixels.into_iter().filter(|p| p.count() > 0) {
         (sum, count, paths) = (sum + pixel.mean(), count + 1.0, paths + f64::from(pixel.count()));
     }
     (count > 0.0).then(|| (sum / count, paths))
 }
 
-/// The means of `paths` paths, and what was known before.
-fn blend(mean: DVec3, paths: f64, before: DVec3) -> DVec3 {
-    (mean * paths + before * PRIOR) / (paths + PRIOR)
+/// How much the mean of so many paths counts beside what is known of the surroundings, in `[0, 1)`.
+pub fn trust(paths: f64) -> f64 {
+    paths / (paths + PRIOR)
 }
 
 /// What is around a pixel.
@@ -57,12 +57,12 @@ pub struct Surroundings {
 impl Surroundings {
     /// Of the pixels of a tile, in an image of that [`level`].
     pub fn of(tile: &[Pixel], level: DVec3) -> Self {
-        Self { level, tile: mean(tile).map_or(level, |(mean, paths)| blend(mean, paths, level)) }
+        Self { level, tile: mean(tile).map_or(level, |(mean, paths)| level.lerp(mean, trust(paths))) }
     }
 
     /// What light of the brightness `level` is worth to a pixel, relative to what the pixel shows, per channel; positive.
     pub fn worth(&self, pixel: &Pixel) -> Vec3 {
-        let shown = blend(pixel.mean(), f64::from(pixel.count()), self.tile);
+        let shown = self.tile.lerp(pixel.mean(), trust(f64::from(pixel.count())));
         let worth = (self.level / shown).clamp(DVec3::splat(1.0 / MOST), DVec3::splat(MOST));
         // Of a channel that is dark so far nothing is known.
         DVec3::select(self.level.cmpgt(DVec3::ZERO), worth, DVec3::ONE).as_vec3()

@@ -59,6 +59,7 @@ fn intervals_hold_the_truth_and_the_errors_are_those_of_the_image() {
     let monitor = Monitor::default();
     let mean = truth.data.iter().map(|&v| f64::from(v)).sum::<f64>() / truth.data.len() as f64;
     let shown = |i: usize| truth.data[i / 3 * 3..][..3].iter().map(|&v| f64::from(v)).sum::<f64>() / 3.0;
+    let mut relative_ratios = Vec::new();
     for samples in [8, 20, 64] {
         let films = repeated(&world, &Params { samples, ..size.clone() }, 16);
         let (mut inside, mut count, mut squared, mut stated) = (0, 0, 0.0, 0.0);
@@ -87,9 +88,11 @@ fn intervals_hold_the_truth_and_the_errors_are_those_of_the_image() {
         assert!((stated / measured - 1.0).abs() < 0.1, "{samples} paths: stated {stated}, measured {measured}");
         let measured = (relative / (films.len() * truth.data.len()) as f64).sqrt();
         let stated = (stated_relative / films.len() as f64).sqrt();
-        // Of few paths it says too much: pixels that happen to be dark count for more.
-        let most = if samples < 64 { 1.5 } else { 1.1 };
-        assert!((0.9..most).contains(&(stated / measured)), "{samples} paths: stated {stated}, measured {measured}");
+        relative_ratios.push(stated / measured);
+    }
+    // It converges from the safe side: few paths leave pixels in the shade less sure than they are.
+    for (ratio, most) in relative_ratios.iter().zip([1.3, 1.2, 1.1]) {
+        assert!((0.95..most).contains(ratio), "stated over measured: {relative_ratios:?}");
     }
 }
 
@@ -101,7 +104,7 @@ fn a_target_sends_paths_to_where_the_error_is_and_darkens_little() {
         |film: &Film| film.beauty.data.iter().map(|&v| f64::from(v)).sum::<f64>() / film.beauty.data.len() as f64;
     let truth = mean(&render(&world, &viewer(), &Params { samples: 1024, ..size.clone() }));
     let count = 16;
-    for (target_error, relative_error, pixel_error) in [(0.06, 0.0, 0.0), (0.0, 0.1, 0.0), (0.0, 0.0, 0.6)] {
+    for (target_error, relative_error, pixel_error) in [(0.06, 0.0, 0.0), (0.0, 0.05, 0.0), (0.0, 0.0, 0.6)] {
         let targets = Params { samples: 1024, target_error, relative_error, pixel_error, ..size.clone() };
         let films = repeated(&world, &targets, count);
         let (mut sum, mut square, mut spread) = (0.0, 0.0, 0.0f32);
@@ -115,7 +118,8 @@ fn a_target_sends_paths_to_where_the_error_is_and_darkens_little() {
             assert!(low >= 16.0 && high <= 1024.0 && film.samples < 512);
             spread = spread.max(high / low);
         }
-        assert!(spread >= 4.0, "{target_error} {relative_error} {pixel_error}: {spread}");
+        let least = if relative_error > 0.0 { 2.0 } else { 4.0 };
+        assert!(spread >= least, "{target_error} {relative_error} {pixel_error}: {spread}");
         let bias = sum / count as f64;
         let error = ((square / count as f64 - bias * bias) / count as f64).sqrt();
         assert!(bias.abs() < 0.01 + 3.0 * error, "bias {bias} ± {error}");
