@@ -161,10 +161,16 @@ impl<'a> Bsdf<'a> {
         }
     }
 
+    /// Whether nothing lies on the diffuse layer.
+    #[inline]
+    pub fn is_diffuse(&self) -> bool {
+        self.layers.is_none()
+    }
+
     /// Whether it is the same for all viewers on its side.
     #[inline]
     pub fn looks_alike(&self) -> bool {
-        self.layers.is_none() && self.normal == self.geometric
+        self.is_diffuse() && self.normal == self.geometric
     }
 
     /// Whether any light but that of single directions is scattered.

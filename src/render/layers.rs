@@ -8,7 +8,8 @@ use super::aov::{Aov, Surfaces};
 use super::bsdf::{Kind, Lobes};
 use super::lpe::{EmitterAs, Expression, Table, Trail};
 use super::path::{Found, Observer, Seen};
-use super::shared::MOST;
+use super::shared::{MOST, Scratch};
+use super::tape::Told;
 use super::world::{Pane, World};
 use crate::error::{Error, Result};
 use crate::exec;
@@ -74,7 +75,7 @@ pub struct Layer {
 
 /// The sums of all layers so far, tile by tile as those of the main image.
 pub struct Layers<'a> {
-    pub(super) world: &'a World,
+    world: &'a World,
     outputs: &'a Outputs,
     /// The camera's place in the world's coordinates, and its unit viewing direction.
     eye: Vec3,
@@ -156,7 +157,6 @@ impl<'a> Layers<'a> {
             layers: self,
             beauty: Vec3::ZERO,
             trail: Trail::new(&self.table),
-            helper: Trail::new(&self.table),
             sums: vec![DVec3::ZERO; self.table.lists().len()],
             surfaces: Surfaces::default(),
         }
@@ -165,6 +165,11 @@ impl<'a> Layers<'a> {
     /// One for each path of those that share what they find.
     pub fn recorders(&self) -> Vec<Recorder<'_>> {
         (0..MOST).map(|_| self.recorder()).collect()
+    }
+
+    /// Scratch memory for what is told to several of them.
+    pub fn scratch(&self) -> Scratch<Told<'_>> {
+        Scratch::new(Told::new(self.world, &self.table))
     }
 
     /// The images so far; `places` has for each pixel its tile, its number there, and its samples.
@@ -215,12 +220,10 @@ impl<'a> Layers<'a> {
 
 /// Follows paths, pixel by pixel.
 pub struct Recorder<'a> {
-    pub(super) layers: &'a Layers<'a>,
+    layers: &'a Layers<'a>,
     /// Sum of the contributions of one path, as the main image has it.
     pub(super) beauty: Vec3,
     pub(super) trail: Trail<'a>,
-    /// For paths that are told of afterwards.
-    pub(super) helper: Trail<'a>,
     /// Sums over the paths of a pixel, for each list of expressions that accept the same.
     sums: Vec<DVec3>,
     surfaces: Surfaces,
@@ -238,7 +241,7 @@ impl Recorder<'_> {
     #[inline]
     pub fn finish(&mut self) -> Vec3 {
         if self.beauty.is_finite() {
-            self.trail.finish().iter().for_each(|&(list, light)| self.sums[usize::from(list)] += light.as_dvec3());
+            self.trail.finish(|list, light| self.sums[list] += light.as_dvec3());
         }
         self.beauty
     }

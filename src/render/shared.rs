@@ -14,7 +14,7 @@ use super::light::{LightSample, Receiver};
 use super::path::{self, Found, Leg, Length, Observer, Seen};
 use super::sampler::Sampler;
 use super::vertex::{Surface, Vertex};
-use super::world::World;
+use super::world::{Pane, World};
 use crate::scene::accel::Ray;
 use glam::Vec3;
 
@@ -28,27 +28,46 @@ pub trait Witness: Observer {
     /// Goes back to the eye, from where the path leaves on another way. What it has brought stays.
     fn restart(&mut self);
 
-    /// The panes before a light chosen for a vertex are those that a tape was told of last.
-    fn take_panes(&mut self, _tape: &Self::Tape) {}
+    /// Before the light chosen for a vertex stand these panes.
+    fn take_panes(&mut self, _panes: &[Pane]) {}
 
     /// The path goes on as the one on a tape, with this importance when it sets out on it.
-    fn replay(&mut self, tape: &mut Self::Tape, importance: Vec3);
+    fn replay(&mut self, tape: &Self::Tape, importance: Vec3);
+
+    /// The same after going back to the eye and on from the first surface, of a mesh, whose lobes send this much on.
+    fn replay_from(&mut self, mesh: u32, lobes: Lobes, tape: &Self::Tape, importance: Vec3);
 }
 
 /// What happens to a path from some vertex on, to be told to several witnesses.
-pub trait Tape: Observer + Default {
-    fn clear(&mut self);
+pub trait Tape: Observer {
+    /// Those who will be told come off surfaces of these meshes, which have a layer on the diffuse one or not.
+    fn expect(&mut self, _viewers: impl Iterator<Item = (u32, bool)>) {}
 
-    /// Whether it has no light to tell of.
-    fn is_blank(&self) -> bool;
+    /// Begins anew, at a point that they see.
+    fn begin(&mut self);
+
+    /// Begins anew behind such a point, which is of a mesh.
+    fn begin_behind(&mut self, _mesh: u32) {
+        self.begin();
+    }
+
+    /// Ends; whether there is light to tell of.
+    fn end(&mut self) -> bool;
 }
 
-/// Room for the tapes of a point: of the light chosen for it, and of the path beyond it; both are one tape where it sends
-/// the same to all.
+/// Scratch memory for what there is to tell of a point.
 #[derive(Default)]
-pub struct Tapes<T> {
-    chosen: T,
-    beyond: T,
+pub struct Scratch<T> {
+    /// The path from there on; where it sends to each what is theirs, the path beyond it.
+    tape: T,
+    /// The panes before the light chosen for it.
+    panes: Vec<Pane>,
+}
+
+impl<T> Scratch<T> {
+    pub fn new(tape: T) -> Self {
+        Self { tape, panes: Vec::new() }
+    }
 }
 
 /// A path before it leaves the eye.
@@ -111,20 +130,22 @@ struct Viewer {
 }
 
 /// Makes one estimate of the radiance along each of some rays. Each witness is told of its own.
-pub fn trace<W: Witness>(world: &World, starts: &mut [Start], witnesses: &mut [W], tapes: &mut Tapes<W::Tape>) {
+pub fn trace<W: Witness>(world: &World, starts: &mut [Start], witnesses: &mut [W], scratch: &mut Scratch<W::Tape>) {
     let mut sights: [Option<Sight>; MOST] = [const { None }; MOST];
     for ((sight, start), witness) in sights.iter_mut().zip(&mut *starts).zip(&mut *witnesses) {
         *sight = look(world, start, witness);
     }
     // Light that any of them may see must not be given up because it means little to one.
     let worth = sights.iter().flatten().map(|s| s.worth).fold(Vec3::ZERO, Vec3::max);
+    scratch.tape.expect(sights.iter().flatten().map(|s| (s.vertex.mesh, !s.bsdf.is_diffuse())));
     for number in 0..starts.len() {
         let departure = sights[number].as_mut().and_then(|s| s.departure.take());
         if let (Some(sight), Some(departure)) = (&sights[number], &departure)
-            && let Some(find) = find(world, sight, departure, worth, &mut starts[number], &mut witnesses[number], tapes)
+            && let Some(find) =
+                find(world, sight, departure, worth, &mut starts[number], &mut witnesses[number], scratch)
         {
             let viewers = Viewers::of(world, &find, number, departure, &sights);
-            viewers.tell(&find, &sights, witnesses, tapes);
+            viewers.tell(&find, &sights, witnesses, scratch);
         }
     }
 }
@@ -171,7 +192,7 @@ fn find<'w, W: Witness>(
     worth: Vec3,
     start: &mut Start,
     witness: &mut W,
-    tapes: &mut Tapes<W::Tape>,
+    scratch: &mut Scratch<W::Tape>,
 ) -> Option<Find<'w>> {
     let Departure { direction, lobes, density, leg } = departure;
     let Start { length, sampler, .. } = start;
@@ -192,9 +213,9 @@ fn find<'w, W: Witness>(
     // The path from there on is told of as if it began there.
     let length = Length { most: length.most, worth: Some(worth) };
     let light = if bsdf.looks_alike() {
-        send_to_all(world, &vertex, &bsdf, leg.lighting, length, sampler, &mut tapes.beyond)
+        send_to_all(world, &vertex, &bsdf, leg.lighting, length, sampler, &mut scratch.tape)
     } else {
-        send_to_each(world, &vertex, surface, &bsdf, leg.lighting, length, sampler, tapes)
+        send_to_each(world, &vertex, surface, &bsdf, leg.lighting, length, sampler, scratch)
     };
     light.map(|light| Find { vertex, light })
 }
@@ -209,11 +230,11 @@ fn send_to_all<'w, T: Tape>(
     sampler: &mut Sampler,
     tape: &mut T,
 ) -> Option<Light<'w>> {
-    tape.clear();
+    tape.begin();
     if let Some(next) = path::scatter(world, vertex, bsdf, Vec3::ONE, None, lighting, sampler, tape) {
         path::walk(world, next, 2, length, sampler, tape);
     }
-    (!tape.is_blank()).then_some(Light::Alike)
+    tape.end().then_some(Light::Alike)
 }
 
 /// The light of a find that sends to each what is theirs.
@@ -225,8 +246,11 @@ fn send_to_each<'w, T: Tape>(
     lighting: (f64, f32),
     length: Length,
     sampler: &mut Sampler,
-    tapes: &mut Tapes<T>,
+    scratch: &mut Scratch<T>,
 ) -> Option<Light<'w>> {
+    let Scratch { tape, panes } = scratch;
+    tape.begin_behind(vertex.mesh);
+    panes.clear();
     let receiver = Receiver { position: vertex.position, normal: bsdf.normal() };
     let light = path::choose_light(world, &receiver, bsdf, lighting).filter(|l| l.emission != Vec3::ZERO);
     let chosen = light.and_then(|light| {
@@ -234,10 +258,9 @@ fn send_to_each<'w, T: Tape>(
         if lobes.sum() == Vec3::ZERO {
             return None;
         }
-        let importance = path::reach(world, vertex, &light, density, tapes.chosen.panes());
+        let importance = path::reach(world, vertex, &light, density, Some(panes));
         (importance != Vec3::ZERO).then_some((light, importance))
     });
-    tapes.beyond.clear();
     let beyond = path::choose_direction(bsdf, sampler).and_then(|(scattered, lighting)| {
         let Kind::Spread(density) = scattered.kind else { return None };
         let leg = Leg {
@@ -248,8 +271,8 @@ fn send_to_each<'w, T: Tape>(
             lighting,
         };
         let length = Length { worth: length.worth.map(|worth| worth * scattered.weight), ..length };
-        path::walk(world, leg, 2, length, sampler, &mut tapes.beyond);
-        (!tapes.beyond.is_blank()).then_some((scattered.direction, density))
+        path::walk(world, leg, 2, length, sampler, tape);
+        tape.end().then_some((scattered.direction, density))
     });
     let has_light = chosen.is_some() || beyond.is_some();
     has_light.then_some(Light::Turned { surface, chosen, beyond })
@@ -312,29 +335,29 @@ impl Viewers {
         find: &Find,
         sights: &[Option<Sight>; MOST],
         witnesses: &mut [W],
-        tapes: &mut Tapes<W::Tape>,
+        scratch: &Scratch<W::Tape>,
     ) {
         let mesh = find.vertex.mesh;
         for viewer in self.list.iter().flatten() {
             let (Some(sight), witness) = (&sights[viewer.number], &mut witnesses[viewer.number]) else { continue };
             let importance = viewer.lobes.sum() * (viewer.angle / self.density);
-            witness.restart();
-            witness.scatter(sight.vertex.mesh, Kind::Spread(viewer.density), viewer.lobes);
             let Light::Turned { surface, chosen, beyond } = &find.light else {
-                witness.replay(&mut tapes.beyond, importance);
+                witness.replay_from(sight.vertex.mesh, viewer.lobes, &scratch.tape, importance);
                 continue;
             };
+            witness.restart();
+            witness.scatter(sight.vertex.mesh, Kind::Spread(viewer.density), viewer.lobes);
             let bsdf = surface.seen_from(-viewer.direction);
             if let Some((light, reach)) = chosen {
                 let (lobes, _) = bsdf.eval(light.direction);
-                witness.take_panes(&tapes.chosen);
+                witness.take_panes(&scratch.panes);
                 let importance = importance * lobes.sum() * *reach;
                 witness.add(light.source, importance, light.emission, Found::Chosen { mesh, lobes });
             }
             if let Some((direction, density)) = beyond {
                 let (lobes, _) = bsdf.eval(*direction);
                 witness.scatter(mesh, Kind::Spread(*density), lobes);
-                witness.replay(&mut tapes.beyond, importance * lobes.sum() / *density);
+                witness.replay(&scratch.tape, importance * lobes.sum() / *density);
             }
         }
     }

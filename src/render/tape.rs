@@ -3,12 +3,11 @@
 use super::LightSource;
 use super::bsdf::{Kind, Lobes};
 use super::layers::Recorder;
-use super::lpe::Trail;
+use super::lpe::{Brought, Table, Trail};
 use super::path::{Found, Observer};
 use super::shared::{Tape, Witness};
 use super::world::{Pane, World};
-use glam::{Vec3, Vec3A};
-use std::ops::Range;
+use glam::Vec3;
 
 /// Adds contributions up.
 #[derive(Clone, Copy, Default)]
@@ -22,12 +21,12 @@ impl Observer for Sum {
 }
 
 impl Tape for Sum {
-    fn clear(&mut self) {
+    fn begin(&mut self) {
         self.0 = Vec3::ZERO;
     }
 
-    fn is_blank(&self) -> bool {
-        self.0 == Vec3::ZERO
+    fn end(&mut self) -> bool {
+        self.0 != Vec3::ZERO
     }
 }
 
@@ -37,128 +36,100 @@ impl Witness for Sum {
     fn restart(&mut self) {}
 
     #[inline]
-    fn replay(&mut self, tape: &mut Self, importance: Vec3) {
+    fn replay(&mut self, tape: &Self, importance: Vec3) {
         self.0 += importance * tape.0;
+    }
+
+    #[inline]
+    fn replay_from(&mut self, _: u32, _: Lobes, tape: &Self, importance: Vec3) {
+        self.replay(tape, importance);
     }
 }
 
-/// All steps of a path.
-#[derive(Default)]
-pub struct Steps {
+/// Adds contributions up, and follows a path from every state that those who will be told of it can be in.
+pub struct Told<'a> {
+    world: &'a World,
+    table: &'a Table,
     sum: Vec3,
-    steps: Vec<Step>,
-    /// Where panes are listed, and those of all steps.
-    panes: Vec<Pane>,
-    kept: Vec<Pane>,
-    /// What comes of it from a state of the automaton: for each that was asked for, a part of the list.
-    outcomes: Vec<(u16, Range<usize>)>,
-    brought: Vec<(u16, Vec3A)>,
+    trail: Trail<'a>,
+    /// The states behind the first surfaces, and those in which the path begins.
+    viewers: Vec<u16>,
+    origins: Vec<u16>,
+    outcome: Vec<Brought>,
 }
 
-enum Step {
-    Add { source: LightSource, contribution: Vec3A, found: Found, panes: Range<usize> },
-    Scatter { mesh: u32, kind: Kind, lobes: Lobes },
+impl<'a> Told<'a> {
+    pub fn new(world: &'a World, table: &'a Table) -> Self {
+        let [viewers, origins] = [const { Vec::new() }; 2];
+        Self { world, table, sum: Vec3::ZERO, trail: Trail::new(table), viewers, origins, outcome: Vec::new() }
+    }
 }
 
-impl Observer for Steps {
+impl Observer for Told<'_> {
+    #[inline(always)]
     fn add(&mut self, source: LightSource, importance: Vec3, emission: Vec3, found: Found) {
         let contribution = importance * emission;
         self.sum += contribution;
-        let first = self.kept.len();
-        if let Found::Chosen { .. } = found
-            && !self.panes.is_empty()
-        {
-            self.kept.extend_from_slice(&self.panes);
-        }
-        self.steps.push(Step::Add { source, contribution: contribution.into(), found, panes: first..self.kept.len() });
+        self.trail.add(self.world, contribution.into(), source, found);
     }
 
+    #[inline]
     fn scatter(&mut self, mesh: u32, kind: Kind, lobes: Lobes) {
-        self.steps.push(Step::Scatter { mesh, kind, lobes });
+        self.trail.scatter(mesh, kind, lobes);
     }
 
+    #[inline]
     fn panes(&mut self) -> Option<&mut Vec<Pane>> {
-        Some(&mut self.panes)
+        self.trail.wants_panes()
     }
 }
 
-impl Tape for Steps {
-    fn clear(&mut self) {
-        let Self { sum, steps, panes, kept, outcomes, brought } = self;
-        *sum = Vec3::ZERO;
-        steps.clear();
-        panes.clear();
-        kept.clear();
-        outcomes.clear();
-        brought.clear();
+impl Tape for Told<'_> {
+    fn expect(&mut self, viewers: impl Iterator<Item = (u32, bool)>) {
+        self.viewers.clear();
+        viewers.for_each(|(mesh, layers)| self.table.spread(self.table.start(), mesh, layers, &mut self.viewers));
     }
 
-    fn is_blank(&self) -> bool {
-        self.sum == Vec3::ZERO
-    }
-}
-
-impl Steps {
-    /// The panes listed last.
-    pub fn panes_listed(&self) -> &[Pane] {
-        &self.panes
+    fn begin(&mut self) {
+        self.origins.clone_from(&self.viewers);
+        self.sum = Vec3::ZERO;
+        self.trail.start_from(&self.origins);
     }
 
-    /// What comes of it from a state of the automaton, and for which lists of expressions.
-    fn outcome(&mut self, world: &World, state: u16, trail: &mut Trail) -> &[(u16, Vec3A)] {
-        let Self { steps, kept, outcomes, brought, .. } = self;
-        let range = match outcomes.iter().find(|(of, _)| *of == state) {
-            Some((_, range)) => range.clone(),
-            None => {
-                trail.start_from(state);
-                for step in steps.iter() {
-                    match step {
-                        Step::Add { source, contribution, found, panes } => {
-                            trail.set_panes(&kept[panes.clone()]);
-                            trail.add(world, *contribution, *source, *found);
-                        }
-                        Step::Scatter { mesh, kind, lobes } => trail.scatter(*mesh, *kind, *lobes),
-                    }
-                }
-                let first = brought.len();
-                brought.extend_from_slice(trail.finish());
-                outcomes.push((state, first..brought.len()));
-                first..brought.len()
-            }
-        };
-        &brought[range]
+    fn begin_behind(&mut self, mesh: u32) {
+        self.origins.clear();
+        self.viewers.iter().for_each(|&state| self.table.spread(state, mesh, true, &mut self.origins));
+        self.sum = Vec3::ZERO;
+        self.trail.start_from(&self.origins);
     }
 
-    /// Adds what comes of it to a trail that has come to where it begins, with the help of another trail.
-    pub fn follow(&mut self, world: &World, trail: &mut Trail, helper: &mut Trail, importance: Vec3A) {
-        for part in 0..trail.parts().len() {
-            let (state, share) = trail.parts()[part];
-            for &(list, light) in self.outcome(world, state, helper) {
-                trail.bring(list, share * importance * light);
-            }
-        }
-    }
-
-    /// All that the path brings.
-    pub fn sum(&self) -> Vec3 {
-        self.sum
+    fn end(&mut self) -> bool {
+        self.trail.finish_from(&self.origins, &mut self.outcome);
+        self.sum != Vec3::ZERO
     }
 }
 
-impl Witness for Recorder<'_> {
-    type Tape = Steps;
+impl<'a> Witness for Recorder<'a> {
+    type Tape = Told<'a>;
 
     #[inline]
     fn restart(&mut self) {
         self.trail.restart();
     }
 
-    fn take_panes(&mut self, tape: &Steps) {
-        self.trail.set_panes(tape.panes_listed());
+    fn take_panes(&mut self, panes: &[Pane]) {
+        self.trail.set_panes(panes);
     }
 
-    fn replay(&mut self, tape: &mut Steps, importance: Vec3) {
-        self.beauty += importance * tape.sum();
-        tape.follow(self.layers.world, &mut self.trail, &mut self.helper, importance.into());
+    #[inline]
+    fn replay(&mut self, told: &Told, importance: Vec3) {
+        self.beauty += importance * told.sum;
+        self.trail.follow(&told.outcome, importance.into());
+    }
+
+    #[inline]
+    fn replay_from(&mut self, mesh: u32, lobes: Lobes, told: &Told, importance: Vec3) {
+        self.beauty += importance * told.sum;
+        self.trail.follow_from(mesh, lobes, &told.outcome, importance.into());
     }
 }

@@ -5,11 +5,11 @@
 
 use super::Eye;
 use super::grid::{AREA, TILE};
-use crate::render::layers::Recorder;
+use crate::render::layers::{Layers, Recorder};
 use crate::render::path::Length;
 use crate::render::sampler::Sampler;
-use crate::render::shared::{self, MOST, Start, Tapes};
-use crate::render::tape::{Steps, Sum};
+use crate::render::shared::{self, MOST, Scratch, Start};
+use crate::render::tape::{Sum, Told};
 use crate::render::world::World;
 use crate::rng;
 use glam::{DVec3, Vec3};
@@ -54,14 +54,24 @@ pub fn blocks(replication: u32) -> [[usize; MOST]; BLOCKS] {
 }
 
 /// Makes the paths of one block after the other.
-#[derive(Default)]
-pub struct Maker {
+pub struct Maker<'a> {
     starts: Vec<Start>,
-    sums: Tapes<Sum>,
-    steps: Tapes<Steps>,
+    scratch: Scratch<Sum>,
+    /// For each member one who tells its light apart, if anyone does, and what is told to all of them.
+    recorders: Option<(Vec<Recorder<'a>>, Scratch<Told<'a>>)>,
 }
 
-impl Maker {
+impl<'a> Maker<'a> {
+    pub fn new(layers: Option<&'a Layers>) -> Self {
+        let recorders = layers.map(|l| (l.recorders(), l.scratch()));
+        Self { starts: Vec::with_capacity(MOST), scratch: Scratch::default(), recorders }
+    }
+
+    /// Who tells the light of each member apart.
+    pub fn recorders(&mut self) -> Option<&mut [Recorder<'a>]> {
+        self.recorders.as_mut().map(|(recorders, _)| &mut recorders[..])
+    }
+
     /// Sums of the paths of each member with indices in a range, all of one replication; each recorder is told of those of
     /// its member. Those that are no finite numbers are left out, and counted by `discarded`, which has the number of the member.
     pub fn paths(
@@ -70,23 +80,22 @@ impl Maker {
         eye: &Eye,
         members: &[Member],
         indices: Range<u32>,
-        mut recorders: Option<&mut [Recorder]>,
         mut discarded: impl FnMut(usize),
     ) -> [DVec3; MOST] {
         let mut sums = [DVec3::ZERO; MOST];
         for index in indices {
             self.starts.clear();
             self.starts.extend(members.iter().map(|m| eye.start(world, m.at, m.length, Sampler::new(m.seed, index))));
-            let radiances = match &mut recorders {
+            let radiances = match &mut self.recorders {
                 None => {
                     let mut witnesses = [Sum(Vec3::ZERO); MOST];
-                    shared::trace(world, &mut self.starts, &mut witnesses[..members.len()], &mut self.sums);
+                    shared::trace(world, &mut self.starts, &mut witnesses[..members.len()], &mut self.scratch);
                     witnesses.map(|w| w.0)
                 }
-                Some(recorders) => {
+                Some((recorders, scratch)) => {
                     let recorders = &mut recorders[..members.len()];
                     recorders.iter_mut().for_each(Recorder::start);
-                    shared::trace(world, &mut self.starts, recorders, &mut self.steps);
+                    shared::trace(world, &mut self.starts, recorders, scratch);
                     let mut radiances = [Vec3::ZERO; MOST];
                     radiances.iter_mut().zip(recorders).for_each(|(radiance, r)| *radiance = r.finish());
                     radiances

@@ -61,8 +61,7 @@ impl Sums {
         exec::for_rows(numbers, AREA * *width, job.part(0.01, 1.0), |tile, numbers| {
             let (left, top) = grid.corner(tile);
             let length = Length { most: eye.most, worth: survey.worth([corner[0] + left, corner[1] + top]) };
-            let mut recorders = layers.as_ref().map(Layers::recorders);
-            let mut maker = Maker::default();
+            let mut maker = Maker::new(layers.as_ref());
             // What neighbours in another part bring is not wanted here; what they find is.
             let mut others_of_neighbours = vec![0.0; *width - LIGHT];
             for replication in 0..REPLICATIONS {
@@ -84,13 +83,12 @@ impl Sums {
                                 discarded.fetch_add(1, Ordering::Relaxed);
                             }
                         };
-                        let sums =
-                            maker.paths(world, &eye, &members, index..index + 1, recorders.as_deref_mut(), discard);
+                        let sums = maker.paths(world, &eye, &members, index..index + 1, discard);
                         for (k, (member, sum)) in members.iter().zip(sums).enumerate() {
                             let numbers = &mut numbers[member.pixel * *width..][..*width];
                             let (light, others) = numbers.split_at_mut(LIGHT);
                             let is_wanted = part.has(member.at);
-                            if let Some(recorders) = &mut recorders {
+                            if let Some(recorders) = maker.recorders() {
                                 recorders[k].add_to(if is_wanted { others } else { &mut others_of_neighbours });
                             }
                             if is_wanted {

@@ -6,7 +6,7 @@ use super::pixel::{Pixel, REPLICATIONS, share};
 use super::plan::Pass;
 use super::worth::Surroundings;
 use super::{Eye, paths};
-use crate::render::layers::{Kept, Layers, Recorder};
+use crate::render::layers::{Kept, Layers};
 use crate::render::path::Length;
 use crate::render::world::World;
 use glam::DVec3;
@@ -14,7 +14,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Paths of a pixel between two looks at the clock, alone and together with the others of its tile.
 const SLICE: u32 = 64;
-const SLICE_TOGETHER: u32 = 8;
+const SLICE_TOGETHER: u32 = 16;
 
 /// What the paths of all tiles have in common.
 #[derive(Clone, Copy)]
@@ -35,15 +35,15 @@ pub struct Tile<'a> {
     number: usize,
     pixels: &'a mut [Pixel],
     surroundings: Option<Surroundings>,
-    layers: Option<(Vec<Recorder<'a>>, Kept<'a>)>,
-    maker: Maker,
+    /// What is kept of its layers.
+    kept: Option<Kept<'a>>,
+    maker: Maker<'a>,
 }
 
 impl<'a> Tile<'a> {
     pub fn new(setting: Setting<'a>, number: usize, pixels: &'a mut [Pixel], layers: Option<&'a Layers<'a>>) -> Self {
         let surroundings = setting.level.map(|level| Surroundings::of(pixels, level));
-        let layers = layers.map(|l| (l.recorders(), l.kept(number)));
-        Self { setting, number, pixels, surroundings, layers, maker: Maker::default() }
+        Self { setting, number, pixels, surroundings, kept: layers.map(|l| l.kept(number)), maker: Maker::new(layers) }
     }
 
     /// Extends the paths of every pixel to what the pass asks for, or until the time is over.
@@ -78,13 +78,13 @@ impl<'a> Tile<'a> {
     fn go_alone(&mut self, pixel: usize, at: [usize; 2], count: u32) {
         let length = self.length(pixel);
         let Setting { world, eye, seed, discarded, .. } = self.setting;
-        let mut recorder = self.layers.as_mut().map(|(recorders, _)| &mut recorders[0]);
+        let mut recorder = self.maker.recorders().map(|recorders| &mut recorders[0]);
         self.pixels[pixel].extend(count, |replication, indices| {
             let seed = seed_of(seed, at, replication);
             paths(world, eye, at, length, (seed, indices), recorder.as_deref_mut(), discarded)
         });
-        if let Some((recorders, kept)) = &mut self.layers {
-            recorders[0].keep(kept, pixel);
+        if let (Some(recorder), Some(kept)) = (recorder, &mut self.kept) {
+            recorder.keep(kept, pixel);
         }
     }
 
@@ -103,11 +103,10 @@ impl<'a> Tile<'a> {
                 let there = block.iter().filter_map(|&i| Some((i, places[i]?)));
                 let member = |(i, (x, y))| Member::new(i, [x, y], lengths[i], seed, replication);
                 let members: Vec<Member> = there.map(member).collect();
-                let recorders = self.layers.as_mut().map(|(recorders, _)| &mut recorders[..]);
-                let sums = self.maker.paths(world, eye, &members, indices.clone(), recorders, discard);
+                let sums = self.maker.paths(world, eye, &members, indices.clone(), discard);
                 for (k, (member, sum)) in members.iter().zip(sums).enumerate() {
                     self.pixels[member.pixel].add(replication, sum);
-                    if let Some((recorders, kept)) = &mut self.layers {
+                    if let (Some(recorders), Some(kept)) = (self.maker.recorders(), &mut self.kept) {
                         recorders[k].keep(kept, member.pixel);
                     }
                 }

@@ -5,7 +5,7 @@
 //! complete any expression are one, [`DEAD`]: what a path carries there is dropped. States that no future event tells
 //! apart are one as well, so a path has as few parts as the expressions allow.
 
-use super::alphabet::{Alphabet, SCATTERS};
+use super::alphabet::{Alphabet, SCATTERS, Scatter};
 use super::parse::{Event, EventSet, Node, kind};
 use super::{EmitterAs, Expression};
 use crate::error::{Error, Result};
@@ -77,6 +77,17 @@ impl Table {
     #[inline]
     pub fn next(&self, state: u16, class: usize) -> &[u16; SCATTERS.len()] {
         &self.next[usize::from(state) * self.alphabet.classes() + class]
+    }
+
+    /// Adds the states after a surface that spreads light, by any of its layers, to those known.
+    pub fn spread(&self, state: u16, mesh: u32, is_layered: bool, states: &mut Vec<u16>) {
+        let next = self.next(state, self.class(mesh));
+        for scatter in [Scatter::Diffuse, Scatter::Glossy].into_iter().take(1 + usize::from(is_layered)) {
+            let state = next[scatter as usize];
+            if state != DEAD && !states.contains(&state) {
+                states.push(state);
+            }
+        }
     }
 
     /// Number of a light.

@@ -31,11 +31,12 @@
 
 mod alphabet;
 mod automaton;
+mod ledger;
 mod parse;
 mod trail;
 
 pub(super) use automaton::Table;
-pub(super) use trail::Trail;
+pub(super) use trail::{Brought, Trail};
 
 use crate::error::Result;
 

@@ -5,17 +5,34 @@
 //! by channel. Parts of equal state are one again: there are never more of them than states, and nothing has to be cut
 //! off. Parts that no expression can accept any more are dropped, and a path whose parts have all come to states that
 //! nothing leaves carries them on for free.
+//!
+//! A path that several others will go on along is followed once, from each of the states in which they may come to it.
 
 use super::alphabet::Scatter;
 use super::automaton::{DEAD, Table};
+use super::ledger::Ledger;
 use crate::render::LightSource;
 use crate::render::bsdf::{Kind, Lobes};
 use crate::render::path::Found;
 use crate::render::world::{Pane, World};
 use glam::{Vec3, Vec3A};
 
-/// A state and the share of the path that is in it.
-type Part = (u16, Vec3A);
+/// A share of a path, and the state that it is in.
+#[derive(Clone, Copy)]
+struct Part {
+    /// Where what it brings stands in the ledger: for each state in which the path may have begun, one sum for each list
+    /// of expressions.
+    place: u32,
+    state: u16,
+    share: Vec3A,
+}
+
+/// What is for a list of expressions when a path has begun in a state.
+pub struct Brought {
+    origin: u16,
+    list: u16,
+    light: Vec3A,
+}
 
 pub struct Trail<'a> {
     table: &'a Table,
@@ -27,8 +44,8 @@ pub struct Trail<'a> {
     ends: Vec<Part>,
     /// What stands between a vertex and the light chosen for it.
     panes: Vec<Pane>,
-    /// What the path has brought so far, and the list of the expressions that it is for.
-    brought: Vec<(u16, Vec3A)>,
+    /// What the path has brought so far.
+    brought: Ledger,
     /// What it has brought since it settled, by lights of this number: its parts share in it alike, in the end.
     rest: Vec3A,
     rest_light: usize,
@@ -37,47 +54,60 @@ pub struct Trail<'a> {
 impl<'a> Trail<'a> {
     pub fn new(table: &'a Table) -> Self {
         let [parts, before, ends] = [const { Vec::new() }; 3];
-        let (panes, brought) = (Vec::new(), Vec::new());
+        let (panes, brought) = (Vec::new(), Ledger::default());
         Self { table, parts, settled: false, before, ends, panes, brought, rest: Vec3A::ZERO, rest_light: 0 }
     }
 
     /// A new path leaves the camera.
     #[inline]
     pub fn start(&mut self) {
-        self.start_from(self.table.start());
+        self.start_from(&[self.table.start()]);
     }
 
-    /// A path begins in a state.
-    pub fn start_from(&mut self, state: u16) {
-        self.brought.clear();
+    /// A path begins of which nobody knows yet in which of some states: it is followed from each.
+    #[inline]
+    pub fn start_from(&mut self, origins: &[u16]) {
+        self.brought.begin(origins.len() * self.table.lists().len());
         self.rest = Vec3A::ZERO;
-        self.set_out(state);
+        self.set_out(origins);
     }
 
     /// The path leaves the camera once more, on another way. What it has brought stays.
     #[inline]
     pub fn restart(&mut self) {
         self.share_rest();
-        self.set_out(self.table.start());
+        self.set_out(&[self.table.start()]);
     }
 
-    #[inline]
-    fn set_out(&mut self, state: u16) {
+    #[inline(always)]
+    fn set_out(&mut self, origins: &[u16]) {
+        let lists = self.table.lists().len() as u32;
+        let part = |(i, &state): (usize, &u16)| Part { place: i as u32 * lists, state, share: Vec3A::ONE };
         self.parts.clear();
-        self.parts.push((state, Vec3A::ONE));
-        self.settled = self.table.is_settled(state);
+        self.parts.extend(origins.iter().enumerate().map(part));
+        self.settled = origins.iter().all(|&state| self.table.is_settled(state));
     }
 
-    /// What it has come to: states and their shares.
-    #[inline]
-    pub fn parts(&self) -> &[(u16, Vec3A)] {
-        &self.parts
+    /// The path goes on as one that was followed from every state that it can be in.
+    pub fn follow(&mut self, outcome: &[Brought], importance: Vec3A) {
+        for part in &self.parts {
+            receive(&mut self.brought, part.state, part.share * importance, outcome);
+        }
     }
 
-    /// Notes what was found to come of a part, for a list of expressions.
+    /// The same of a path that leaves the camera once more and goes on from its first surface, of a mesh.
     #[inline]
-    pub fn bring(&mut self, list: u16, contribution: Vec3A) {
-        bring(&mut self.brought, list, contribution);
+    pub fn follow_from(&mut self, mesh: u32, lobes: Lobes, outcome: &[Brought], importance: Vec3A) {
+        let [diffuse, glossy, ..] = *self.table.next(self.table.start(), self.table.class(mesh));
+        match only_layer(lobes) {
+            Some(Scatter::Diffuse) => receive(&mut self.brought, diffuse, importance, outcome),
+            Some(_) => receive(&mut self.brought, glossy, importance, outcome),
+            None => {
+                let share = diffuse_share(lobes);
+                receive(&mut self.brought, diffuse, share * importance, outcome);
+                receive(&mut self.brought, glossy, (Vec3A::ONE - share) * importance, outcome);
+            }
+        }
     }
 
     /// Says which panes stand between a vertex and the light chosen for it, if they matter.
@@ -106,9 +136,9 @@ impl<'a> Trail<'a> {
         };
         match (way, &mut self.parts[..]) {
             // Most paths are still whole.
-            (Some(way), [(state, _)]) => {
-                *state = self.table.next(*state, self.table.class(mesh))[way as usize];
-                self.settled = self.table.is_settled(*state);
+            (Some(way), [part]) => {
+                part.state = self.table.next(part.state, self.table.class(mesh))[way as usize];
+                self.settled = self.table.is_settled(part.state);
             }
             _ => self.divide(mesh, way, lobes),
         }
@@ -120,7 +150,7 @@ impl<'a> Trail<'a> {
         let Self { table, parts, before, .. } = self;
         std::mem::swap(parts, before);
         go_on(table, table.class(mesh), way, lobes, before, parts);
-        self.settled = parts.iter().all(|&(state, _)| table.is_settled(state));
+        self.settled = parts.iter().all(|part| table.is_settled(part.state));
     }
 
     /// The path, or a connection of it, has come to a light, and brings a contribution: each part of it is for the
@@ -147,8 +177,8 @@ impl<'a> Trail<'a> {
     #[inline(never)]
     fn share(&mut self, light: usize, contribution: Vec3A) {
         let Self { table, parts, brought, .. } = self;
-        for &(state, share) in parts.iter() {
-            bring(brought, table.accepting(state, light), share * contribution);
+        for &Part { place, state, share } in parts.iter() {
+            bring(brought, place, table.accepting(state, light), share * contribution);
         }
     }
 
@@ -158,22 +188,22 @@ impl<'a> Trail<'a> {
         let Self { table, parts, brought, .. } = self;
         let class = table.class(mesh);
         if let Some(scatter) = only_layer(lobes) {
-            for &(state, share) in parts.iter() {
+            for &Part { place, state, share } in parts.iter() {
                 let end = table.next(state, class)[scatter as usize];
-                bring(brought, table.accepting(end, light), share * contribution);
+                bring(brought, place, table.accepting(end, light), share * contribution);
             }
             return;
         }
         let diffuse = diffuse_share(lobes) * contribution;
         let glossy = contribution - diffuse;
-        for &(state, share) in parts.iter() {
+        for &Part { place, state, share } in parts.iter() {
             let [one, other, ..] = *table.next(state, class);
             let (one, other) = (table.accepting(one, light), table.accepting(other, light));
             if one == other {
-                bring(brought, one, share * contribution);
+                bring(brought, place, one, share * contribution);
             } else {
-                bring(brought, one, share * diffuse);
-                bring(brought, other, share * glossy);
+                bring(brought, place, one, share * diffuse);
+                bring(brought, place, other, share * glossy);
             }
         }
     }
@@ -191,12 +221,12 @@ impl<'a> Trail<'a> {
             let through = share_of(pane.through, Vec3::splat(pane.beside) + pane.through);
             std::mem::swap(ends, before);
             ends.clear();
-            for &(state, share) in before.iter() {
-                go_two_ways(ends, table.next(state, class)[Scatter::Pane as usize], state, share, through);
+            for part in before.iter() {
+                go_two_ways(ends, part, table.next(part.state, class)[Scatter::Pane as usize], part.state, through);
             }
         }
-        for &(state, share) in ends.iter() {
-            bring(brought, table.accepting(state, light), share * contribution);
+        for &Part { place, state, share } in ends.iter() {
+            bring(brought, place, table.accepting(state, light), share * contribution);
         }
     }
 
@@ -207,21 +237,36 @@ impl<'a> Trail<'a> {
         }
     }
 
-    /// Ends the path: what it has brought, and for which list of expressions.
+    /// Ends the path: gives what it has brought for each list of expressions.
     #[inline]
-    pub fn finish(&mut self) -> &[(u16, Vec3A)] {
+    pub fn finish(&mut self, take: impl FnMut(usize, Vec3A)) {
         self.share_rest();
-        &self.brought
+        self.brought.drain(take);
+    }
+
+    /// The same for one that may have begun in any of some states.
+    pub fn finish_from(&mut self, origins: &[u16], outcome: &mut Vec<Brought>) {
+        let lists = self.table.lists().len();
+        outcome.clear();
+        self.finish(|number, light| {
+            outcome.push(Brought { origin: origins[number / lists], list: (number % lists) as u16, light });
+        });
     }
 }
 
-/// Notes a contribution for a list of expressions.
+/// Notes a contribution of a part for a list of expressions.
 #[inline(always)]
-fn bring(brought: &mut Vec<(u16, Vec3A)>, list: u16, contribution: Vec3A) {
-    match brought.last_mut() {
-        _ if list == 0 => {}
-        Some(last) if last.0 == list => last.1 += contribution,
-        _ => brought.push((list, contribution)),
+fn bring(brought: &mut Ledger, place: u32, list: u16, light: Vec3A) {
+    if list != 0 {
+        brought.add(place as usize + usize::from(list), light);
+    }
+}
+
+/// Notes what came of a path for one of its viewers, who was in a state.
+#[inline(always)]
+fn receive(brought: &mut Ledger, state: u16, importance: Vec3A, outcome: &[Brought]) {
+    for Brought { list, light, .. } in outcome.iter().filter(|b| b.origin == state) {
+        brought.add(usize::from(*list), importance * *light);
     }
 }
 
@@ -241,35 +286,35 @@ fn only_layer(lobes: Lobes) -> Option<Scatter> {
 fn go_on(table: &Table, class: usize, scatter: Option<Scatter>, lobes: Lobes, from: &[Part], to: &mut Vec<Part>) {
     to.clear();
     if let Some(scatter) = scatter {
-        return from.iter().for_each(|&(state, share)| add(to, table.next(state, class)[scatter as usize], share));
+        return from.iter().for_each(|part| add(to, part, table.next(part.state, class)[scatter as usize], part.share));
     }
     let diffuse = diffuse_share(lobes);
-    for &(state, share) in from {
-        let [one, other, ..] = *table.next(state, class);
-        go_two_ways(to, one, other, share, diffuse);
+    for part in from {
+        let [one, other, ..] = *table.next(part.state, class);
+        go_two_ways(to, part, one, other, diffuse);
     }
 }
 
 /// Of a part, the share `first` goes to one state and the rest to another.
 #[inline]
-fn go_two_ways(to: &mut Vec<Part>, one: u16, other: u16, share: Vec3A, first: Vec3A) {
+fn go_two_ways(to: &mut Vec<Part>, part: &Part, one: u16, other: u16, first: Vec3A) {
     if one == other {
-        return add(to, one, share);
+        return add(to, part, one, part.share);
     }
-    let first = share * first;
-    add(to, one, first);
-    add(to, other, share - first);
+    let first = part.share * first;
+    add(to, part, one, first);
+    add(to, part, other, part.share - first);
 }
 
-/// Adds a part, to one of equal state if there is one.
+/// Adds what a part comes to, to one of equal place and state if there is one.
 #[inline(always)]
-fn add(parts: &mut Vec<Part>, state: u16, share: Vec3A) {
+fn add(parts: &mut Vec<Part>, from: &Part, state: u16, share: Vec3A) {
     if state == DEAD {
         return;
     }
-    match parts.iter_mut().find(|part| part.0 == state) {
-        Some(part) => part.1 += share,
-        None => parts.push((state, share)),
+    match parts.iter_mut().find(|part| part.state == state && part.place == from.place) {
+        Some(part) => part.share += share,
+        None => parts.push(Part { state, share, ..*from }),
     }
 }
 

@@ -3,7 +3,7 @@
 use super::*;
 use crate::render::path::{self, Length};
 use crate::render::sampler::Sampler;
-use crate::render::shared::{self, MOST, Start, Tapes};
+use crate::render::shared::{self, MOST, Scratch, Start};
 use crate::render::tape::Sum as Light;
 use crate::scene::accel::Ray;
 
@@ -67,7 +67,7 @@ fn apart(world: &World, rays: &[Ray; MOST], length: Length, trial: u64) -> [Vec3
 
 fn together(world: &World, rays: &[Ray; MOST], length: Length, trial: u64) -> [Vec3; MOST] {
     let mut sums = [Light::default(); MOST];
-    let mut tapes = Tapes::default();
+    let mut scratch = Scratch::default();
     for index in 0..64 {
         let start = |i: usize| {
             let mut sampler = Sampler::new(crate::rng::hash(trial, &[2, i as u64]), index);
@@ -75,7 +75,7 @@ fn together(world: &World, rays: &[Ray; MOST], length: Length, trial: u64) -> [V
             Start { ray: rays[i], lighting: (first.fine(2), first.get(3)), length, sampler }
         };
         let mut starts: [Start; MOST] = std::array::from_fn(start);
-        shared::trace(world, &mut starts, &mut sums, &mut tapes);
+        shared::trace(world, &mut starts, &mut sums, &mut scratch);
     }
     sums.map(|s| s.0 / 64.0)
 }

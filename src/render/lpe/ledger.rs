@@ -1,0 +1,63 @@
+//! Sums of light by number, of which a path touches few.
+
+use glam::Vec3A;
+
+#[derive(Default)]
+pub struct Ledger {
+    sums: Vec<Vec3A>,
+    /// A bit for each sum that may differ from none.
+    touched: Vec<u64>,
+}
+
+impl Ledger {
+    /// Begins anew with as many sums.
+    #[inline]
+    pub fn begin(&mut self, count: usize) {
+        self.drain(|_, _| ());
+        if count > self.sums.len() {
+            self.sums.resize(count, Vec3A::ZERO);
+            self.touched.resize(count.div_ceil(64), 0);
+        }
+    }
+
+    #[inline(always)]
+    pub fn add(&mut self, number: usize, light: Vec3A) {
+        self.sums[number] += light;
+        self.touched[number / 64] |= 1 << (number % 64);
+    }
+
+    /// Takes the sums that were added to, in the order of their numbers.
+    #[inline]
+    pub fn drain(&mut self, mut take: impl FnMut(usize, Vec3A)) {
+        for (word, bits) in self.touched.iter_mut().enumerate() {
+            let mut left = std::mem::take(bits);
+            while left != 0 {
+                let number = 64 * word + left.trailing_zeros() as usize;
+                take(number, std::mem::replace(&mut self.sums[number], Vec3A::ZERO));
+                left &= left - 1;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sums_are_taken_once_in_order_and_nothing_is_left() {
+        let mut ledger = Ledger::default();
+        ledger.begin(200);
+        for (number, light) in [(130, 1.0), (3, 2.0), (64, 4.0), (3, 8.0), (199, 16.0)] {
+            ledger.add(number, Vec3A::splat(light));
+        }
+        let mut taken = Vec::new();
+        ledger.drain(|number, light| taken.push((number, light.x)));
+        assert_eq!(taken, [(3, 10.0), (64, 4.0), (130, 1.0), (199, 16.0)]);
+        ledger.drain(|number, _| panic!("{number} was taken before"));
+        // What was left behind does not show in the next.
+        ledger.add(5, Vec3A::ONE);
+        ledger.begin(10);
+        ledger.drain(|number, _| panic!("{number} was forgotten"));
+    }
+}
