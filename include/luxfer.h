@@ -1824,8 +1824,10 @@ typedef struct luxfer_luminaire {
     double flux_share;
     /** Mean linear colour, relative to the photo's white. */
     float colour[3];
-    /** 0. */
-    uint32_t reserved;
+    /**
+     * Number of its kind, from 1, those with most lamps first: lamps of about the same size and shape. 0 if the border cuts it.
+     */
+    uint32_t kind;
 } luxfer_luminaire;
 
 /** The texture: linear RGB relative to the photo's white, 0 where there is no lamp. */
@@ -3694,8 +3696,8 @@ typedef struct luxfer_fixture {
     float axis[3];
     /** Mean luminance per channel in cd/m². */
     float radiance[3];
-    /** 0. */
-    uint32_t reserved;
+    /** Number of its kind, as of luxfer_luminaire. */
+    uint32_t kind;
     /** Lengths along and across the axis in metres. */
     double size[2];
     /** Area in m². */

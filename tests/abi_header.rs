@@ -359,7 +359,7 @@ layouts! {
     luxfer_emission_params: struct_size width height block scale working_side metadata_weight seed least_regularity
         whole_lamps offset clip_level even_lamps tileable centred;
     luxfer_emission_report: struct_size luminaires error regularity exemplar_lamps sampling_error;
-    luxfer_luminaire: struct_size corners centre size orientation area flux_share colour reserved;
+    luxfer_luminaire: struct_size corners centre size orientation area flux_share colour kind;
     luxfer_requirements: struct_size scattering lights textures bounces brightest_material albedo
         flat_triangles;
     luxfer_render_params: struct_size width height samples target_error time_budget_ms seed pixel_error bounce_error
@@ -405,5 +405,5 @@ layouts! {
         broken_source broken_target;
     luxfer_stylize_round: struct_size passes energy;
     luxfer_stylize_pass: struct_size reserved knee coverage gained;
-    luxfer_fixture: struct_size position normal axis radiance reserved size area flux cct duv;
+    luxfer_fixture: struct_size position normal axis radiance kind size area flux cct duv;
 }

@@ -8,7 +8,7 @@
 use super::blend::Style;
 use super::lamps::Instance;
 use super::plan::{Layer, Plan, exemplars};
-use super::{Continuation, Input, Luminaire, luminaires, recover, sweep};
+use super::{Continuation, Input, Luminaire, kinds, luminaires, recover, sweep};
 use crate::error::Result;
 use crate::geometry::polygon;
 use crate::image::colour::luminance;
@@ -58,8 +58,30 @@ impl LampList {
             }
         }
         list.others = sweep::find(plan, input, styles, job)?;
+        list.tell_kinds(plan);
         list.flux += list.others.iter().map(flux).sum::<f64>();
         Ok(list)
+    }
+
+    /// Tells the kinds of all exemplars' lamps that are shown, and of lights that are none.
+    fn tell_kinds(&mut self, plan: &Plan) {
+        let mut counts: Vec<Vec<usize>> = self.shapes.iter().map(|shapes| vec![0; shapes.len()]).collect();
+        for (k, instance) in &self.shown {
+            let is_whole = plan.layers[*k as usize].exemplar.whole[instance.component];
+            counts[*k as usize][instance.component] += usize::from(is_whole);
+        }
+        // All in texels.
+        let size = DVec2::new(plan.width as f64, plan.height as f64);
+        let factors = plan.layers.iter().map(|layer| 1.0 / layer.scale);
+        let shown = |(shapes, factor): (&Vec<Luminaire>, f64)| {
+            shapes.iter().map(|shape| shape.moved(DVec2::ZERO, factor)).collect::<Vec<_>>()
+        };
+        let mut lamps: Vec<Luminaire> = self.shapes.iter().zip(factors).flat_map(shown).collect();
+        lamps.extend(self.others.iter().cloned());
+        let counts = counts.into_iter().flatten().chain(self.others.iter().map(|l| usize::from(l.is_within(size))));
+        kinds::tell(lamps.iter_mut().zip(counts));
+        let listed = self.shapes.iter_mut().flatten().chain(&mut self.others);
+        listed.zip(lamps).for_each(|(lamp, told)| lamp.kind = told.kind);
     }
 
     /// How many there are.
@@ -83,14 +105,7 @@ impl LampList {
         let shape = &self.shapes[k][instance.component];
         let shift = layer.rounded(instance.shift);
         let size = DVec2::new(plan.width as f64, plan.height as f64);
-        let outline: Vec<DVec2> = shape.outline.iter().map(|p| (*p + shift) / layer.scale).collect();
-        let whole = Luminaire {
-            centre: (shape.centre + shift) / layer.scale,
-            size: shape.size / layer.scale,
-            area: shape.area / layer.scale.powi(2),
-            outline,
-            ..shape.clone()
-        };
+        let whole = shape.moved(shift, 1.0 / layer.scale);
         // Copied lights are dimmed by the exemplar's weight; others are there or not.
         let whole = match layer.continuation {
             Continuation::Copy => Luminaire { colour: whole.colour * plan.weights.at(k, whole.centre / size), ..whole },
@@ -116,7 +131,7 @@ fn within(lamp: Luminaire, size: DVec2) -> Luminaire {
     let left = polygon::area(&outline).abs();
     let share = if all > 0.0 { (left / all).min(1.0) } else { 0.0 };
     if share <= 0.0 {
-        return Luminaire { area: 0.0, outline: Vec::new(), ..lamp };
+        return Luminaire { area: 0.0, outline: Vec::new(), kind: 0, ..lamp };
     }
     let axis = DVec2::from_angle(lamp.orientation);
     let extent = |axis: DVec2| {
@@ -129,7 +144,7 @@ fn within(lamp: Luminaire, size: DVec2) -> Luminaire {
         angle if size.x >= size.y => (size, angle),
         angle => (size.yx(), if angle > 0.0 { angle - quarter } else { angle + quarter }),
     };
-    Luminaire { centre: centroid(&outline), size, orientation, area: lamp.area * share, outline, ..lamp }
+    Luminaire { centre: centroid(&outline), size, orientation, area: lamp.area * share, outline, kind: 0, ..lamp }
 }
 
 /// The centre of what a polygon encloses.

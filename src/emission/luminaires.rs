@@ -1,7 +1,7 @@
 //! The lamps of the texture as a list: what lighting software wants besides pixels.
 
-use super::Luminaire;
 use super::components::{self, Component, Components};
+use super::{Luminaire, kinds};
 use crate::error::Result;
 use crate::image::Image;
 use crate::image::colour::luminance;
@@ -72,7 +72,7 @@ pub fn components(mask: &Image) -> Result<Components> {
 pub fn find(texture: &Image, found: &Components, job: Job) -> Result<Vec<Luminaire>> {
     let (width, height) = (texture.width, texture.height);
     let total = texture.data.chunks_exact(3).map(|p| f64::from(luminance(Vec3::from_slice(p)))).sum::<f64>();
-    found
+    let lamps: Result<Vec<Luminaire>> = found
         .list
         .iter()
         .enumerate()
@@ -84,7 +84,13 @@ pub fn find(texture: &Image, found: &Components, job: Job) -> Result<Vec<Luminai
             };
             Ok(measure(lamp, texture, total, &is_in))
         })
-        .collect()
+        .collect();
+    let (mut lamps, size) = (lamps?, DVec2::new(width as f64, height as f64));
+    kinds::tell(lamps.iter_mut().map(|lamp| {
+        let count = usize::from(lamp.is_within(size));
+        (lamp, count)
+    }));
+    Ok(lamps)
 }
 
 fn measure(lamp: &Component, texture: &Image, total: f64, is_in: &dyn Fn(isize, isize) -> bool) -> Luminaire {
@@ -122,6 +128,7 @@ fn measure(lamp: &Component, texture: &Image, total: f64, is_in: &dyn Fn(isize, 
         colour: colour.as_vec3(),
         flux_share: if total > 0.0 { flux / total } else { 0.0 },
         outline: outline(lamp, is_in),
+        kind: 0,
     }
 }
 

@@ -9,7 +9,7 @@
 //! 3. [`metadata`]: confidence and signed x and y distance to the nearest light.
 //! 4. [`patches`]: quilting over colour and metadata with minimum-error [`seam`]s, held to the lattice.
 //! 5. [`lamps`]: every lamp that patches show becomes one piece again; no seam cuts it.
-//! 6. [`recover`]: full detail from the photo. 7. [`luminaires`]: the lamps as a list. 8. [`statistics`]: how far the
+//! 6. [`recover`]: full detail from the photo. 7. [`luminaires`]: the lamps as a list, by [`kinds`]. 8. [`statistics`]: how far the
 //!    texture's are from the exemplar's, and how far by [`sampling`] alone; and by [`pairs`] of lamps.
 //! 9. [`lamp_list`]: the lamps of a plan, whose texture is never there as a whole; [`mod@sweep`]: its lights that are none.
 //!
@@ -29,6 +29,7 @@ mod components;
 mod correlation;
 mod exemplar;
 mod ground;
+mod kinds;
 mod lamp_list;
 mod lamps;
 mod layout;
@@ -157,6 +158,26 @@ pub struct Luminaire {
     pub flux_share: f64,
     /// Corners of the outline in texels.
     pub outline: Vec<DVec2>,
+    /// Number of its kind ([`kinds`]), from 1, those with most lamps first; 0 of a lamp that the border cuts.
+    pub kind: u32,
+}
+
+impl Luminaire {
+    /// The same shown elsewhere, and larger by a factor.
+    fn moved(&self, shift: DVec2, factor: f64) -> Self {
+        Self {
+            centre: (self.centre + shift) * factor,
+            size: self.size * factor,
+            area: self.area * factor * factor,
+            outline: self.outline.iter().map(|p| (*p + shift) * factor).collect(),
+            ..self.clone()
+        }
+    }
+
+    /// Whether nothing of it can lie beyond the border of a texture of a size.
+    fn is_within(&self, size: DVec2) -> bool {
+        self.outline.iter().all(|p| p.cmpgt(DVec2::ZERO).all() && p.cmplt(size).all())
+    }
 }
 
 #[derive(Clone, Debug)]

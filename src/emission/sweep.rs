@@ -201,6 +201,7 @@ impl Light {
             colour: (self.colours / self.area).as_vec3(),
             flux_share: 0.0,
             outline: simplified(ring, size.min_element()),
+            kind: 0,
         }
     }
 }

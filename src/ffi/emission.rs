@@ -178,8 +178,8 @@ pub struct luxfer_luminaire {
     pub flux_share: f64,
     /// Mean linear colour, relative to the photo's white.
     pub colour: [f32; 3],
-    /// 0.
-    pub reserved: u32,
+    /// Number of its kind, from 1, those with most lamps first: lamps of about the same size and shape. 0 if the border cuts it.
+    pub kind: u32,
 }
 
 // SAFETY: plain numbers.
@@ -196,7 +196,7 @@ unsafe impl Versioned for luxfer_luminaire {
             area: 0.0,
             flux_share: 0.0,
             colour: [0.0; 3],
-            reserved: 0,
+            kind: 0,
         }
     }
 }
@@ -465,6 +465,7 @@ pub unsafe extern "C" fn luxfer_emission_get_luminaire(
             area: lamp.area,
             flux_share: lamp.flux_share,
             colour: lamp.colour.to_array(),
+            kind: lamp.kind,
             ..luxfer_luminaire::defaults()
         });
         Ok(())

@@ -160,8 +160,8 @@ pub struct luxfer_fixture {
     pub axis: [f32; 3],
     /// Mean luminance per channel in cd/m².
     pub radiance: [f32; 3],
-    /// 0.
-    pub reserved: u32,
+    /// Number of its kind, as of luxfer_luminaire.
+    pub kind: u32,
     /// Lengths along and across the axis in metres.
     pub size: [f64; 2],
     /// Area in m².
@@ -185,7 +185,7 @@ unsafe impl Versioned for luxfer_fixture {
             normal: [0.0; 3],
             axis: [0.0; 3],
             radiance: [0.0; 3],
-            reserved: 0,
+            kind: 0,
             size: [0.0; 2],
             area: 0.0,
             flux: 0.0,
@@ -332,6 +332,7 @@ pub unsafe extern "C" fn luxfer_transfer_get_fixture(
             flux: lamp.flux,
             cct: lamp.cct,
             duv: lamp.duv,
+            kind: lamp.kind,
             ..luxfer_fixture::defaults()
         });
         Ok(())

@@ -30,6 +30,8 @@ pub struct Fixture {
     /// ([`crate::photometry::temperature::Temperature`]); 0 for a lamp that is off.
     pub cct: f64,
     pub duv: f64,
+    /// Number of its kind, as of [`crate::emission::Luminaire`].
+    pub kind: u32,
     /// Corners of the outline in metres.
     pub outline: Vec<Vec3>,
 }
@@ -73,6 +75,7 @@ fn fixture(emission: &Emission, lit: &LitScene, lamp: &crate::emission::Luminair
         flux: PI * f64::from(luminance(radiance)) * area,
         cct: temperature.map_or(0.0, |t| t.kelvin),
         duv: temperature.map_or(0.0, |t| t.duv),
+        kind: lamp.kind,
         outline: lamp.outline.iter().map(|&corner| on_surface(corner)).collect(),
     }
 }

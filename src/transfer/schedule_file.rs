@@ -6,7 +6,7 @@ use super::Fixture;
 use glam::Vec3;
 use std::fmt::Write;
 
-const COLUMNS: [&str; 18] = [
+const COLUMNS: [&str; 19] = [
     "x_m",
     "y_m",
     "z_m",
@@ -25,13 +25,15 @@ const COLUMNS: [&str; 18] = [
     "flux_lm",
     "cct_k",
     "duv",
+    "kind",
 ];
 
-fn row(fixture: &Fixture) -> [f64; 18] {
+fn row(fixture: &Fixture) -> [f64; 19] {
     let [p, n, a, r] =
         [fixture.position, fixture.normal, fixture.axis, fixture.radiance].map(|v: Vec3| v.as_dvec3().to_array());
     let size = fixture.size;
-    let tail = [size.x, size.y, fixture.area, r[0], r[1], r[2], fixture.flux, fixture.cct, fixture.duv];
+    let kind = f64::from(fixture.kind);
+    let tail = [size.x, size.y, fixture.area, r[0], r[1], r[2], fixture.flux, fixture.cct, fixture.duv, kind];
     std::array::from_fn(|i| match i / 3 {
         0 => p[i],
         1 => n[i - 3],
@@ -90,6 +92,7 @@ mod tests {
             flux: 4321.123456789,
             cct: 3000.0,
             duv: -0.0012,
+            kind: 2,
             outline: vec![Vec3::ZERO, Vec3::X, Vec3::Z],
         }
     }
@@ -100,7 +103,7 @@ mod tests {
         let lines: Vec<&str> = csv.lines().collect();
         assert_eq!(lines.len(), 3);
         assert!(lines.iter().all(|l| l.split(',').count() == COLUMNS.len()), "{csv}");
-        assert_eq!(lines[1], "0.1,2.5,-1,0,-1,0,1,0,0,1.2,0.3,0.36,5000,4000,0.3333333,4321.123,3000,-0.0012");
+        assert_eq!(lines[1], "0.1,2.5,-1,0,-1,0,1,0,0,1.2,0.3,0.36,5000,4000,0.3333333,4321.123,3000,-0.0012,2");
         assert!(lines[2].split(',').all(|v| v.parse::<f64>().is_ok()));
         assert_eq!(to_csv(&[]).lines().count(), 1);
     }

@@ -667,7 +667,7 @@ class luxfer_luminaire(Structure):
         ("area", c_double),
         ("flux_share", c_double),
         ("colour", c_float * 3),
-        ("reserved", c_uint32),
+        ("kind", c_uint32),
     ]
     result = types.Luminaire
 
@@ -1069,7 +1069,7 @@ class luxfer_fixture(Structure):
         ("normal", c_float * 3),
         ("axis", c_float * 3),
         ("radiance", c_float * 3),
-        ("reserved", c_uint32),
+        ("kind", c_uint32),
         ("size", c_double * 2),
         ("area", c_double),
         ("flux", c_double),

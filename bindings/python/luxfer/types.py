@@ -1161,6 +1161,9 @@ class Luminaire:
     """Share of the light of the whole texture, in [0, 1]."""
     colour: tuple[float, float, float]
     """Mean linear colour, relative to the photo's white."""
+    kind: int
+    """Number of its kind, from 1, those with most lamps first: lamps of about the same size and shape. 0 if the
+    border cuts it."""
 
 
 class RenderParams(TypedDict, total=False):
@@ -1659,6 +1662,8 @@ class Fixture:
     """Unit direction of its long axis."""
     radiance: tuple[float, float, float]
     """Mean luminance per channel in cd/m²."""
+    kind: int
+    """Number of its kind, as of Luminaire."""
     size: tuple[float, float]
     """Lengths along and across the axis in metres."""
     area: float

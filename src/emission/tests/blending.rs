@@ -49,6 +49,9 @@ fn lamps_and_light_follow_the_weights() {
         // Each lamp is whole, of one kind or the other.
         let is_whole = |l: &&Luminaire| (l.area - square).abs() < 20.0 || (l.area - round).abs() < 20.0;
         assert!(lamps.iter().all(is_whole), "{start} {weight}");
+        // Both are listed as kinds, that with more lamps first.
+        let of_rounds = if rounds > 0.5 * lamps.len() as f64 { 1 } else { 2 };
+        assert!(lamps.iter().all(|l| (l.kind == of_rounds) == (l.area > 300.0) && (1..=2).contains(&l.kind)));
         // Draws are independent: three standard deviations of their number.
         let weight = f64::from(weight);
         let places = 900.0;

@@ -94,6 +94,7 @@ fn a_plan_lists_the_lamps_that_its_texture_shows() {
             // What is left of a lamp at the border is measured along the axes of the whole.
             let size_off = (same.size - lamp.size).abs().max_element();
             assert!(!is_inside || size_off < 2.5, "{} {}", same.size, lamp.size);
+            assert!(!is_inside || (same.kind, lamp.kind) == (1, 1), "{} {}", same.kind, lamp.kind);
         }
     }
 }

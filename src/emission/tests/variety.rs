@@ -100,6 +100,11 @@ fn scattered_lamps_among_those_of_a_lattice_stay_whole_and_it_in_step() {
     let (squares, round): (Vec<&Luminaire>, Vec<&Luminaire>) = lamps.into_iter().partition(|l| l.area > 150.0);
     assert!(squares.iter().all(|l| (l.area - 256.0).abs() < 30.0), "a square lamp is cut or has met another");
     assert!(round.iter().all(|l| (40.0..62.0).contains(&l.area)), "a round lamp is cut or has met another");
+    // Two kinds, and each lamp of one.
+    assert!(squares.iter().all(|l| l.kind == squares[0].kind) && round.iter().all(|l| l.kind == round[0].kind));
+    let mut kinds = [squares[0].kind, round[0].kind];
+    kinds.sort_unstable();
+    assert_eq!(kinds, [1, 2]);
     let centres: Vec<DVec2> = squares.iter().map(|l| l.centre).collect();
     assert!(statistics::phase(&centres, [DVec2::X * 48.0, DVec2::Y * 48.0]) < 0.02);
     let cells = (1152.0 / 48.0) * (1056.0 / 48.0);
