@@ -55,6 +55,8 @@ const ARROWS: &[(&str, &[&str])] = &[
 const UNSAFE: &[&str] = &[
     "simd.rs",
     "image/pages.rs",
+    "rectify/four.rs",
+    "rectify/gather.rs",
     "scene/accel/cluster.rs",
     "scene/accel/lanes.rs",
     "scene/accel/lines.rs",

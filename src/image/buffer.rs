@@ -1,6 +1,6 @@
 //! The owned image.
 
-use super::pages::prefer_huge;
+use super::pages::{prefer_huge, zeros};
 use crate::error::{Error, ErrorKind, Result};
 use glam::Vec3;
 
@@ -61,7 +61,8 @@ impl Image {
         if channels == 0 || channels > 64 {
             return Err(Error::argument(format!("image has {channels} channels; it must have 1 to 64")));
         }
-        Ok(Self { width, height, channels, data: try_vec(width * height * channels, 0.0)? })
+        let len = width * height * channels;
+        Ok(Self { width, height, channels, data: zeros(len).ok_or_else(|| no_memory::<f32>(len))? })
     }
 
     /// A copy, or an error where there is no memory for it.

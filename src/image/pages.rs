@@ -1,6 +1,7 @@
 //! Huge pages for large buffers: the first touch of a small page costs the system as much as hundreds of operations, and there
 //! are ten thousand of them in ten channels of a megapixel.
 
+use std::alloc::{Layout, alloc_zeroed};
 use std::mem::MaybeUninit;
 
 /// Bytes of a huge page.
@@ -21,4 +22,21 @@ pub(crate) fn prefer_huge<T>(room: &[MaybeUninit<T>]) {
     }
     #[cfg(not(target_os = "linux"))]
     let _ = room;
+}
+
+/// Zeros, or `None` where there is no room for so many: fresh memory is zero as it comes, so that the system clears each page
+/// only when it is first written to, and for the thread that does.
+pub(crate) fn zeros(len: usize) -> Option<Vec<f32>> {
+    let layout = Layout::array::<f32>(len).ok().filter(|layout| layout.size() > 0);
+    let Some(layout) = layout else { return (len == 0).then(Vec::new) };
+    // SAFETY: the layout has a size. What is allocated belongs to nobody else, has room for `len` numbers, aligned as they
+    // are, and all of them are written: no bits are 0.
+    unsafe {
+        let start = alloc_zeroed(layout).cast::<f32>();
+        if start.is_null() {
+            return None;
+        }
+        prefer_huge(std::slice::from_raw_parts(start.cast::<MaybeUninit<f32>>(), len));
+        Some(Vec::from_raw_parts(start, len, len))
+    }
 }

@@ -1,7 +1,7 @@
 //! What the pixels of a run see of the source: where, and how much of it.
 
 /// Neighbouring pixels of a row that are worked on together.
-pub const RUN: usize = 64;
+pub const RUN: usize = 128;
 
 /// Neighbours that share the footprint in their middle, which changes more slowly than the place.
 const SHARED: usize = 8;

@@ -1,140 +1,89 @@
 //! Weighted sums of the samples about the pixels of a run.
-//!
-//! Four samples side by side of three channels are three vectors, of one channel one. The columns of all pixels are
-//! summed before any are added up: by then they lie in memory, where the vectors can be cut anew.
 
 use super::footprint::RUN;
+use super::four::{Four, One, Three};
 use super::taps::{TAPS, Taps};
 use crate::image::Image;
-use glam::{Vec4, Vec4Swizzles};
+use crate::simd::Level;
+use glam::Vec4;
 
-/// Vectors to a pixel.
-const PARTS: usize = 3;
+/// Up to three channels of each pixel; the lanes beyond mean nothing.
+pub type Sums = [Vec4; RUN];
 
-/// One more than there are, because the last pixel's last column is read with what follows.
-const LENGTH: usize = PARTS * RUN + 1;
-
-/// Weighted sums of each column of samples of each pixel, and the range of the samples, for each channel.
-pub struct Sums {
-    sum: [Vec4; LENGTH],
-    low: [Vec4; LENGTH],
-    high: [Vec4; LENGTH],
-}
-
-impl Sums {
-    pub const EMPTY: Self = Self { sum: [Vec4::ZERO; LENGTH], low: [Vec4::ZERO; LENGTH], high: [Vec4::ZERO; LENGTH] };
-}
-
-/// Four samples at once.
+/// Adds the samples of all channels of an image of one or three, else of one of them.
 #[inline(always)]
-fn four(samples: &[f32]) -> Vec4 {
-    bytemuck::pod_read_unaligned(bytemuck::cast_slice(&samples[..4]))
-}
-
-/// The weights of four columns for vector `k` of the samples of `N` channels.
-#[inline(always)]
-fn spread<const N: usize>(weights: Vec4, k: usize) -> Vec4 {
-    match (N, k) {
-        (1, _) => weights,
-        (_, 0) => weights.xxxy(),
-        (_, 1) => weights.yyzz(),
-        _ => weights.zwww(),
-    }
-}
-
-/// Images of one channel or of three.
-#[inline(always)]
-fn gather<const N: usize>(
-    source: &Image,
-    taps: &Taps,
-    is_sharp: bool,
-    is_sheared: bool,
-    is_seen: &[bool; RUN],
-    is_first: bool,
-    to: &mut Sums,
-) {
-    for i in 0..RUN {
-        if !taps.is_inside[i] {
-            if is_seen[i] {
-                one_by_one(source, 0..N, taps, i, is_first, to);
-            }
-            continue;
-        }
-        let (mut sum, mut low, mut high) = ([Vec4::ZERO; N], [Vec4::INFINITY; N], [Vec4::NEG_INFINITY; N]);
-        let line = taps.line[i] as usize;
-        for j in 0..TAPS {
-            let column = taps.column[if is_sheared { j } else { 0 }][i] as usize;
-            let samples = &source.data[N * ((line + j) * source.width + column)..][..N * TAPS];
-            let down = taps.down[i][j];
-            let weights = if is_sheared { four(&taps.across[j][i]) * down } else { Vec4::splat(down) };
-            for k in 0..N {
-                let values = four(&samples[4 * k..4 * k + 4]);
-                sum[k] += values * if is_sheared { spread::<N>(weights, k) } else { weights };
-                if is_sharp {
-                    (low[k], high[k]) = (low[k].min(values), high[k].max(values));
-                }
-            }
-        }
-        let across = four(&taps.across[0][i]);
-        for k in 0..N {
-            let at = PARTS * i + k;
-            let sum = if is_sheared { sum[k] } else { sum[k] * spread::<N>(across, k) };
-            to.sum[at] = if is_first { sum } else { to.sum[at] + sum };
-            if is_sharp {
-                (to.low[at], to.high[at]) = (low[k], high[k]);
-            }
-        }
-    }
-}
-
-/// Any channels of pixel `i`, the border of the image extended.
-#[cold]
-#[inline(never)]
-fn one_by_one(source: &Image, channels: std::ops::Range<usize>, taps: &Taps, i: usize, is_first: bool, to: &mut Sums) {
-    let count = channels.len();
-    let Sums { sum, low, high } = to;
-    let [sum, low, high] = [sum, low, high].map(|v| &mut bytemuck::cast_slice_mut::<Vec4, f32>(v)[4 * PARTS * i..]);
-    let clamp = |at: i32, side: usize| at.clamp(0, side as i32 - 1) as usize;
-    for k in 0..TAPS {
-        for (c, channel) in channels.clone().enumerate() {
-            let (mut column, mut least, mut most) = (0.0, f32::INFINITY, f32::NEG_INFINITY);
-            for j in 0..TAPS {
-                let row = if taps.is_sheared { j } else { 0 };
-                let x = clamp(taps.column[row][i] + k as i32, source.width);
-                let value = source.row(clamp(taps.line[i] + j as i32, source.height))[x * source.channels + channel];
-                (least, most) = (least.min(value), most.max(value));
-                column += value * (taps.across[row][i][k] * taps.down[i][j]);
-            }
-            let at = count * k + c;
-            sum[at] = if is_first { column } else { sum[at] + column };
-            (low[at], high[at]) = (least, most);
-        }
-    }
-}
-
-/// Adds the samples of all channels of an image of one or three, else of one of them; the first sum takes the place of
-/// what was there.
-#[inline(always)]
-pub fn sum(source: &Image, channel: usize, taps: &Taps, is_seen: &[bool; RUN], is_first: bool, to: &mut Sums) {
-    match (source.channels, taps.is_sharp, taps.is_sheared) {
-        (1, sharp, sheared) => gather::<1>(source, taps, sharp, sheared, is_seen, is_first, to),
-        (3, true, true) => gather::<3>(source, taps, true, true, is_seen, is_first, to),
-        (3, true, false) => gather::<3>(source, taps, true, false, is_seen, is_first, to),
-        (3, false, true) => gather::<3>(source, taps, false, true, is_seen, is_first, to),
-        (3, false, false) => gather::<3>(source, taps, false, false, is_seen, is_first, to),
+pub fn sum(level: Level, source: &Image, channel: usize, taps: &Taps, is_seen: &[bool; RUN], to: &mut Sums) {
+    match (source.channels, level) {
+        (1, _) => gather::<One>(source, taps, to),
+        // SAFETY: the processor has the instructions of its level.
+        #[cfg(target_arch = "x86_64")]
+        (3, Level::Avx512) => unsafe { gather_wide(source, taps, to) },
+        (3, _) => gather::<Three>(source, taps, to),
         _ => {
             for i in (0..RUN).filter(|&i| is_seen[i]) {
-                one_by_one(source, channel..channel + 1, taps, i, is_first, to);
+                one_by_one(source, channel..channel + 1, taps, i, to);
             }
+            return;
+        }
+    }
+    if taps.is_inside != *is_seen {
+        for i in (0..RUN).filter(|&i| is_seen[i] && !taps.is_inside[i]) {
+            one_by_one(source, 0..source.channels, taps, i, to);
         }
     }
 }
 
-/// The four columns of a pixel, for each of three channels.
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
+fn gather_wide(source: &Image, taps: &Taps, to: &mut Sums) {
+    gather::<super::four::Wide>(source, taps, to);
+}
+
+/// The pixels all of whose samples lie inside the source.
 #[inline(always)]
-fn columns(of: &[Vec4; LENGTH], i: usize) -> [Vec4; TAPS] {
-    let flat: &[f32] = &bytemuck::cast_slice(of)[4 * PARTS * i..][..4 * PARTS + 1];
-    [four(flat), four(&flat[3..]), four(&flat[6..]), four(&flat[9..])]
+fn gather<F: Four>(source: &Image, taps: &Taps, to: &mut Sums) {
+    match (taps.is_sharp, taps.is_sheared) {
+        (true, true) => gather_as::<F>(source, taps, true, true, to),
+        (true, false) => gather_as::<F>(source, taps, true, false, to),
+        (false, true) => gather_as::<F>(source, taps, false, true, to),
+        (false, false) => gather_as::<F>(source, taps, false, false, to),
+    }
+}
+
+// Loops without closures: those are functions of their own, which the compiler will not inline where it does not know yet
+// which instructions there are.
+#[inline(always)]
+fn gather_as<F: Four>(source: &Image, taps: &Taps, is_sharp: bool, is_sheared: bool, to: &mut Sums) {
+    let (samples, stride) = (&source.data[..], source.row_len());
+    assert!(source.channels == F::CHANNELS && samples.len() == source.height * stride);
+    for i in 0..RUN {
+        if !taps.is_inside[i] {
+            continue;
+        }
+        // Maps seldom turn much: the next row's pixel lies below, and the processor cannot foresee that.
+        let below = samples.as_ptr().wrapping_add(taps.start[0][i] + TAPS * stride);
+        F::prefetch(below);
+        F::prefetch(below.wrapping_add(stride));
+
+        let (mut sum, mut low, mut high) = (F::splat(0.0), F::splat(0.0), F::splat(0.0));
+        for j in 0..TAPS {
+            let start = if is_sheared { taps.start[j][i] } else { taps.start[0][i] + j * stride };
+            debug_assert!(start + F::READ <= samples.len());
+            // SAFETY: that is what `is_inside` says, of an image of so many channels.
+            let row = unsafe { F::load(samples.as_ptr().add(start)) };
+            let weights = if is_sheared { F::spread(&taps.across[j][i]) } else { F::splat(taps.down[i][j]) };
+            let weighed = row.mul(weights);
+            sum = if j == 0 { weighed } else { sum.add(weighed) };
+            if is_sharp {
+                (low, high) = if j == 0 { (row, row) } else { (low.min(row), high.max(row)) };
+            }
+        }
+        if !is_sheared {
+            sum = sum.mul(F::spread(&taps.across[0][i]));
+        }
+        let value = sum.sum();
+        to[i] += if is_sharp { within(value, low.least(), high.greatest()) } else { value };
+    }
 }
 
 /// `value` within the range of the samples, so that a lamp throws no ring of negative light; NaN stays.
@@ -144,42 +93,43 @@ fn within(value: Vec4, low: Vec4, high: Vec4) -> Vec4 {
     Vec4::select(raised.cmpgt(high), high, raised)
 }
 
-/// Writes the means of `parts` sums to the pixels that are seen: three channels, or one of any number.
+/// Some channels of pixel `i`, the border of the image extended.
+#[cold]
+#[inline(never)]
+fn one_by_one(source: &Image, channels: std::ops::Range<usize>, taps: &Taps, i: usize, to: &mut Sums) {
+    let clamp = |at: i32, side: usize| at.clamp(0, side as i32 - 1) as usize;
+    for (c, channel) in channels.enumerate() {
+        let (mut columns, mut low, mut high) = ([0.0; TAPS], f32::INFINITY, f32::NEG_INFINITY);
+        for j in 0..TAPS {
+            let row = source.row(clamp(taps.line[i] + j as i32, source.height));
+            for (k, column) in columns.iter_mut().enumerate() {
+                let value = row[clamp(taps.column[j][i] + k as i32, source.width) * source.channels + channel];
+                *column += value * taps.weight(i, j, k);
+                (low, high) = (low.min(value), high.max(value));
+            }
+        }
+        let value = Vec4::splat((columns[0] + columns[2]) + (columns[1] + columns[3]));
+        to[i][c] += if taps.is_sharp { within(value, Vec4::splat(low), Vec4::splat(high)) } else { value }.x;
+    }
+}
+
+/// Writes the means of `parts` sums: three channels, or one of any number.
 #[inline(always)]
-pub fn store(
-    sums: &Sums,
-    parts: usize,
-    is_sharp: bool,
-    is_seen: &[bool; RUN],
-    channels: usize,
-    channel: usize,
-    out: &mut [f32],
-) {
+pub fn store(sums: &Sums, parts: usize, channels: usize, channel: usize, mut out: &mut [f32]) {
     let share = 1.0 / parts as f32;
     if channels == 3 {
-        for (i, pixel) in out.chunks_exact_mut(3).enumerate().filter(|(i, _)| is_seen[*i]) {
-            let [a, b, c, d] = columns(&sums.sum, i);
-            let mut value = ((a + b) + (c + d)) * share;
-            if is_sharp {
-                let [a, b, c, d] = columns(&sums.low, i);
-                let low = a.min(b).min(c.min(d));
-                let [a, b, c, d] = columns(&sums.high, i);
-                value = within(value, low, a.max(b).max(c.max(d)));
+        for sum in &sums[..out.len() / 3] {
+            let four = (*sum * share).to_array();
+            // The next pixel takes the place of the fourth.
+            match out.first_chunk_mut() {
+                Some(place) => *place = four,
+                None => out.copy_from_slice(&four[..3]),
             }
-            (pixel[0], pixel[1], pixel[2]) = (value.x, value.y, value.z);
+            out = &mut out[3..];
         }
     } else {
-        for (i, pixel) in out.chunks_exact_mut(channels).enumerate().filter(|(i, _)| is_seen[*i]) {
-            let [a, b, c, d] = sums.sum[PARTS * i].to_array();
-            let value = ((a + b) + (c + d)) * share;
-            let (low, high) = (sums.low[PARTS * i].min_element(), sums.high[PARTS * i].max_element());
-            pixel[channel] = if is_sharp && value < low {
-                low
-            } else if is_sharp && value > high {
-                high
-            } else {
-                value
-            };
+        for (pixel, sum) in out.chunks_exact_mut(channels).zip(sums) {
+            pixel[channel] = sum.x * share;
         }
     }
 }

@@ -26,6 +26,7 @@
 mod camera;
 pub mod canny;
 mod footprint;
+mod four;
 mod gather;
 pub mod gradient;
 pub mod hough;

@@ -6,15 +6,15 @@
 //! still longer than the samples that are taken at once is cut into equal parts, as in Feline (McCormack et al. 1999).
 
 use super::footprint::{Footprints, RUN, extent, locate};
-use super::gather::{Sums, store, sum};
+use super::gather::{store, sum};
 use super::taps::{LONGEST_SIDE, Part, Taps, weigh};
 use crate::error::{Error, Result};
 use crate::exec;
 use crate::geometry::Homography;
 use crate::image::{Image, pyramid};
 use crate::job::Job;
-use crate::simd::widest;
-use glam::DVec2;
+use crate::simd::{Level, widest};
+use glam::{DVec2, Vec4};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Most parts of a footprint for which no smaller level is taken, and most along a side where there is none.
@@ -54,7 +54,7 @@ pub fn warp(source: &Image, to_source: &Homography, width: usize, height: usize,
     let job = job.part(0.2, 1.0);
     let done = AtomicUsize::new(0);
     exec::for_runs(&mut out.data, BAND * row_len, job, |first, band| {
-        fill(&levels, &map, first / row_len, band);
+        fill(Level::widest(), &levels, &map, first / row_len, band);
         let rows = done.fetch_add(BAND, Ordering::Relaxed) + BAND;
         job.report(rows.min(height) as f64 / height as f64);
     })?;
@@ -87,26 +87,26 @@ widest! {
 
 widest! {
     /// Fills whole rows from `first_row` on.
-    fn fill(levels: &[&Image], map: &Map, first_row: usize, rows: &mut [f32]) {
+    fn fill(instructions: Level, levels: &[&Image], map: &Map, first_row: usize, rows: &mut [f32]) {
         let channels = levels[0].channels;
-        let (mut footprints, mut taps, mut sums) = (Footprints::EMPTY, Taps::EMPTY, Sums::EMPTY);
-        for x in (0..map.width).step_by(RUN) {
-            for (y, row) in rows.chunks_exact_mut(map.width * channels).enumerate() {
+        let (mut footprints, mut taps, mut sums) = (Footprints::EMPTY, Taps::EMPTY, [Vec4::ZERO; RUN]);
+        for (y, row) in rows.chunks_exact_mut(map.width * channels).enumerate() {
+            for x in (0..map.width).step_by(RUN) {
                 let count = RUN.min(map.width - x);
                 let out = &mut row[x * channels..(x + count) * channels];
                 locate(&map.to_source, map.front, map.size, first_row + y, x, &mut footprints);
                 footprints.is_seen[count..].fill(false);
                 let Some(Plan { level, parts: [across, down] }) = plan(&footprints, levels.len()) else { continue };
                 let (seen, source) = (&footprints.is_seen, levels[level]);
-                let size = [source.width, source.height];
                 let scale = 1.0 / (1u64 << level) as f32;
                 for channel in 0..if channels == 3 { 1 } else { channels } {
+                    sums.fill(Vec4::ZERO);
                     for at in 0..across * down {
-                        let part = Part { at: [at % across, at / across], of: [across, down], scale, size };
-                        weigh(&footprints, &part, &mut taps);
-                        sum(source, channel, &taps, seen, at == 0, &mut sums);
+                        let part = Part { at: [at % across, at / across], of: [across, down], scale };
+                        weigh(&footprints, &part, source, &mut taps);
+                        sum(instructions, source, channel, &taps, seen, &mut sums);
                     }
-                    store(&sums, across * down, taps.is_sharp, seen, channels, channel, out);
+                    store(&sums, across * down, channels, channel, out);
                 }
             }
         }

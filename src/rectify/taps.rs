@@ -5,6 +5,8 @@
 //! Both are the same for a footprint of one pixel but for what the cubic sharpens, which fades out in between.
 
 use super::footprint::{Footprints, RUN};
+use super::four::MOST_READ;
+use crate::image::Image;
 
 /// Samples along each side.
 pub const TAPS: usize = 4;
@@ -22,16 +24,18 @@ pub struct Part {
     /// Its number along x and y, and how many there are.
     pub at: [usize; 2],
     pub of: [usize; 2],
-    /// Pixels of the level of the pyramid it is taken from to a pixel of the source, and that level's size.
+    /// Pixels of the level of the pyramid it is taken from to a pixel of the source.
     pub scale: f32,
-    pub size: [usize; 2],
 }
 
 pub struct Taps {
-    /// The first of the four rows; the first column of each, or of all if nothing is sheared.
+    /// The first of the four rows, and the first column of each.
     pub line: [i32; RUN],
     pub column: [[i32; RUN]; TAPS],
-    /// Weights of the rows, and in each row, or in all if nothing is sheared, of the columns. Both sum to 1.
+    /// Where the samples of each row begin among those of all, if they are inside.
+    pub start: [[usize; RUN]; TAPS],
+    /// Weights of the rows, and of the columns, the same in each row; if some are sheared, of the columns of each row, which
+    /// all together sum to 1.
     pub down: [[f32; TAPS]; RUN],
     pub across: [[[f32; TAPS]; RUN]; TAPS],
     /// Whether the pixel is seen and all of its samples lie inside the source.
@@ -45,12 +49,18 @@ impl Taps {
     pub const EMPTY: Self = Self {
         line: [0; RUN],
         column: [[0; RUN]; TAPS],
+        start: [[0; RUN]; TAPS],
         down: [[0.0; TAPS]; RUN],
         across: [[[0.0; TAPS]; RUN]; TAPS],
         is_inside: [false; RUN],
         is_sheared: false,
         is_sharp: false,
     };
+
+    /// The weight of column `k` of row `j` of pixel `i`.
+    pub fn weight(&self, i: usize, j: usize, k: usize) -> f32 {
+        if self.is_sheared { self.across[j][i][k] } else { self.down[i][j] * self.across[0][i][k] }
+    }
 }
 
 /// Length of a sample's side that a side of the given length covers whose middle is `offset` away.
@@ -67,20 +77,42 @@ fn sharpening(t: f32) -> [f32; TAPS] {
     [first, last - 2.0 * first, first - 2.0 * last, last]
 }
 
+/// Which weights a run takes.
+#[derive(Clone, Copy, PartialEq)]
+enum Filter {
+    /// Cubics alone: no pixel is larger than one of the source.
+    Cubic,
+    /// Overlaps and what is left of the cubics.
+    Fading,
+    Overlap,
+}
+
 /// Weights along one direction; `at` is how far the middle is beyond that of the second sample.
 #[inline(always)]
-fn weights(at: &[f32; RUN], length: &[f32; RUN], sharp: &[f32; RUN], is_sharp: bool, to: &mut [[f32; TAPS]; RUN]) {
-    if is_sharp {
-        for i in 0..RUN {
-            let (share, more) = (1.0 / length[i], sharpening(at[i]));
-            let weight = |k: usize| overlap(k as f32 - 1.0 - at[i], length[i]) * share + sharp[i] * more[k];
-            to[i] = [weight(0), weight(1), weight(2), weight(3)];
+fn weights(at: &[f32; RUN], length: &[f32; RUN], sharp: &[f32; RUN], filter: Filter, to: &mut [[f32; RUN]; TAPS]) {
+    let [first, second, third, fourth] = to;
+    let mut put = |i: usize, weights: [f32; TAPS]| [first[i], second[i], third[i], fourth[i]] = weights;
+    let shares = |i: usize| {
+        let share = 1.0 / length[i];
+        [-1.0, 0.0, 1.0, 2.0].map(|k: f32| overlap(k - at[i], length[i]) * share)
+    };
+    match filter {
+        Filter::Cubic => {
+            for i in 0..RUN {
+                let more = sharpening(at[i]);
+                put(i, [more[0], (1.0 - at[i]) + more[1], at[i] + more[2], more[3]]);
+            }
         }
-    } else {
-        for i in 0..RUN {
-            let share = 1.0 / length[i];
-            let weight = |k: usize| overlap(k as f32 - 1.0 - at[i], length[i]) * share;
-            to[i] = [weight(0), weight(1), weight(2), weight(3)];
+        Filter::Fading => {
+            for i in 0..RUN {
+                let (shares, more) = (shares(i), sharpening(at[i]));
+                put(i, [0, 1, 2, 3].map(|k| shares[k] + sharp[i] * more[k]));
+            }
+        }
+        Filter::Overlap => {
+            for i in 0..RUN {
+                put(i, shares(i));
+            }
         }
     }
 }
@@ -99,7 +131,7 @@ fn integer_of_single(whole: f32) -> i32 {
 }
 
 #[inline(always)]
-pub fn weigh(footprints: &Footprints, part: &Part, taps: &mut Taps) {
+pub fn weigh(footprints: &Footprints, part: &Part, source: &Image, taps: &mut Taps) {
     let share = [0, 1].map(|k| 1.0 / part.of[k] as f32);
     let offset = [0, 1].map(|k| (part.at[k] as f32 + 0.5) * share[k] - 0.5);
     let can_be_sharp = if part.of == [1, 1] && part.scale == 1.0 { 1.0 } else { 0.0 };
@@ -117,12 +149,27 @@ pub fn weigh(footprints: &Footprints, part: &Part, taps: &mut Taps) {
         (width[i], height[i]) = ((w * share[0]).min(LONGEST_SIDE), (h * share[1]).min(LONGEST_SIDE));
         sharp[i] = can_be_sharp * ((SOFT - footprints.longest[i]) / (SOFT - SHARP)).max(0.0).min(1.0);
     }
-    taps.is_sharp = sharp.iter().fold(0, |any, s| any | s.to_bits()) != 0;
+    let any = |values: &[f32; RUN]| values.iter().fold(0, |any, v| any | v.to_bits()) != 0;
+    let blunt = sharp.map(|s| 1.0 - s);
+    let filter = match (any(&sharp), any(&blunt)) {
+        (true, false) => Filter::Cubic,
+        (true, true) => Filter::Fading,
+        (false, _) => Filter::Overlap,
+    };
+    taps.is_sharp = filter != Filter::Overlap;
     taps.is_sheared = footprints.shear.iter().fold(0, |any, s| any | (s.to_bits() << 1)) != 0;
-    weights(&y, &height, &sharp, taps.is_sharp, &mut taps.down);
+    let (mut down, mut across) = ([[0.0; RUN]; TAPS], [[0.0; RUN]; TAPS]);
+    weights(&y, &height, &sharp, filter, &mut down);
+    if !taps.is_sheared {
+        side_by_side(|k, i| down[k][i], &mut taps.down);
+    }
 
-    let last = if taps.is_sheared { TAPS - 1 } else { 0 };
-    for j in 0..=last {
+    let (stride, channels) = (source.row_len() as u32, source.channels as u32);
+    for j in 0..TAPS {
+        if !taps.is_sheared && j > 0 {
+            taps.column[j] = taps.column[0];
+            continue;
+        }
         let mut along = [0.0; RUN];
         for i in 0..RUN {
             let at = x[i] + footprints.shear[i] * (j as f32 - 1.0 - y[i]);
@@ -130,13 +177,33 @@ pub fn weigh(footprints: &Footprints, part: &Part, taps: &mut Taps) {
             along[i] = at - column;
             taps.column[j][i] = left[i] + integer_of_single(column);
         }
-        weights(&along, &width, &sharp, taps.is_sharp, &mut taps.across[j]);
+        weights(&along, &width, &sharp, filter, &mut across);
+        if taps.is_sheared {
+            side_by_side(|k, i| across[k][i] * down[j][i], &mut taps.across[j]);
+        } else {
+            side_by_side(|k, i| across[k][i], &mut taps.across[j]);
+        }
+        for i in 0..RUN {
+            let (line, column) = ((taps.line[i] + j as i32) as u32, taps.column[j][i] as u32);
+            let start = u64::from(line) * u64::from(stride) + u64::from(column) * u64::from(channels);
+            taps.start[j][i] = start as usize;
+        }
     }
-    // Columns move one way from row to row.
-    let most = part.size.map(|side| side as i32 - TAPS as i32);
+    // Columns move one way from row to row. What is read beyond four pixels of three channels is the next row's, if any.
+    let most = [source.width, source.height].map(|side| side as i32 - TAPS as i32);
+    let beyond = if channels == 3 { MOST_READ.div_ceil(3) - TAPS } else { 0 } as i32;
     for i in 0..RUN {
-        let (a, b, line) = (taps.column[0][i], taps.column[last][i], taps.line[i]);
-        let is_inside = (a.min(b) >= 0) & (a.max(b) <= most[0]) & (line >= 0) & (line <= most[1]);
+        let (a, b, line) = (taps.column[0][i], taps.column[TAPS - 1][i], taps.line[i]);
+        let last = most[0] - if line == most[1] { beyond } else { 0 };
+        let is_inside = (a.min(b) >= 0) & (a.max(b) <= last) & (line >= 0) & (line <= most[1]);
         taps.is_inside[i] = footprints.is_seen[i] & is_inside;
+    }
+}
+
+/// Four weights of each pixel, which were computed for one pixel after the other.
+#[inline(always)]
+fn side_by_side(weight: impl Fn(usize, usize) -> f32, to: &mut [[f32; TAPS]; RUN]) {
+    for (i, to) in to.iter_mut().enumerate() {
+        *to = [weight(0, i), weight(1, i), weight(2, i), weight(3, i)];
     }
 }

@@ -8,6 +8,7 @@ use crate::exec::Pool;
 use crate::geometry::FocalSource;
 use crate::job::Monitor;
 use crate::rng::Rng;
+use crate::simd::forced;
 use glam::{DMat3, DQuat};
 
 const SIZE: (usize, usize) = (800, 600);
@@ -538,6 +539,36 @@ fn channels_are_warped_alike_whatever_their_number_and_at_the_border() {
         let inside =
             |i: usize| ((i % width) as f64 + 0.5) * scale <= 37.0 && ((i / width) as f64 + 0.5) * scale <= 23.0;
         assert!(warped.data.iter().enumerate().all(|(i, v)| !inside(i) || (v - 0.7).abs() < 1e-5), "{scale}");
+    }
+}
+
+#[test]
+fn warps_are_the_same_to_the_bit_at_every_level_of_instructions_and_on_any_number_of_threads() {
+    let monitor = Monitor::default();
+    let sources = [1usize, 3, 4].map(|n| {
+        let mut image = Image::new(331, 257, n).unwrap();
+        image.data.iter_mut().enumerate().for_each(|(i, v)| *v = Rng::new(6, &[i as u64]).next_f32());
+        image
+    });
+    // Interpolated, between that and averaged, and averaged over few and many parts; aslant and not, beyond every border.
+    let tilted =
+        DMat3::from_cols(DVec3::new(1.0, 0.25, 0.001), DVec3::new(-0.3, 0.9, 0.002), DVec3::new(30.0, -20.0, 1.0));
+    let straight = DMat3::from_translation(DVec2::splat(-3.3));
+    for map in [0.3, 1.1, 1.9, 7.0]
+        .into_iter()
+        .flat_map(|s| [tilted, straight].map(|m| m * DMat3::from_scale(DVec2::splat(s))))
+    {
+        for source in &sources {
+            let bits = || -> Vec<u32> {
+                let warped = warp(source, &Homography(map), 300, 200, monitor.job()).unwrap();
+                warped.data.iter().map(|v| v.to_bits()).collect()
+            };
+            let mut made = forced::levels().map(|level| forced::at(level, bits));
+            let lowest = made.next().unwrap();
+            assert!(lowest.iter().filter(|v| **v != 0).count() > 1000);
+            assert!(made.all(|other| other == lowest));
+            assert!([1, 3].into_iter().all(|threads| Pool::new(threads).unwrap().run(bits) == lowest));
+        }
     }
 }
 

@@ -1,0 +1,274 @@
+//! Four pixels side by side, as registers hold them.
+//!
+//! Whatever the level of instructions, the same is done in the same order, so that sums are the same to the bit.
+
+use super::taps::TAPS;
+use glam::{Vec4, Vec4Swizzles};
+
+/// Most samples that [`Four::load`] reads of three channels: four pixels and what follows them.
+pub const MOST_READ: usize = 16;
+
+/// Four pixels side by side of one channel or of three.
+pub trait Four: Copy {
+    const CHANNELS: usize;
+    /// Samples that are read at once.
+    const READ: usize;
+
+    /// # Safety
+    /// There are as many samples as are read.
+    unsafe fn load(from: *const f32) -> Self;
+    /// A hint that what is there will be read soon; any address will do.
+    #[inline(always)]
+    fn prefetch(_from: *const f32) {}
+    /// The weight of each pixel for all of its channels.
+    fn spread(weights: &[f32; TAPS]) -> Self;
+    fn splat(value: f32) -> Self;
+    fn mul(self, other: Self) -> Self;
+    fn add(self, other: Self) -> Self;
+    fn min(self, other: Self) -> Self;
+    fn max(self, other: Self) -> Self;
+    /// The sum of the four for each channel, and lanes that mean nothing; likewise the next two.
+    fn sum(self) -> Vec4;
+    fn least(self) -> Vec4;
+    fn greatest(self) -> Vec4;
+}
+
+/// One channel.
+#[derive(Clone, Copy)]
+pub struct One(Vec4);
+
+impl One {
+    #[inline(always)]
+    fn fold(self, f: impl Fn(Vec4, Vec4) -> Vec4) -> Vec4 {
+        let pairs = f(self.0, self.0.zwxy());
+        f(pairs, pairs.yxwz())
+    }
+}
+
+impl Four for One {
+    const CHANNELS: usize = 1;
+    const READ: usize = 4;
+
+    #[inline(always)]
+    unsafe fn load(from: *const f32) -> Self {
+        // SAFETY: the caller's.
+        Self(Vec4::from_array(unsafe { from.cast::<[f32; 4]>().read_unaligned() }))
+    }
+
+    #[inline(always)]
+    fn spread(weights: &[f32; TAPS]) -> Self {
+        Self(Vec4::from_array(*weights))
+    }
+
+    #[inline(always)]
+    fn splat(value: f32) -> Self {
+        Self(Vec4::splat(value))
+    }
+
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        Self(self.0 * other.0)
+    }
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self(self.0 + other.0)
+    }
+
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        Self(self.0.min(other.0))
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        Self(self.0.max(other.0))
+    }
+
+    #[inline(always)]
+    fn sum(self) -> Vec4 {
+        self.fold(|a, b| a + b)
+    }
+
+    #[inline(always)]
+    fn least(self) -> Vec4 {
+        self.fold(Vec4::min)
+    }
+
+    #[inline(always)]
+    fn greatest(self) -> Vec4 {
+        self.fold(Vec4::max)
+    }
+}
+
+/// Three channels in three registers of four.
+#[derive(Clone, Copy)]
+pub struct Three([Vec4; 3]);
+
+impl Three {
+    #[inline(always)]
+    fn zip(self, other: Self, f: impl Fn(Vec4, Vec4) -> Vec4) -> Self {
+        Self(std::array::from_fn(|k| f(self.0[k], other.0[k])))
+    }
+
+    #[inline(always)]
+    fn fold(self, f: impl Fn(Vec4, Vec4) -> Vec4) -> Vec4 {
+        let [a, b, c] = self.0;
+        let second = Vec4::new(a.w, b.x, b.y, b.y);
+        let third = Vec4::new(b.z, b.w, c.x, c.x);
+        f(f(a, third), f(second, c.yzww()))
+    }
+}
+
+impl Four for Three {
+    const CHANNELS: usize = 3;
+    const READ: usize = 12;
+
+    #[inline(always)]
+    unsafe fn load(from: *const f32) -> Self {
+        // SAFETY: the caller's.
+        let samples = unsafe { from.cast::<[[f32; 4]; 3]>().read_unaligned() };
+        Self(samples.map(Vec4::from_array))
+    }
+
+    #[inline(always)]
+    fn spread(weights: &[f32; TAPS]) -> Self {
+        let weights = Vec4::from_array(*weights);
+        Self([weights.xxxy(), weights.yyzz(), weights.zwww()])
+    }
+
+    #[inline(always)]
+    fn splat(value: f32) -> Self {
+        Self([Vec4::splat(value); 3])
+    }
+
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        self.zip(other, |a, b| a * b)
+    }
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        self.zip(other, |a, b| a + b)
+    }
+
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        self.zip(other, Vec4::min)
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        self.zip(other, Vec4::max)
+    }
+
+    #[inline(always)]
+    fn sum(self) -> Vec4 {
+        self.fold(|a, b| a + b)
+    }
+
+    #[inline(always)]
+    fn least(self) -> Vec4 {
+        self.fold(Vec4::min)
+    }
+
+    #[inline(always)]
+    fn greatest(self) -> Vec4 {
+        self.fold(Vec4::max)
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+pub use avx512::Wide;
+
+#[cfg(target_arch = "x86_64")]
+mod avx512 {
+    use super::{Four, MOST_READ, TAPS};
+    use glam::Vec4;
+    use std::arch::x86_64::*;
+
+    /// Three channels in one register of sixteen. Only code that runs where the processor has AVX-512 may use it: everything
+    /// below is inlined into a function compiled for that.
+    #[derive(Clone, Copy)]
+    pub struct Wide(__m512);
+
+    // SAFETY, throughout: the processor has the instructions, as said above.
+
+    /// The first pixel with the third and the second with the fourth, then both.
+    macro_rules! fold {
+        ($of:expr, $eight:ident, $four:ident) => {
+            unsafe {
+                let all = _mm512_castps_si512($of.0);
+                let upper = _mm512_castps512_ps256(_mm512_castsi512_ps(_mm512_alignr_epi32::<6>(all, all)));
+                let half = $eight(_mm512_castps512_ps256($of.0), upper);
+                let bits = _mm256_castps_si256(half);
+                let upper = _mm256_castps256_ps128(_mm256_castsi256_ps(_mm256_alignr_epi32::<3>(bits, bits)));
+                Vec4::from($four(_mm256_castps256_ps128(half), upper))
+            }
+        };
+    }
+
+    impl Four for Wide {
+        const CHANNELS: usize = 3;
+        const READ: usize = MOST_READ;
+
+        #[inline(always)]
+        unsafe fn load(from: *const f32) -> Self {
+            Self(unsafe { _mm512_loadu_ps(from) })
+        }
+
+        #[inline(always)]
+        fn prefetch(from: *const f32) {
+            unsafe { _mm_prefetch::<_MM_HINT_T0>(from.cast()) }
+        }
+
+        #[inline(always)]
+        fn spread(weights: &[f32; TAPS]) -> Self {
+            unsafe {
+                let lanes = _mm512_setr_epi32(0, 0, 0, 1, 1, 1, 2, 2, 2, 3, 3, 3, 3, 3, 3, 3);
+                let weights = _mm512_castps128_ps512(_mm_loadu_ps(weights.as_ptr()));
+                Self(_mm512_permutexvar_ps(lanes, weights))
+            }
+        }
+
+        #[inline(always)]
+        fn splat(value: f32) -> Self {
+            Self(unsafe { _mm512_set1_ps(value) })
+        }
+
+        #[inline(always)]
+        fn mul(self, other: Self) -> Self {
+            Self(unsafe { _mm512_mul_ps(self.0, other.0) })
+        }
+
+        #[inline(always)]
+        fn add(self, other: Self) -> Self {
+            Self(unsafe { _mm512_add_ps(self.0, other.0) })
+        }
+
+        #[inline(always)]
+        fn min(self, other: Self) -> Self {
+            Self(unsafe { _mm512_min_ps(self.0, other.0) })
+        }
+
+        #[inline(always)]
+        fn max(self, other: Self) -> Self {
+            Self(unsafe { _mm512_max_ps(self.0, other.0) })
+        }
+
+        #[inline(always)]
+        fn sum(self) -> Vec4 {
+            fold!(self, _mm256_add_ps, _mm_add_ps)
+        }
+
+        #[inline(always)]
+        fn least(self) -> Vec4 {
+            fold!(self, _mm256_min_ps, _mm_min_ps)
+        }
+
+        #[inline(always)]
+        fn greatest(self) -> Vec4 {
+            fold!(self, _mm256_max_ps, _mm_max_ps)
+        }
+    }
+}
