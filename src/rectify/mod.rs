@@ -23,6 +23,7 @@
 //! Not modelled: lens distortion, pixels that are not square, rooms whose walls are not at right angles (their directions
 //! are found, but the axes are made orthogonal).
 
+mod biweight;
 mod camera;
 pub mod canny;
 mod footprint;

@@ -3,6 +3,7 @@
 //! The paper optimises `alpha = 1 - 1 / (rho + 1)`; on the sphere points at infinity are ordinary points and no
 //! coordinate is ill-conditioned there.
 
+use super::biweight::Biweight;
 use super::metric::Line;
 use crate::geometry::{Segment, linear::symmetric_eigen};
 use glam::{DMat3, DVec2, DVec3};
@@ -24,6 +25,12 @@ const PRIOR_COUNT: f64 = 2.0;
 /// Segments found per independent observation: both sides of a bar, the pieces of one edge and a row of equal things
 /// share their errors. Calibrated on photos with exact cameras, as is the next.
 const PER_OBSERVATION: f64 = 5.0;
+
+/// Rounds in which the noise and the share of it that the limit shows are found from each other, the least such share, and
+/// the least slope of the biweight: beyond them noise fills the limit, and could be any.
+const NOISE_ROUNDS: usize = 5;
+const LEAST_SHOWN: f64 = 0.25;
+const LEAST_SLOPE: f64 = 0.05;
 
 /// Standard deviation in radians of the direction of the room's edges themselves, which no number of lines averages out:
 /// what lenses, stitching and builders leave.
@@ -147,7 +154,7 @@ pub fn refine(lines: &[Evidence], start: DVec3, focal: f64) -> Option<Refined> {
 /// The same where right angles are expected besides: what the lines say weighs by its own covariance at the start.
 pub fn refine_near(lines: &[Evidence], start: DVec3, focal: f64, expected: &[RightAngle]) -> Option<Refined> {
     let own = covariance(lines, start, focal)?;
-    // The lines' normal matrix is the inverse of their covariance but for a factor: in its unit.
+    // How fast the lines' equations change is the inverse of their covariance but for a factor: in its unit.
     let unit = deviation(&own.of_direction).powi(2) / own.inverse_trace;
     let mut prior = NO_MATRIX;
     for RightAngle { to, variance } in expected {
@@ -185,10 +192,14 @@ fn add_square(matrix: &mut [[f64; 3]; 3], v: DVec3, weight: f64) {
 struct Row {
     /// Derivative of the line's sine by the direction.
     gradient: DVec3,
+    /// Of the line if it had no residual, and what the biweight leaves of it.
+    say: f64,
     weight: f64,
     /// Variance of the sine under unit noise of the endpoints: of the segment's direction, and of its midpoint as the
     /// point sees it, which matters for segments near their vanishing point.
     variance: f64,
+    /// Variance under that noise of the residual whose limit is 1.
+    spread: f64,
     sine: f64,
 }
 
@@ -201,11 +212,15 @@ fn row(evidence: &Evidence, direction: DVec3, focal: f64) -> Option<Row> {
     }
     let (l, half) = (evidence.line.line, evidence.line.half);
     let nearness = (half * p.z / distance).powi(2);
+    // Endpoint noise alone would ask for no more than the stiffness; but long segments are rarely anything but edges.
+    let say = evidence.weight.sqrt() * evidence.stiffness / (1.0 + nearness);
+    let variance = (1.0 + nearness) / (half * half);
     Some(Row {
         gradient: DVec3::new(l.x, l.y, l.z / focal) / distance,
-        // Endpoint noise alone would ask for no more than the stiffness; but long segments are rarely anything but edges.
-        weight: bisquare * evidence.weight.sqrt() * evidence.stiffness / (1.0 + nearness),
-        variance: (1.0 + nearness) / (half * half),
+        say,
+        weight: bisquare * say,
+        variance,
+        spread: evidence.stiffness * variance,
         sine: evidence.line.sine(p),
     })
 }
@@ -222,39 +237,60 @@ fn smallest_eigenvector(lines: &[Evidence], direction: DVec3, focal: f64, mut no
 struct Covariance {
     /// Of the direction, with what lines share and what they all have.
     of_direction: DMat3,
-    /// Trace of the inverse of the normal matrix in the tangent plane.
+    /// Trace of the inverse of how fast the equations change in the tangent plane.
     inverse_trace: f64,
 }
 
-/// The sandwich formula `N⁻¹ M N⁻¹` in the tangent plane: `N` is what the weights presume, `M` what independent endpoint
-/// noise of the size of the residuals does to them.
+/// Variance of the endpoint noise that leaves the residuals of the lines that the limit admits.
+fn endpoint_noise(rows: &[Row]) -> f64 {
+    let count = rows.len() as f64;
+    let squares: f64 = rows.iter().map(|row| row.sine * row.sine / row.variance).sum();
+    // A direction is two numbers, fitted to independent observations: their segments are no more than these.
+    let freedom = (count - 2.0 * PER_OBSERVATION).max(0.0) + PRIOR_COUNT;
+    let seen = (squares + PRIOR_COUNT * PRIOR_NOISE * PRIOR_NOISE) / freedom;
+    // The limit hides the largest ones.
+    let mut noise = seen;
+    for _ in 0..NOISE_ROUNDS {
+        let shown = rows.iter().map(|row| Biweight::of_noise(noise * row.spread).square).sum::<f64>() / count;
+        noise = seen / shown.max(LEAST_SHOWN);
+    }
+    noise
+}
+
+/// The sandwich formula `A⁻¹ B A⁻¹` of an M-estimator in the tangent plane (Huber, "Robust Statistics", 1981, §6.3), with
+/// `A = Σ c ψ′ g gᵀ` and `B = Σ c² ψ² g gᵀ`, `c` being a line's say and `g` its gradient. For ψ′ and ψ² the means are taken
+/// that independent endpoint noise of the size of the residuals leads one to expect: few lines' own vary too much, and the
+/// lines that have most say have the least residuals because they have it.
 fn covariance(lines: &[Evidence], direction: DVec3, focal: f64) -> Option<Covariance> {
     let (e1, e2) = direction.any_orthonormal_pair();
-    let (mut count, mut squares) = (0.0, 0.0);
+    let rows: Vec<Row> = lines.iter().filter_map(|e| row(e, direction, focal)).collect();
+    if rows.len() < 2 {
+        return None;
+    }
+    let noise = endpoint_noise(&rows);
     let (mut n, mut m) = ([0.0; 3], [0.0; 3]);
-    for Row { gradient, weight, variance, sine } in lines.iter().filter_map(|e| row(e, direction, focal)) {
+    for Row { gradient, say, variance, spread, .. } in &rows {
+        let expected = Biweight::of_noise(noise * spread);
+        let (slope, square) = (say * expected.slope.max(LEAST_SLOPE), say * say * variance * expected.influence);
         let (u, v) = (gradient.dot(e1), gradient.dot(e2));
         for (i, product) in [u * u, u * v, v * v].into_iter().enumerate() {
-            n[i] += weight * product;
-            m[i] += weight * weight * variance * product;
+            n[i] += slope * product;
+            m[i] += square * product;
         }
-        count += 1.0;
-        squares += sine * sine / variance;
     }
-    let variance = (squares + PRIOR_COUNT * PRIOR_NOISE * PRIOR_NOISE) / ((count - 2.0f64).max(0.0) + PRIOR_COUNT);
     let determinant = n[0] * n[2] - n[1] * n[1];
-    if !(count >= 2.0 && determinant > 1e-12 * n[0] * n[2]) {
+    if !(determinant > 1e-12 * n[0] * n[2]) {
         return None;
     }
     let inverse = [n[2] / determinant, -n[1] / determinant, n[0] / determinant];
-    // N⁻¹ M N⁻¹.
+    // A⁻¹ B A⁻¹.
     let product = [
         inverse[0] * m[0] + inverse[1] * m[1],
         inverse[0] * m[1] + inverse[1] * m[2],
         inverse[1] * m[0] + inverse[2] * m[1],
         inverse[1] * m[1] + inverse[2] * m[2],
     ];
-    let scale = PER_OBSERVATION * variance;
+    let scale = PER_OBSERVATION * noise;
     let uu = scale * (product[0] * inverse[0] + product[1] * inverse[1]);
     let uv = scale * (product[0] * inverse[1] + product[1] * inverse[2]);
     let vv = scale * (product[2] * inverse[1] + product[3] * inverse[2]);

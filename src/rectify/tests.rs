@@ -73,24 +73,28 @@ fn exact_segments_give_exact_vanishing_points_and_the_camera() {
 
 #[test]
 fn errors_under_noise_are_as_stated() {
-    let (mut sum, mut count) = (0.0, 0.0);
-    for seed in 0..40 {
-        let truth = camera(0.5, 0.3, 0.05, 700.0);
-        let params = Params { focal: Some(700.0), seed, ..Params::default() };
-        // Five segments per independent observation, as the stated errors presume.
-        let segments = room(&truth, [40, 40, 40], 0.5, seed).repeat(5);
-        let view = view_of(&segments, &params).unwrap();
-        for v in &view.vanishing_points {
-            let found = direction_of(&truth, v.point);
-            let error = (0..3).map(|k| angle(found, truth.axes.col(k))).fold(9.0, f64::min);
-            // These edges are straight.
-            sum += error * error / (v.error * v.error - STRAIGHTNESS * STRAIGHTNESS);
-            count += 1.0;
+    // From what leaves the weights as they are to what the limit of the lines hides much of.
+    for (noise, per_axis) in [(0.25, 14), (0.5, 40), (1.0, 14), (1.0, 40)] {
+        let (mut sum, mut count) = (0.0, 0.0);
+        for seed in 0..40 {
+            let truth = camera(0.5, 0.3, 0.05, 700.0);
+            let params = Params { focal: Some(700.0), seed, ..Params::default() };
+            // Five segments per independent observation, as the stated errors presume.
+            let segments = room(&truth, [per_axis; 3], noise, seed).repeat(5);
+            let view = view_of(&segments, &params).unwrap();
+            for v in &view.vanishing_points {
+                let found = direction_of(&truth, v.point);
+                let error = (0..3).map(|k| angle(found, truth.axes.col(k))).fold(9.0, f64::min);
+                // These edges are straight.
+                sum += error * error / (v.error * v.error - STRAIGHTNESS * STRAIGHTNESS);
+                count += 1.0;
+            }
         }
+        // The mean of 120 squared ratios, each with 1 to 2 degrees of freedom: standard deviation 0.09 to 0.13.
+        let ratio = sum / count;
+        println!("noise of {noise} pixels, {per_axis} lines an axis: {ratio:.2}");
+        assert!((0.6..1.4).contains(&ratio), "{noise}, {per_axis}: {ratio}");
     }
-    // The mean of 120 squared ratios, each with 2 degrees of freedom: standard deviation 0.09, six of them.
-    let ratio = sum / count;
-    assert!((0.45..1.55).contains(&ratio), "{ratio}");
 }
 
 #[test]
@@ -321,8 +325,9 @@ fn expected_corner_errors_hold_over_noisy_lines() {
         let at = |p: f64| shares[(p * shares.len() as f64) as usize];
         let mean_square = shares.iter().map(|s| s * s).sum::<f64>() / shares.len() as f64;
         println!("{focal:?}: mean square {mean_square:.2}, half below {:.2}, 95 % below {:.2}", at(0.5), at(0.95));
-        // Expected errors are root mean squares: within a factor of the root of 2 of those there are.
-        assert!((0.5..2.0).contains(&mean_square) && at(0.95) < 3.0);
+        // Expected errors are root mean squares. Four times 60 corners, of which those of one view are alike: 0.12 is one
+        // standard deviation.
+        assert!((0.7..1.4).contains(&mean_square) && at(0.95) < 2.3);
     }
 }
 
