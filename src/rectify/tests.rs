@@ -578,6 +578,38 @@ fn warps_are_the_same_to_the_bit_at_every_level_of_instructions_and_on_any_numbe
 }
 
 #[test]
+fn warps_of_the_smallest_sources_and_of_the_least_and_largest_quads_show_what_is_there() {
+    let monitor = Monitor::default();
+    for (width, height) in [(1, 1), (1, 9), (9, 1), (3, 3), (4, 4), (5, 4), (6, 4), (2, 300)] {
+        for channels in [1, 3, 4] {
+            let mut grey = Image::new(width, height, channels).unwrap();
+            grey.data.fill(0.7);
+            // From a quad of a millionth of a pixel to one of a million pixels, about the source's middle.
+            for scale in [1e-6 / 40.0, 0.1, 1.0, 3.0, 1e6 / 40.0] {
+                let middle = DVec2::new(width as f64, height as f64) / 2.0;
+                let centred = DMat3::from_translation(middle) * DMat3::from_scale(DVec2::splat(scale));
+                let map = Homography(centred * DMat3::from_translation(DVec2::splat(-20.0)));
+                let warped = warp(&grey, &map, 40, 40, monitor.job()).unwrap();
+                for (i, pixel) in warped.data.chunks_exact(channels).enumerate() {
+                    let at = map.apply(DVec2::new((i % 40) as f64 + 0.5, (i / 40) as f64 + 0.5));
+                    let inside = at.min_element() >= 0.0 && at.x <= width as f64 && at.y <= height as f64;
+                    let want = if inside { 0.7 } else { 0.0 };
+                    assert!(pixel.iter().all(|v| (v - want).abs() < 1e-5), "{width} x {height}, {scale}: {pixel:?}");
+                }
+            }
+            // A map that shows one point or nothing at all, and one that is none.
+            let nothing = warp(&grey, &Homography(DMat3::ZERO), 5, 5, monitor.job()).unwrap();
+            assert!(nothing.data.iter().all(|&v| v == 0.0));
+            let point = Homography(DMat3::from_cols(DVec3::ZERO, DVec3::ZERO, DVec3::new(0.5, 0.5, 1.0)));
+            let point = warp(&grey, &point, 5, 5, monitor.job()).unwrap();
+            assert!(point.data.iter().all(|v| (v - 0.7).abs() < 1e-5));
+            let error = warp(&grey, &Homography(DMat3::NAN), 5, 5, monitor.job()).unwrap_err();
+            assert_eq!(error.kind, ErrorKind::InvalidArgument);
+        }
+    }
+}
+
+#[test]
 fn a_pixel_that_is_not_finite_spoils_those_it_is_part_of_and_no_others() {
     let mut source = Image::from_fn(200, 150, |x, y| [0.2 + 0.001 * (x + y) as f32, 0.5, 0.1]).unwrap();
     let map = |scale: f64| Homography(DMat3::from_scale(DVec2::splat(scale)));
