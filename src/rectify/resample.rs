@@ -132,3 +132,6 @@ fn plan(footprints: &Footprints, levels: usize) -> Option<Plan> {
         (level, scale) = (level + 1, 0.5 * scale);
     }
 }
+
+#[cfg(test)]
+mod tests;
