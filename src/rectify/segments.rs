@@ -46,9 +46,10 @@ pub fn detect(gradients: &Gradients, job: Job) -> Result<Vec<Segment>> {
     Ok(segments)
 }
 
-/// Indices of the pixels with a gradient, strongest first: a counting sort over 1024 classes.
+/// Indices of the pixels with a gradient, strongest first: a counting sort over classes so fine that hardly two pixels of an edge share
+/// one, whose order would be that of the rows.
 fn by_falling_magnitude(magnitude: &[f32]) -> Result<Vec<u32>> {
-    const CLASSES: usize = 1024;
+    const CLASSES: usize = 1 << 16;
     let top = magnitude.iter().fold(WEAKEST, |m, &v| m.max(v));
     let class = |m: f32| CLASSES - 1 - ((m / top * CLASSES as f32) as usize).min(CLASSES - 1);
     let mut start = vec![0usize; CLASSES + 1];
@@ -145,37 +146,40 @@ impl Grower<'_> {
         }
     }
 
-    /// Collects the pixels connected with the seed whose gradients point the way the region does on average.
+    /// Collects the pixels connected with the seed whose gradients point the way the region does on average: ring by ring, each
+    /// compared with the average before it, so that no order of pixels matters.
     fn grow(&mut self, seed: u32, tolerance: f64) {
         let Gradients { width, derivative, magnitude, .. } = self.gradients;
         let least = tolerance.cos() as f32;
-        let unit = |i: usize| derivative[i].map(|d| d / magnitude[i]);
         self.region.clear();
         self.region.push(Pixel::new(*width, seed));
         self.used[seed as usize] = true;
-        let mut sum = unit(seed as usize);
-        let mut least_along = least;
-        let mut next = 0;
-        while next < self.region.len() {
-            let Pixel { index, column, row } = self.region[next];
-            next += 1;
-            for (row, first) in
-                [(row - 1, index as usize - width), (row, index as usize), (row + 1, index as usize + width)]
-            {
-                for (column, n) in (column - 1..).zip(first - 1..=first + 1) {
-                    if self.used[n] {
-                        continue;
-                    }
-                    let d = derivative[n];
-                    if d[0] * sum[0] + d[1] * sum[1] >= least_along * magnitude[n] {
-                        self.used[n] = true;
-                        self.region.push(Pixel { index: n as u32, column, row });
-                        let unit = unit(n);
-                        sum = [sum[0] + unit[0], sum[1] + unit[1]];
-                        least_along = least * (sum[0] * sum[0] + sum[1] * sum[1]).sqrt();
+        let mut sum = [0.0f32; 2];
+        let mut ring = 0..1;
+        while !ring.is_empty() {
+            for p in &self.region[ring.clone()] {
+                let i = p.index as usize;
+                sum = [sum[0] + derivative[i][0] / magnitude[i], sum[1] + derivative[i][1] / magnitude[i]];
+            }
+            let least_along = least * (sum[0] * sum[0] + sum[1] * sum[1]).sqrt();
+            for next in ring.clone() {
+                let Pixel { index, column, row } = self.region[next];
+                for (row, first) in
+                    [(row - 1, index as usize - width), (row, index as usize), (row + 1, index as usize + width)]
+                {
+                    for (column, n) in (column - 1..).zip(first - 1..=first + 1) {
+                        if self.used[n] {
+                            continue;
+                        }
+                        let d = derivative[n];
+                        if d[0] * sum[0] + d[1] * sum[1] >= least_along * magnitude[n] {
+                            self.used[n] = true;
+                            self.region.push(Pixel { index: n as u32, column, row });
+                        }
                     }
                 }
             }
+            ring = ring.end..self.region.len();
         }
     }
 
