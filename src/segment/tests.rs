@@ -195,6 +195,84 @@ fn useless_features_do_no_harm() {
 }
 
 #[test]
+fn a_channel_without_variance_under_the_strokes_decides_nothing() {
+    let (features, faces) = room();
+    let strokes = plane_strokes();
+    // The same under every stroke, and wild elsewhere, whole and fine: nothing is known of what it means.
+    let mut wide = Image::new(WIDTH, HEIGHT, CHANNELS + 1).unwrap();
+    for (i, (o, f)) in wide.data.chunks_exact_mut(CHANNELS + 1).zip(features.data.chunks_exact(CHANNELS)).enumerate() {
+        o[..CHANNELS].copy_from_slice(f);
+        o[CHANNELS] = if i % 3 == 0 { 1e6 } else { -4e5 };
+    }
+    for &p in strokes.iter().flat_map(|s| &s.pixels) {
+        wide.data[p as usize * (CHANNELS + 1) + CHANNELS] = 7.0;
+    }
+    let got = segment(&wide, &strokes, None, &Params::default()).unwrap();
+    assert_eq!(got.confidence.count_non_finite() + got.unseen.count_non_finite(), 0);
+    assert!(iou(&got.mask, |i| faces[i] == 0 || faces[i] == 5) >= 0.97);
+}
+
+#[test]
+fn features_twice_over_make_the_same_mask() {
+    let (features, faces) = room();
+    let geometry = |x: usize, y: usize| <[f32; 6]>::try_from(&features.pixel(x, y)[4..]).unwrap();
+    let once = Image::from_fn(WIDTH, HEIGHT, geometry).unwrap();
+    let twice = Image::from_fn(WIDTH, HEIGHT, |x, y| -> [f32; 12] {
+        let values = geometry(x, y);
+        std::array::from_fn(|c| values[c % 6])
+    });
+    let [once, twice] =
+        [once, twice.unwrap()].map(|f| segment(&f, &plane_strokes(), None, &Params::default()).unwrap());
+    assert_eq!(twice.confidence.count_non_finite(), 0);
+    let shared = iou(&twice.mask, |i| once.mask.data[i] > 0.5);
+    let right = iou(&twice.mask, |i| faces[i] == 0 || faces[i] == 5);
+    assert!(shared > 0.98 && right > 0.97, "{shared} {right}");
+}
+
+#[test]
+fn strokes_half_off_the_photo_and_painted_twice_are_as_their_part_on_it() {
+    let (features, _) = room();
+    let strokes = plane_strokes();
+    let plain = segment(&features, &strokes, None, &Params::default()).unwrap();
+    // Every stroke goes on beyond the photo.
+    let mut beyond = strokes.clone();
+    beyond.iter_mut().for_each(|s| s.pixels.extend((0..1000).map(|i| (WIDTH * HEIGHT) as u32 + 77 * i)));
+    let got = segment(&features, &beyond, None, &Params::default()).unwrap();
+    assert_eq!((got.confidence, got.samples), (plain.confidence, plain.samples));
+    // A polyline that enters from the left and leaves below has the pixels within.
+    let ends = [DVec2::new(-50.0, 100.0), DVec2::new(60.0, HEIGHT as f64 + 90.0)];
+    let across = Stroke::polyline(&ends, 4.0, true, WIDTH, HEIGHT).unwrap();
+    assert!(!across.pixels.is_empty() && across.pixels.iter().all(|&p| (p as usize) < WIDTH * HEIGHT));
+    // The same stroke again is no more than once.
+    let again = [&strokes[..], &strokes[..]].concat();
+    let got = segment(&features, &again, None, &Params::default()).unwrap();
+    assert_eq!((got.contradictory, got.samples), (0, plain.samples));
+}
+
+#[test]
+fn wholly_contradictory_strokes_are_an_error_and_nearly_so_are_learned_from() {
+    let (features, _) = room();
+    let strokes = plane_strokes();
+    let not = |s: &Stroke| Stroke { positive: !s.positive, ..s.clone() };
+    // Everything painted as the one, then as the other: only the other is left, in both classes.
+    let turned: Vec<Stroke> = strokes.iter().chain(&strokes.iter().map(not).collect::<Vec<_>>()).cloned().collect();
+    let got = segment(&features, &turned, None, &Params::default()).unwrap();
+    let opposite = segment(&features, &strokes.iter().map(not).collect::<Vec<_>>(), None, &Params::default()).unwrap();
+    assert!(iou(&got.mask, |i| opposite.mask.data[i] > 0.5) > 0.99);
+    assert_eq!(got.contradictory, strokes.iter().map(|s| s.pixels.len()).sum::<usize>());
+    // One surface painted as both, side by side: nothing tells them apart, and that is said.
+    let row = |y: u32, positive: bool| Stroke {
+        pixels: (0..60).map(|x| (20 + y) * WIDTH as u32 + 130 + x).collect(),
+        positive,
+    };
+    let mixed: Vec<Stroke> = (0..8).map(|y| row(y, y % 2 == 0)).collect();
+    let colours = Params { channels: 0b111, ..Params::default() };
+    let got = segment(&features, &mixed, None, &colours).unwrap();
+    assert!(got.error > 0.3, "{}", got.error);
+    assert_eq!(got.confidence.count_non_finite(), 0);
+}
+
+#[test]
 fn channels_are_chosen_unless_they_are_given() {
     let (features, faces) = room();
     let is_ceiling = |i: usize| faces[i] == 0 || faces[i] == 5;
