@@ -1,5 +1,5 @@
 //! Features: the time of a megapixel, normals against Open3D's, on rooms whose normals are known and on RGB-D pairs, and the
-//! room laid out from the lines of those pairs.
+//! room laid out from the lines of those pairs, and from strokes.
 
 mod harness;
 
@@ -7,13 +7,14 @@ use glam::{DMat3, DVec2, Vec3};
 use harness::peer::Peer;
 use harness::{Clock, Table, absent, figure, interleaved, median, time};
 use luxfer::exec::Pool;
-use luxfer::features::{self, DepthKind, DepthMap, Input, Params, RoomView};
+use luxfer::features::{self, DepthKind, DepthMap, Input, Params, PlaneStroke, RoomView};
 use luxfer::geometry::{FocalSource, Perspective};
 use luxfer::image::Image;
 use luxfer::image::io::{Encoding, load};
 use luxfer::job::Monitor;
 use luxfer::rectify;
 use luxfer::rng::Rng;
+use luxfer::segment::{StrokeSet, strokes};
 use std::path::{Path, PathBuf};
 
 const SIZE: [usize; 2] = [1152, 868];
@@ -28,6 +29,8 @@ struct Case {
     depth: Image,
     camera: Perspective,
     truth: Option<Vec<Vec3>>,
+    /// On one of its planes and elsewhere.
+    strokes: StrokeSet,
 }
 
 fn main() {
@@ -41,7 +44,7 @@ fn main() {
     pool.run(|| layouts(&pairs));
 }
 
-/// The built-in depth, from the lines of the photo and without them, beside the measured one. Its scale is free.
+/// The built-in depth, from the lines of the photo, with strokes and without lines, beside the measured one. Its scale is free.
 fn layouts(pairs: &[&Case]) {
     if pairs.is_empty() {
         return absent("features.layout.depth_error", "the RGB-D pairs are not there");
@@ -58,17 +61,24 @@ fn layouts(pairs: &[&Case]) {
             ..Default::default()
         };
         let Ok(view) = rectify::find_view(&case.photo, &camera, monitor.job()) else { continue };
-        let lines = RoomView { perspective: &view.perspective, segments: &view.segments };
-        let of = |depth, segments| {
-            let room = Some(RoomView { segments, ..lines });
+        let lines = RoomView { perspective: &view.perspective, segments: &view.segments, strokes: &[] };
+        let painted = case.strokes.plane_strokes();
+        let painted: Vec<_> = painted.map(|s| PlaneStroke { pixels: &s.pixels, positive: s.positive }).collect();
+        let of = |depth, segments, strokes| {
+            let room = Some(RoomView { segments, strokes, ..lines });
             let input = Input { photo: &case.photo, depth, room };
             features::run(&input, &Params::default(), monitor.job()).unwrap()
         };
         let map = DepthMap { image: &case.depth, kind: DepthKind::AlongZ };
         let normal = |image: &Image, i: usize| Vec3::from_slice(&image.data[i * 10 + 7..i * 10 + 10]);
-        let measured = of(Some(map), &view.segments).image;
-        for (name, segments) in [("lines", &view.segments[..]), ("nothing seen", &[])] {
-            let found = of(None, segments);
+        let measured = of(Some(map), &view.segments, &[]).image;
+        let sources = [
+            ("lines", &view.segments[..], &[][..]),
+            ("lines and strokes", &view.segments, &painted),
+            ("nothing seen", &[], &[]),
+        ];
+        for (name, segments, strokes) in sources {
+            let found = of(None, segments, strokes);
             // Eq. 1 undone: screen depth to inverse depth.
             let Params { near, far, .. } = Params::default();
             let inverse = |i: usize| (1.0 - found.image.data[i * 10 + 3] * (far - near) / far) / near;
@@ -107,7 +117,7 @@ fn layouts(pairs: &[&Case]) {
             ]);
         }
     }
-    table.print("The room laid out from its lines, beside the measured depth, but for its scale");
+    table.print("The room laid out from its lines and strokes, beside the measured depth, but for its scale");
     figure("features.layout.depth_error", median(&errors), "%");
 }
 
@@ -155,7 +165,7 @@ fn room(noise: f64) -> Case {
     });
     let photo = Image::from_fn(width, height, |x, y| [((x * 7 + y * 13) % 64) as f32 / 64.0; 3]).unwrap();
     let name = format!("room, noise {:.1} % at 4 m", 100.0 * noise);
-    Case { name, photo, depth: depth.unwrap(), camera, truth: Some(truth) }
+    Case { name, photo, depth: depth.unwrap(), camera, truth: Some(truth), strokes: StrokeSet::default() }
 }
 
 /// The RGB-D pairs, if they are there.
@@ -167,19 +177,25 @@ fn pairs() -> Vec<Case> {
     let about: serde_json::Value = serde_json::from_slice(&text).unwrap();
     let k = |name: &str| about["K"][name].as_f64().unwrap();
     let camera = looking((k("fx") + k("fy")) / 2.0, DVec2::new(k("cx"), k("cy")), DMat3::IDENTITY);
-    let case = |name: &str| Case {
-        name: format!("RGB-D pair {name}"),
-        photo: load(&root.join(format!("nyu_{name}_rgb.jpg")), Encoding::Srgb).unwrap(),
-        depth: load(&root.join(format!("nyu_{name}_depth.png")), Encoding::Linear).unwrap().channel(0).unwrap(),
-        camera,
-        truth: None,
+    let case = |name: &str| {
+        let photo = load(&root.join(format!("nyu_{name}_rgb.jpg")), Encoding::Srgb).unwrap();
+        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/strokes/nyu_{name}.txt"));
+        let strokes = strokes::parse(&std::fs::read_to_string(file).unwrap(), photo.width, photo.height).unwrap();
+        Case {
+            name: format!("RGB-D pair {name}"),
+            photo,
+            strokes,
+            depth: load(&root.join(format!("nyu_{name}_depth.png")), Encoding::Linear).unwrap().channel(0).unwrap(),
+            camera,
+            truth: None,
+        }
     };
     ["00000", "00050", "00100"].map(case).into()
 }
 
 impl Case {
     fn features(&self) -> Image {
-        let room = RoomView { perspective: &self.camera, segments: &[] };
+        let room = RoomView { perspective: &self.camera, segments: &[], strokes: &[] };
         let depth = DepthMap { image: &self.depth, kind: DepthKind::AlongZ };
         let input = Input { photo: &self.photo, depth: Some(depth), room: Some(room) };
         features::run(&input, &Params::default(), Monitor::default().job()).unwrap().image
@@ -221,7 +237,7 @@ fn megapixel() {
     let case = room(0.002);
     let monitor = Monitor::default();
     let monitor = &monitor;
-    let rooms = RoomView { perspective: &case.camera, segments: &[] };
+    let rooms = RoomView { perspective: &case.camera, segments: &[], strokes: &[] };
     let run = |input: Input| {
         let _ = features::run(&input, &Params::default(), monitor.job()).unwrap();
     };

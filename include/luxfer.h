@@ -1394,7 +1394,7 @@ luxfer_status luxfer_rectify_release(luxfer_rectify *rectify);
  *
  * What segmentation knows of each pixel of a photo: ten channels, L*, a*, b* (CIELAB, D65), depth, position x, y, z and
  * normal x, y, z. Depth comes from the caller, or from a network that the caller has as an ONNX file, or is laid out as a
- * room from the lines that luxfer_rectify has found, or is a neutral guess.
+ * room from the lines that luxfer_rectify has found and strokes on one of its planes, or is a neutral guess.
  * ==================================================================================================================== */
 
 /** The features of a photo. See luxfer_features_create. */
@@ -1471,7 +1471,7 @@ typedef struct luxfer_features_report {
 /** The caller's depth map. */
 #define LUXFER_DEPTH_FROM_CALLER 0
 
-/** A room laid out from the lines of the photo. */
+/** A room laid out from the lines of the photo, and strokes. */
 #define LUXFER_DEPTH_FROM_LAYOUT 1
 
 /** A guess that knows nothing of the photo. */
@@ -1489,8 +1489,9 @@ luxfer_status luxfer_features_params_init(luxfer_features_params *params,
 /** Creates the stage. The caller releases *features. Any thread. */
 luxfer_status luxfer_features_create(luxfer_context *context, luxfer_features **features);
 
-/** Sets the photo: linear RGB, 1 = display white. Any thread. */
-luxfer_status luxfer_features_set_photo(luxfer_features *features, luxfer_image *photo);
+/** Sets the photo: linear RGB, 1 = display white. Strokes set for a photo of another size are dropped. Any thread. */
+luxfer_status luxfer_features_set_photo(luxfer_features *features,
+                                        luxfer_image *photo);
 
 /**
  * Sets a depth map of the photo's size, 1 channel, in any unit; what is not positive and finite is a hole. kind is a
@@ -1520,6 +1521,37 @@ luxfer_status luxfer_features_set_network(luxfer_features *features,
  */
 luxfer_status luxfer_features_set_view(luxfer_features *features,
                                        luxfer_rectify *rectify);
+
+/**
+ * Adds a stroke on the photo as luxfer_segment_add_stroke does: positive is 1 on one plane of the room, such as the ceiling that
+ * carries the lights, and 0 elsewhere. They are heard where the room is laid out from lines (luxfer_features_set_view): of its
+ * boxes those are preferred that have all positive strokes on one face, whichever it is, and no other there. Any thread.
+ * LUXFER_INVALID_OPERATION before the photo is set.
+ */
+luxfer_status luxfer_features_add_stroke(luxfer_features *features,
+                                         const float *points,
+                                         size_t point_count,
+                                         float radius,
+                                         int32_t positive);
+
+/**
+ * Adds the strokes of a drawing of the photo's size that concern the plane, as luxfer_segment_add_strokes_image does with
+ * LUXFER_PHASE_PLANE. Any thread.
+ * LUXFER_INVALID_OPERATION before the photo is set; LUXFER_INVALID_ARGUMENT if the size differs.
+ */
+luxfer_status luxfer_features_add_strokes_image(luxfer_features *features,
+                                                luxfer_image *drawing);
+
+/**
+ * Adds the strokes of a text in UTF-8 that concern the plane, as luxfer_segment_add_strokes_text does with LUXFER_PHASE_PLANE. Any
+ * thread.
+ * LUXFER_INVALID_OPERATION before the photo is set; LUXFER_FORMAT, naming the line, if the text is malformed.
+ */
+luxfer_status luxfer_features_add_strokes_text(luxfer_features *features,
+                                               const char *description);
+
+/** Removes all strokes. Any thread. */
+luxfer_status luxfer_features_clear_strokes(luxfer_features *features);
 
 /**
  * Starts a job that computes the features. params may be NULL for the defaults. The caller releases *job. Any thread.

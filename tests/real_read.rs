@@ -5,7 +5,7 @@
 
 use glam::{DMat3, DVec2, DVec3, Vec3};
 use luxfer::exec::Pool;
-use luxfer::features::{self, DepthKind, DepthMap, RoomView};
+use luxfer::features::{self, DepthKind, DepthMap, PlaneStroke, RoomView};
 use luxfer::geometry::{FocalSource, Perspective};
 use luxfer::image::Image;
 use luxfer::image::io::{Encoding, encode_png, load, write_file};
@@ -143,7 +143,9 @@ fn ceilings_and_their_lights_are_found_in_real_photos() {
         let params =
             rectify::Params { focal: Some(known.focal), principal: Some(known.principal), ..Default::default() };
         let view = pool.run(|| rectify::find_view(&photo, &params, monitor.job())).unwrap();
-        let room = RoomView { perspective: &view.perspective, segments: &view.segments };
+        let painted: Vec<_> =
+            set.plane_strokes().map(|s| PlaneStroke { pixels: &s.pixels, positive: s.positive }).collect();
+        let room = RoomView { perspective: &view.perspective, segments: &view.segments, strokes: &painted };
         let started = Instant::now();
         let input = features::Input { photo: &photo, depth: None, room: Some(room) };
         let features = pool.run(|| features::run(&input, &Default::default(), monitor.job())).unwrap();
@@ -197,7 +199,7 @@ fn measured_depth_gives_smooth_walls_and_upright_normals() {
         let photo = load(&data.join(format!("rgbd/{name}_rgb.jpg")), Encoding::Srgb).unwrap();
         let depth = load(&data.join(format!("rgbd/{name}_depth.png")), Encoding::Linear).unwrap().channel(0).unwrap();
         let map = DepthMap { image: &depth, kind: DepthKind::AlongZ };
-        let room = RoomView { perspective: &perspective, segments: &[] };
+        let room = RoomView { perspective: &perspective, segments: &[], strokes: &[] };
         let input = features::Input { photo: &photo, depth: Some(map), room: Some(room) };
         let started = Instant::now();
         let got = pool.run(|| features::run(&input, &Default::default(), Monitor::default().job())).unwrap();

@@ -3,12 +3,13 @@
 //! In room axes the box is `left <= x <= right`, `top <= y <= bottom`, `z <= 1`: the back wall at distance one fixes the
 //! scale, which a single picture cannot tell (a camera 1.6 m above the floor would make it `1.6 / bottom` metres). So
 //! the four numbers are the back wall's sides in its central projection, candidates for them are the very
-//! segments that could be its sides, and the search is over all boxes these make. See `score` for what makes a box good.
+//! segments that could be its sides, and the search is over all boxes these make (see `search`). See `score` for what makes a
+//! box good.
 
 use super::depth::Surface;
-use super::score::{Evidence, MAX_SEGMENTS};
+use super::score::MAX_SEGMENTS;
 use super::{Frustum, RoomView};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::exec;
 use crate::geometry::Perspective;
 use crate::geometry::perspective::{HORIZONTAL_A, HORIZONTAL_B, VERTICAL};
@@ -27,6 +28,8 @@ pub enum Face {
 }
 
 impl Face {
+    pub const COUNT: usize = 5;
+
     /// The room axis along the face's normal.
     pub fn axis(self) -> usize {
         match self {
@@ -60,81 +63,10 @@ pub struct Layout {
     pub trust: f64,
 }
 
-/// Sides of an ordinary room, for where nothing is seen of it.
-const USUAL: [f64; 4] = [0.5, 0.5, 0.3, 0.4];
-/// Sides tried wherever there are no segments: `0.08 × 1.9^k`.
-const GRID: usize = 6;
-/// Sides tried from segments in the search over all boxes, and in the refinement of the best.
-const PEAKS: usize = 6;
-const FINE_PEAKS: usize = 24;
-/// Boxes are really different where a side differs by this factor.
-const DIFFERENT: f64 = 1.3;
-
 /// The room's axes with z the way the camera looks and x to its right; the vertical stays.
 pub fn facing_axes(perspective: &Perspective) -> DMat3 {
     let axes = perspective.axes;
     if axes.z_axis.z >= 0.0 { axes } else { DMat3::from_cols(-axes.x_axis, axes.y_axis, -axes.z_axis) }
-}
-
-/// Finds the box that the segments of a view agree with best.
-pub fn find(room: &RoomView, width: usize, height: usize, job: Job) -> Result<Layout> {
-    let axes = facing_axes(room.perspective);
-    let orthogonality = (axes.transpose() * axes - DMat3::IDENTITY).to_cols_array();
-    if !orthogonality.iter().all(|v| v.abs() < 1e-3) {
-        return Err(Error::argument("room.perspective.axes must be orthogonal unit columns; see Perspective"));
-    }
-    let evidence = Evidence::gather(room, &axes, DVec2::new(width as f64, height as f64));
-
-    // All boxes of the coarse candidates, one task for each pair of left and right.
-    let peaks: [Vec<f64>; 4] = std::array::from_fn(|side| evidence.candidates(side, FINE_PEAKS));
-    let coarse: [Vec<f64>; 4] = std::array::from_fn(|side| {
-        let mut all: Vec<f64> = peaks[side].iter().copied().take(PEAKS).collect();
-        all.extend((0..GRID).map(|k| 0.08 * 1.9f64.powi(k as i32)));
-        all
-    });
-    let tasks = coarse[0].len() * coarse[1].len();
-    let scored: Vec<Vec<([f64; 4], f64)>> = exec::map(tasks, job.part(0.0, 0.8), |task| {
-        let (left, right) = (coarse[0][task / coarse[1].len()], coarse[1][task % coarse[1].len()]);
-        let pairs = coarse[2].iter().flat_map(|&top| coarse[3].iter().map(move |&bottom| [left, right, top, bottom]));
-        pairs.map(|sides| (sides, objective(&evidence, &sides))).collect()
-    })?;
-    let mut best = (USUAL, objective(&evidence, &USUAL));
-    for &candidate in scored.iter().flatten() {
-        if candidate.1 > best.1 {
-            best = candidate;
-        }
-    }
-
-    // Side by side: every candidate, then ever smaller steps.
-    for step in [1.15, 1.06, 1.02, 1.006] {
-        job.check()?;
-        for side in 0..4 {
-            let nudges = [best.0[side] * step, best.0[side] / step];
-            for &value in peaks[side].iter().chain(&nudges) {
-                let mut sides = best.0;
-                sides[side] = value;
-                let score = objective(&evidence, &sides);
-                if score > best.1 {
-                    best = (sides, score);
-                }
-            }
-        }
-    }
-
-    // Trust: the lead over the best of the really different boxes.
-    let is_different = |sides: &[f64; 4]| sides.iter().zip(&best.0).any(|(a, b)| (a / b).ln().abs() > DIFFERENT.ln());
-    let rival =
-        scored.iter().flatten().filter(|(s, _)| is_different(s)).map(|&(_, v)| v).fold(f64::NEG_INFINITY, f64::max);
-    let lead = (best.1 - rival).max(0.0);
-    let heard = 1.0 - (-(evidence.len() as f64) / 15.0).exp();
-    job.report(1.0);
-    Ok(Layout { sides: best.0, score: evidence.score(&best.0), trust: heard * (0.3 + 0.7 * lead / (lead + 0.03)) })
-}
-
-/// The score, with a slight preference for usual rooms that decides where the segments do not.
-fn objective(evidence: &Evidence, sides: &[f64; 4]) -> f64 {
-    let unusual: f64 = sides.iter().zip(&USUAL).map(|(s, u)| (s / u).ln().powi(2)).sum();
-    evidence.score(sides) - 0.01 * unusual
 }
 
 /// For each of the two faces a ray comes nearest to: the face and the inverse of the ray's parameter there.

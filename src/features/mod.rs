@@ -33,6 +33,8 @@ mod monocular;
 mod normals;
 mod plane_fit;
 mod score;
+mod search;
+mod strokes;
 #[cfg(test)]
 mod tests;
 
@@ -73,6 +75,17 @@ pub struct RoomView<'a> {
     pub perspective: &'a Perspective,
     /// Detected segments with the room axis each runs along (0, 1, 2), if any.
     pub segments: &'a [(Segment, Option<usize>)],
+    /// Strokes on one of the room's planes, whichever it is, and on others, if any.
+    pub strokes: &'a [PlaneStroke<'a>],
+}
+
+/// What a stroke of the user's says of the room.
+#[derive(Clone, Copy)]
+pub struct PlaneStroke<'a> {
+    /// `y * width + x` of each; those off the photo are passed over.
+    pub pixels: &'a [u32],
+    /// On the plane, or elsewhere.
+    pub positive: bool,
 }
 
 #[derive(Clone, Copy)]
@@ -157,7 +170,7 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Features> {
             Ok((depth::from_map(map, &frustum, radius, geometry_job)?, DepthSource::Caller, None))
         }
         (None, Some(room)) => {
-            let layout = layout::find(room, width, height, geometry_job.part(0.0, 0.6))?;
+            let layout = search::find(room, width, height, geometry_job.part(0.0, 0.6))?;
             let surface = layout.surface(room, width, height, &frustum, geometry_job.part(0.6, 1.0))?;
             Ok((surface, DepthSource::Layout, Some(layout)))
         }

@@ -1,9 +1,12 @@
 //! What makes a box room good: segments lie on faces that contain their direction (a vertical edge cannot be drawn on
-//! the ceiling), and the seams between faces are where segments along them are.
+//! the ceiling), the seams between faces are where segments along them are, and the strokes of a plane lie on one face.
 
 use super::RoomView;
-use super::layout::faces;
-use crate::geometry::perspective::{HORIZONTAL_A, VERTICAL};
+use super::strokes;
+use crate::error::Result;
+use crate::geometry::perspective::{HORIZONTAL_A, HORIZONTAL_B, VERTICAL};
+use crate::job::Job;
+use crate::simd::widest;
 use glam::{DMat3, DVec2, DVec3};
 
 /// The longest segments that are heard; more cannot change a layout.
@@ -16,62 +19,105 @@ const IMPOSSIBLE: f64 = 1.5;
 const SEAM: f64 = 2.0;
 /// Relative difference of the distances to two faces at which a segment is off their seam.
 const SEAM_WIDTH: f64 = 0.03;
+/// What the strokes on the plane count for a box if all of them lie on its face, and the others against it. Lines seldom prefer
+/// one box to another by as much: one that puts a part of the strokes where they should not be is taken only if hardly a line
+/// allows of others.
+const ON_PLANE: f64 = 2.0;
+const ELSEWHERE: f64 = 1.0;
+/// Sums run in lanes, whose order is the same whatever the processor.
+const LANES: usize = 8;
 
+/// A segment that may lie on some faces and not on others.
 struct Witness {
     axis: usize,
-    /// Rays, in room axes, to the points on the segment.
-    rays: [DVec3; 3],
-    /// Share of the length of all segments, in angle.
+    /// The ray, in room axes, to its middle.
+    middle: DVec3,
+    /// Share of the length of all segments.
     weight: f64,
 }
 
-/// The classified segments of a view, as rays in room axes.
-pub struct Evidence(Vec<Witness>);
+/// Points of segments along one axis: the sizes of their rays' coordinates along it, and along the other two.
+#[derive(Default)]
+struct Points {
+    own: Vec<f64>,
+    p: Vec<f64>,
+    q: Vec<f64>,
+    weight: Vec<f64>,
+}
+
+/// What is seen towards one of the two side walls and towards one of ceiling and floor: of the box's sides only these two
+/// matter to it.
+#[derive(Default)]
+pub struct Quadrant {
+    /// For each axis.
+    points: [Points; 3],
+    /// The sizes of their rays' coordinates, and what each counts where it lies on the plane's face.
+    spots: Vec<(DVec3, f64)>,
+}
+
+/// The classified segments of a view, and the strokes on it.
+pub struct Evidence {
+    witnesses: Vec<Witness>,
+    /// Left and right below the ceiling, left and right above the floor.
+    pub quadrants: [Quadrant; 4],
+    /// Some stroke lies on the plane.
+    pub has_plane: bool,
+}
+
+/// The other two axes of each.
+const OTHERS: [[usize; 2]; 3] = [[VERTICAL, HORIZONTAL_B], [HORIZONTAL_A, HORIZONTAL_B], [HORIZONTAL_A, VERTICAL]];
 
 impl Evidence {
-    pub fn gather(room: &RoomView, axes: &DMat3, size: DVec2) -> Self {
+    /// What the segments and strokes of a view say of its box; `axes` are the room's as the camera sees them.
+    pub fn gather(room: &RoomView, axes: &DMat3, [width, height]: [usize; 2], job: Job) -> Result<Self> {
         let to_room = axes.transpose();
-        let camera = room.perspective;
+        let ray = |p: DVec2| to_room * room.perspective.ray(p);
         // One very long segment must not outvote the rest.
-        let longest = 0.25 * size.length();
-        let mut witnesses: Vec<Witness> = room
-            .segments
-            .iter()
+        let longest = 0.25 * DVec2::new(width as f64, height as f64).length();
+        let mut heard: Vec<(f64, usize, [DVec3; 3])> = (room.segments.iter())
             .filter_map(|(segment, axis)| {
                 let axis = axis.filter(|&a| a < 3)?;
-                let rays = POINTS.map(|t| to_room * camera.ray(segment.a.lerp(segment.b, t)));
-                let weight = segment.length().min(longest);
-                (weight > 0.0 && rays.iter().all(|r| r.is_finite())).then_some(Witness { axis, rays, weight })
+                let rays = POINTS.map(|t| ray(segment.a.lerp(segment.b, t)));
+                let length = segment.length();
+                (length > 0.0 && rays.iter().all(|r| r.is_finite())).then_some((length, axis, rays))
             })
             .collect();
-        witnesses.sort_by(|a, b| b.weight.total_cmp(&a.weight));
-        witnesses.truncate(MAX_SEGMENTS);
-        let total: f64 = witnesses.iter().map(|w| w.weight).sum();
-        witnesses.iter_mut().for_each(|w| w.weight /= total);
-        Self(witnesses)
+        heard.sort_by(|a, b| b.0.total_cmp(&a.0));
+        heard.truncate(MAX_SEGMENTS);
+        let total: f64 = heard.iter().map(|(length, ..)| length.min(longest)).sum();
+
+        let mut quadrants: [Quadrant; 4] = Default::default();
+        let mut witnesses = Vec::with_capacity(heard.len());
+        for (length, axis, rays) in heard {
+            let weight = length.min(longest) / total;
+            witnesses.push(Witness { axis, middle: rays[1], weight });
+            for ray in rays {
+                let (quadrant, size) = quadrant(ray);
+                let [p, q] = OTHERS[axis];
+                quadrants[quadrant].points[axis].push([size[axis], size[p], size[q]], weight / POINTS.len() as f64);
+            }
+        }
+        quadrants.iter_mut().flat_map(|q| &mut q.points).for_each(Points::fill_up);
+
+        // What lies elsewhere says nothing where no stroke is on the plane.
+        let spots = strokes::spots(room, &to_room, [width, height], job)?;
+        let has_plane = spots.iter().any(|s| s.positive);
+        for spot in spots.iter().filter(|_| has_plane) {
+            let (quadrant, size) = quadrant(spot.ray);
+            let worth = if spot.positive { ON_PLANE } else { -ELSEWHERE };
+            quadrants[quadrant].spots.push((size, worth * spot.weight));
+        }
+        Ok(Self { witnesses, quadrants, has_plane })
     }
 
     pub fn len(&self) -> usize {
-        self.0.len()
+        self.witnesses.len()
     }
 
     /// Agreement of the segments with a box, at most 1 if none lies on a seam and `1 + SEAM` if all do.
     pub fn score(&self, sides: &[f64; 4]) -> f64 {
-        let mut score = 0.0;
-        for witness in &self.0 {
-            let mut agreement = 0.0;
-            for &ray in &witness.rays {
-                let [(first, a), (second, b)] = faces(sides, ray);
-                agreement += if first.axis() == witness.axis { -IMPOSSIBLE } else { 1.0 };
-                // On a seam the two nearest faces are hit together, and the seam runs along the third axis.
-                if first.axis() != witness.axis && second.axis() != witness.axis {
-                    let off = (a - b) / (a * SEAM_WIDTH);
-                    agreement += SEAM * (1.0 - off * off).max(0.0);
-                }
-            }
-            score += witness.weight * agreement / POINTS.len() as f64;
-        }
-        score
+        let agreement = |(i, quadrant): (usize, &Quadrant)| quadrant.lines(1.0 / sides[i % 2], 1.0 / sides[2 + i / 2]);
+        self.quadrants.iter().enumerate().map(agreement).sum()
     }
 
     /// Values of one side (left, right, ceiling, floor) at which segments could be the back wall's edge, the best
@@ -80,12 +126,11 @@ impl Evidence {
         // The edge at a side wall is vertical, the one at ceiling or floor runs along the horizontal axis of the back wall.
         let (edge_axis, across) = if side < 2 { (VERTICAL, 0) } else { (HORIZONTAL_A, 1) };
         let sign = if side % 2 == 0 { -1.0 } else { 1.0 };
-        let mut values: Vec<(f64, f64)> = (self.0.iter())
+        let mut values: Vec<(f64, f64)> = (self.witnesses.iter())
             .filter(|w| w.axis == edge_axis)
             .filter_map(|w| {
-                let ray = w.rays[1];
-                let value = sign * ray[across] / ray.z;
-                (ray.z > 0.0 && (0.02..20.0).contains(&value)).then_some((value, w.weight))
+                let value = sign * w.middle[across] / w.middle.z;
+                (w.middle.z > 0.0 && (0.02..20.0).contains(&value)).then_some((value, w.weight))
             })
             .collect();
         values.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -101,4 +146,69 @@ impl Evidence {
         }
         chosen
     }
+}
+
+/// The quadrant a ray points to, and the sizes of its coordinates; what is behind the camera is far away to the front.
+fn quadrant(ray: DVec3) -> (usize, DVec3) {
+    let index = usize::from(ray.x >= 0.0) + 2 * usize::from(ray.y >= 0.0);
+    (index, DVec3::new(ray.x.abs(), ray.y.abs(), ray.z.max(0.0)))
+}
+
+impl Quadrant {
+    /// What its segments say of a side wall, and a ceiling or floor, at distances of these inverses.
+    pub fn lines(&self, wall: f64, level: f64) -> f64 {
+        let inverse = [wall, level, 1.0];
+        let agreement = self.points.iter().zip(OTHERS).enumerate().map(|(axis, (points, [p, q]))| {
+            agreement(&points.own, &points.p, &points.q, &points.weight, [inverse[axis], inverse[p], inverse[q]])
+        });
+        agreement.sum()
+    }
+
+    /// What its strokes count if the plane is the side wall, the ceiling or floor, or the back wall.
+    pub fn strokes(&self, wall: f64, level: f64) -> [f64; 3] {
+        let mut counts = [0.0; 3];
+        for (size, worth) in &self.spots {
+            let inverse = [size.x * wall, size.y * level, size.z];
+            let first = (1..3).fold(0, |first, i| if inverse[i] > inverse[first] { i } else { first });
+            counts[first] += worth;
+        }
+        counts
+    }
+}
+
+impl Points {
+    fn push(&mut self, [own, p, q]: [f64; 3], weight: f64) {
+        self.own.push(own);
+        self.p.push(p);
+        self.q.push(q);
+        self.weight.push(weight);
+    }
+
+    /// Points without weight, up to whole lanes.
+    fn fill_up(&mut self) {
+        while !self.weight.len().is_multiple_of(LANES) {
+            self.push([0.0, 1.0, 1.0], 0.0);
+        }
+    }
+}
+
+widest! {
+/// The weighted agreement of points of segments along an axis. `inverse` has, for this axis and the two others, the inverse
+/// distances of the faces across them: the face that is hit is the one with the largest inverse along the ray.
+fn agreement(own: &[f64], p: &[f64], q: &[f64], weight: &[f64], inverse: [f64; 3]) -> f64 {
+    let mut sums = [0.0; LANES];
+    let others = p.chunks_exact(LANES).zip(q.chunks_exact(LANES));
+    for ((own, (p, q)), weight) in own.chunks_exact(LANES).zip(others).zip(weight.chunks_exact(LANES)) {
+        for lane in 0..LANES {
+            let (own, p, q) = (own[lane] * inverse[0], p[lane] * inverse[1], q[lane] * inverse[2]);
+            let (first, second) = if p > q { (p, q) } else { (q, p) };
+            // On a seam the two nearest faces are hit together, and the seam runs along the third axis.
+            let off = (first - second) / (first * SEAM_WIDTH);
+            let near = 1.0 - off * off;
+            let seam = if second >= own && near > 0.0 { SEAM * near } else { 0.0 };
+            sums[lane] += weight[lane] * if own > first { -IMPOSSIBLE } else { 1.0 + seam };
+        }
+    }
+    sums.iter().sum()
+}
 }

@@ -1,9 +1,12 @@
 //! Exact rooms: analytic depth of a box seen by a known camera.
 
+mod strokes;
+
 use super::layout::faces;
 use super::*;
 use crate::exec::Pool;
 use crate::geometry::FocalSource;
+use crate::geometry::perspective::VERTICAL;
 use crate::job::Monitor;
 use crate::rng::Rng;
 use glam::{DMat3, DVec2, DVec3, Vec3};
@@ -86,7 +89,7 @@ fn normals_and_positions_of_an_exact_room_are_exact_away_from_its_seams() {
             [(4.0 * per_z * truth(&camera, &sides, x, y).0) as f32]
         })
         .unwrap();
-        let room = RoomView { perspective: &camera, segments: &[] };
+        let room = RoomView { perspective: &camera, segments: &[], strokes: &[] };
         let photo = photo(width, height);
         let features = run_with(&photo, Some(DepthMap { image: &depth, kind }), Some(room)).unwrap();
         assert_eq!(features.depth_source, DepthSource::Caller);
@@ -127,7 +130,7 @@ fn noise_depth_edges_and_holes_leave_normals_robust() {
         [if hole { f32::NAN } else { (z * noise(x, y)) as f32 }]
     })
     .unwrap();
-    let room = RoomView { perspective: &camera, segments: &[] };
+    let room = RoomView { perspective: &camera, segments: &[], strokes: &[] };
     let params = Params { normal_radius: 5, ..Params::default() };
     let photo = photo(width, height);
     let depth = DepthMap { image: &depth, kind: DepthKind::AlongZ };
@@ -159,7 +162,7 @@ fn the_layout_of_a_synthetic_room_is_recovered() {
     {
         let camera = camera(yaw, pitch, 0.02, width, height);
         let segments = room_segments(&camera, &sides, width, height);
-        let room = RoomView { perspective: &camera, segments: &segments };
+        let room = RoomView { perspective: &camera, segments: &segments, strokes: &[] };
         let features = run_with(&photo(width, height), None, Some(room)).unwrap();
         let layout = features.layout.unwrap();
         // Every face that is really seen is the right one, and nearly at its place.
@@ -187,14 +190,14 @@ fn the_layout_of_a_synthetic_room_is_recovered() {
 #[test]
 fn without_segments_the_layout_is_a_usual_room_that_no_one_trusts() {
     let camera = camera(0.0, 0.0, 0.0, 64, 48);
-    let room = RoomView { perspective: &camera, segments: &[] };
+    let room = RoomView { perspective: &camera, segments: &[], strokes: &[] };
     let features = run_with(&photo(64, 48), None, Some(room)).unwrap();
     assert_eq!(features.depth_source, DepthSource::Layout);
     assert!(features.depth_confidence.data.iter().all(|&c| c <= 0.05));
     // Zero-length segments and unknown axes are no evidence either.
     let point = Segment { a: DVec2::ONE, b: DVec2::ONE };
     let segments = [(point, Some(1)), (point, None), (point, Some(9))];
-    let room = RoomView { perspective: &camera, segments: &segments };
+    let room = RoomView { perspective: &camera, segments: &segments, strokes: &[] };
     assert_eq!(run_with(&photo(64, 48), None, Some(room)).unwrap().image, features.image);
 }
 
@@ -213,6 +216,11 @@ fn degenerate_depth_has_a_right_answer_or_a_clear_error() {
     let wrong_size = Image::new(41, 30, 1).unwrap();
     assert!(with(&wrong_size).unwrap_err().message.contains("41 x 30"));
     assert!(with(&Image::new(40, 30, 3).unwrap()).is_err());
+    // Beside what is measured, zeros and infinities are holes.
+    let mixed = |x: usize, y: usize| [[2.0, 0.0, f32::INFINITY, -0.0, f32::NAN, f32::NEG_INFINITY][(x + y) % 6]];
+    let features = with(&Image::from_fn(40, 30, mixed).unwrap()).unwrap();
+    assert!(features.image.data.chunks_exact(CHANNELS).all(|p| p[3].abs() < 1e-6));
+    assert_eq!(features.depth_confidence.data.iter().filter(|&&c| c == 1.0).count(), 40 * 30 / 6);
     // One measured pixel: everything else is filled from it.
     let mut one = constant(0.0);
     one.pixel_mut(7, 9)[0] = 3.0;
@@ -233,7 +241,7 @@ fn planes_are_exact_beside_holes_and_on_narrow_images() {
         [if hole { 0.0 } else { -2.0 / slanted.dot(ray) }]
     })
     .unwrap();
-    let room = RoomView { perspective: &camera, segments: &[] };
+    let room = RoomView { perspective: &camera, segments: &[], strokes: &[] };
     let map = Some(DepthMap { image: &depth, kind: DepthKind::AlongZ });
     let features = run_with(&photo(width, height), map, Some(room)).unwrap();
     for p in features.image.data.chunks_exact(CHANNELS) {
@@ -314,7 +322,10 @@ fn the_bits_do_not_depend_on_the_number_of_threads() {
     let map = DepthMap { image: &depth, kind: DepthKind::AlongRay };
     let both = |threads: usize| {
         Pool::new(threads).unwrap().run(|| {
-            let room = RoomView { perspective: &camera, segments: &segments };
+            let strokes =
+                [(0..4000, true), (9000..15000, false)].map(|(p, positive)| (p.collect::<Vec<u32>>(), positive));
+            let strokes = strokes.each_ref().map(|(pixels, positive)| PlaneStroke { pixels, positive: *positive });
+            let room = RoomView { perspective: &camera, segments: &segments, strokes: &strokes };
             let layout = run_with(&photo, None, Some(room)).unwrap();
             let given = run_with(&photo, Some(map), None).unwrap();
             [layout.image, layout.depth_confidence, given.image, given.depth_confidence]

@@ -2,7 +2,7 @@
 //!
 //! What segmentation knows of each pixel of a photo: ten channels, L*, a*, b* (CIELAB, D65), depth, position x, y, z and
 //! normal x, y, z. Depth comes from the caller, or from a network that the caller has as an ONNX file, or is laid out as a
-//! room from the lines that luxfer_rectify has found, or is a neutral guess.
+//! room from the lines that luxfer_rectify has found and strokes on one of its planes, or is a neutral guess.
 
 use super::context::luxfer_context;
 use super::guard::{enter, guard};
@@ -12,16 +12,18 @@ use super::job::luxfer_job;
 use super::params::{self, Report, Versioned};
 use super::pointer::{Out, text};
 use super::rectify::luxfer_rectify;
+use super::segment::stroke;
 use super::stage::{Stage, need};
 use super::status::luxfer_status;
 use crate::error::{Error, ErrorKind, Result};
 #[cfg(feature = "onnx")]
 use crate::features::DepthNetwork;
-use crate::features::{self, DepthKind, DepthSource, Features};
+use crate::features::{self, DepthKind, DepthSource, Features, PlaneStroke};
 use crate::image::Image;
 #[cfg(feature = "onnx")]
 use crate::image::io;
 use crate::rectify::View;
+use crate::segment::{Stroke, strokes};
 use std::ffi::c_char;
 #[cfg(feature = "onnx")]
 use std::path::Path;
@@ -68,7 +70,7 @@ pub const LUXFER_NORMALISATION_NONE: luxfer_normalisation = 3;
 pub type luxfer_depth_source = i32;
 /// The caller's depth map.
 pub const LUXFER_DEPTH_FROM_CALLER: luxfer_depth_source = 0;
-/// A room laid out from the lines of the photo.
+/// A room laid out from the lines of the photo, and strokes.
 pub const LUXFER_DEPTH_FROM_LAYOUT: luxfer_depth_source = 1;
 /// A guess that knows nothing of the photo.
 pub const LUXFER_DEPTH_FROM_NOTHING: luxfer_depth_source = 2;
@@ -134,6 +136,14 @@ pub(super) struct Inputs {
     depth: Option<(Arc<Pixels>, DepthKind)>,
     network: Option<Arc<DepthNetwork>>,
     view: Option<Arc<View>>,
+    strokes: Vec<Stroke>,
+}
+
+impl Inputs {
+    fn size(&self) -> Result<(usize, usize)> {
+        let image = need(&self.photo, "luxfer_features_set_photo")?.image();
+        Ok((image.width, image.height))
+    }
 }
 
 /// The result, and what a network has estimated on the way.
@@ -177,7 +187,7 @@ pub unsafe extern "C" fn luxfer_features_create(
     })
 }
 
-/// Sets the photo: linear RGB, 1 = display white. Any thread.
+/// Sets the photo: linear RGB, 1 = display white. Strokes set for a photo of another size are dropped. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_features_set_photo(
     features: *mut luxfer_features,
@@ -186,6 +196,10 @@ pub unsafe extern "C" fn luxfer_features_set_photo(
     enter(features, |stage| {
         let photo = handle::borrow_in(stage.context(), photo, "photo")?;
         stage.change(|inputs| {
+            let size = (photo.image().width, photo.image().height);
+            if inputs.size().is_ok_and(|before| before != size) {
+                inputs.strokes.clear();
+            }
             inputs.photo = Some(photo);
             Ok(())
         })
@@ -301,6 +315,75 @@ pub unsafe extern "C" fn luxfer_features_set_view(
     })
 }
 
+/// Adds a stroke on the photo as luxfer_segment_add_stroke does: positive is 1 on one plane of the room, such as the ceiling that
+/// carries the lights, and 0 elsewhere. They are heard where the room is laid out from lines (luxfer_features_set_view): of its
+/// boxes those are preferred that have all positive strokes on one face, whichever it is, and no other there. Any thread.
+/// LUXFER_INVALID_OPERATION before the photo is set.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_features_add_stroke(
+    features: *mut luxfer_features,
+    points: *const f32,
+    point_count: usize,
+    radius: f32,
+    positive: i32,
+) -> luxfer_status {
+    enter(features, |stage| {
+        stage.change(|inputs| {
+            let stroke = stroke(points.cast(), point_count, radius, positive, inputs.size()?)?;
+            inputs.strokes.push(stroke);
+            Ok(())
+        })
+    })
+}
+
+/// Adds the strokes of a drawing of the photo's size that concern the plane, as luxfer_segment_add_strokes_image does with
+/// LUXFER_PHASE_PLANE. Any thread.
+/// LUXFER_INVALID_OPERATION before the photo is set; LUXFER_INVALID_ARGUMENT if the size differs.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_features_add_strokes_image(
+    features: *mut luxfer_features,
+    drawing: *mut luxfer_image,
+) -> luxfer_status {
+    enter(features, |stage| {
+        let drawing = handle::borrow_in(stage.context(), drawing, "drawing")?;
+        stage.change(|inputs| {
+            let photo = need(&inputs.photo, "luxfer_features_set_photo")?.image();
+            photo.check_same_size("the photo", drawing.image(), "the drawing")?;
+            inputs.strokes.extend(strokes::from_image(drawing.image())?.plane_examples());
+            Ok(())
+        })
+    })
+}
+
+/// Adds the strokes of a text in UTF-8 that concern the plane, as luxfer_segment_add_strokes_text does with LUXFER_PHASE_PLANE. Any
+/// thread.
+/// LUXFER_INVALID_OPERATION before the photo is set; LUXFER_FORMAT, naming the line, if the text is malformed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_features_add_strokes_text(
+    features: *mut luxfer_features,
+    description: *const c_char,
+) -> luxfer_status {
+    enter(features, |stage| {
+        let description = text(description, "description")?;
+        stage.change(|inputs| {
+            let (width, height) = inputs.size()?;
+            inputs.strokes.extend(strokes::parse(description, width, height)?.plane_examples());
+            Ok(())
+        })
+    })
+}
+
+/// Removes all strokes. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_features_clear_strokes(features: *mut luxfer_features) -> luxfer_status {
+    enter(features, |stage| {
+        stage.change(|inputs| {
+            inputs.strokes.clear();
+            Ok(())
+        })
+    })
+}
+
 /// Starts a job that computes the features. params may be NULL for the defaults. The caller releases *job. Any thread.
 /// LUXFER_INVALID_OPERATION if the photo is missing or a job runs already. The job may end with LUXFER_INVALID_ARGUMENT if
 /// sizes differ or a setting is out of range, LUXFER_DEGENERATE if the depth map is all holes.
@@ -316,13 +399,16 @@ pub unsafe extern "C" fn luxfer_features_start(
         stage.start(job, move |inputs, _, job| {
             let photo = need(&inputs.photo, "luxfer_features_set_photo")?.image();
             let depth = inputs.depth.as_ref();
+            let painted = inputs.strokes.iter();
+            let strokes: Vec<_> = painted.map(|s| PlaneStroke { pixels: &s.pixels, positive: s.positive }).collect();
             let input = features::Input {
                 photo,
                 depth: depth.map(|(image, kind)| features::DepthMap { image: image.image(), kind: *kind }),
-                room: inputs
-                    .view
-                    .as_ref()
-                    .map(|view| features::RoomView { perspective: &view.perspective, segments: &view.segments }),
+                room: inputs.view.as_ref().map(|view| features::RoomView {
+                    perspective: &view.perspective,
+                    segments: &view.segments,
+                    strokes: &strokes,
+                }),
             };
             compute(&input, inputs.network.as_deref(), &params, job)
         })

@@ -26,8 +26,13 @@ impl Transfer {
     pub(super) fn compute_features(&mut self, job: Job) -> Result<()> {
         let photo = need(&self.input.photo, "set the photo")?;
         let depth = self.input.depth.as_ref().map(|(image, kind)| features::DepthMap { image, kind: *kind });
+        // What the strokes tell of the plane, they tell of the room around it.
+        let painted = self.input.strokes.plane_strokes();
+        let strokes: Vec<_> =
+            painted.map(|s| features::PlaneStroke { pixels: &s.pixels, positive: s.positive }).collect();
         let view = self.results.view.as_ref();
-        let room = view.map(|v| features::RoomView { perspective: &v.perspective, segments: &v.segments });
+        let room =
+            view.map(|v| features::RoomView { perspective: &v.perspective, segments: &v.segments, strokes: &strokes });
         let input = features::Input { photo, depth, room };
         self.results.features = Some(Arc::new(features::run(&input, &self.params.features, job)?));
         Ok(())

@@ -452,6 +452,7 @@ void stages_say_what_they_lack() {
     OK(rectify.set_mask(Image()));
     OK(features.set_depth(Image()));
     OK(features.clear_network());
+    OK(features.clear_strokes());
     CHECK_ERROR(features.set_network("absent.onnx"), LUXFER_IO);
     CHECK_ERROR(features.set_network("absent.onnx", 9), LUXFER_INVALID_ARGUMENT);
     OK(emission.clear_photo());
@@ -460,6 +461,7 @@ void stages_say_what_they_lack() {
     CHECK_ERROR(transfer.set_scene(Scene(), "Ceiling"), LUXFER_INVALID_ARGUMENT);
 
     const float points[] = {0.5f, 0.5f, 3.5f, 2.5f};
+    CHECK_ERROR(features.add_stroke(points, 1, true), LUXFER_INVALID_OPERATION);
     CHECK_ERROR(segment.add_stroke(points, 1, true), LUXFER_INVALID_OPERATION);
     OK(segment.set_features(new_image(context)));
     OK(segment.add_stroke(points, 1, true));

@@ -58,6 +58,11 @@ void lighting_transfer(const Context &context) {
     const auto features = copied(luxfer::Features::create(context));
     features.set_photo(photo);
     features.set_view(rectify);
+    features.add_strokes("plane 2 1 1 20 20");
+    features.clear_strokes();
+    const float ceiling[] = {150, 20, 250, 60};
+    features.add_stroke(ceiling, 2, true);
+    features.add_strokes(strokes);
     features.start().wait();
     CHECK(features.report().depth_source == LUXFER_DEPTH_FROM_LAYOUT);
     const Image channels = features.image(LUXFER_FEATURES_CHANNELS);

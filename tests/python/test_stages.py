@@ -70,6 +70,7 @@ class Transfer(Case):
         view = luxfer.Rectify(context(), photo).run()
         features = luxfer.Features(context(), photo)
         features.set_view(view)
+        features.add_strokes_image(strokes)
         features.run()
         plane = luxfer.Segment(context(), features.image())
         plane.add_strokes_image(strokes, "plane")

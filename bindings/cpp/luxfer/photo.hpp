@@ -63,6 +63,15 @@ public:
     /// Lines and camera as they are now; may be empty: none.
     Result<> set_view(const Rectify &rectify) const { return call(luxfer_features_set_view, rectify.get()); }
 
+    /// On one plane of the room, or elsewhere, for its layout; points are x and y of each, in pixels.
+    Result<> add_stroke(Span<const float> points, float radius, bool is_positive) const {
+        const std::int32_t positive = is_positive;
+        return call(luxfer_features_add_stroke, points.data(), points.size() / 2, radius, positive);
+    }
+    Result<> add_strokes(const Image &drawing) const { return call(luxfer_features_add_strokes_image, drawing.get()); }
+    Result<> add_strokes(Text description) const { return call(luxfer_features_add_strokes_text, description.get()); }
+    Result<> clear_strokes() const { return call(luxfer_features_clear_strokes); }
+
     Result<Job> start(const luxfer_features_params &params = FeaturesParams()) const {
         return make<Job>(luxfer_features_start, &params);
     }

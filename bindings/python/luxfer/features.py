@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING, cast
 from . import _abi, _params
 from .image import Image, image_of
 from .job import Job, Progress, StageBase
+from .segment import stroke_arguments
 from .types import DepthKind, FeaturesImage, FeaturesReport, Normalisation
 
 if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
     from typing_extensions import Unpack
 
     from .context import Context
@@ -55,6 +57,23 @@ class Features(StageBase):
     def set_view(self, rectify: Rectify | None) -> None:
         """The lines and the camera found in the same photo; None: none."""
         self._call("set_view", None if rectify is None else rectify)
+
+    def add_stroke(self, points: ArrayLike, radius: float, positive: bool) -> None:
+        """Adds a stroke along points (n, 2) in pixels, for the layout of the room: positive on one of its planes, else elsewhere."""
+        self._call("add_stroke", *stroke_arguments(points, radius, positive))
+
+    def add_strokes_image(self, drawing: ImageLike) -> None:
+        """Adds the strokes of a drawing that concern the plane: green, and yellow as lights lie in it; red elsewhere. An array of
+        uint8 is taken as sRGB."""
+        self._call("add_strokes_image", image_of(self._context, drawing, "srgb"))
+
+    def add_strokes_text(self, description: str) -> None:
+        """Adds the strokes of a text that concern the plane, one a line: "plane 3 310.5 30 320 31"."""
+        self._call("add_strokes_text", _params.text(description, "description"))
+
+    def clear_strokes(self) -> None:
+        """Removes all strokes."""
+        self._call("clear_strokes")
 
     def start(self, **params: Unpack[FeaturesParams]) -> Job[Features]:
         """Starts the work."""

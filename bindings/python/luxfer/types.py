@@ -208,7 +208,7 @@ class DepthSource(IntEnum):
     CALLER = 0
     """The caller's depth map."""
     LAYOUT = 1
-    """A room laid out from the lines of the photo."""
+    """A room laid out from the lines of the photo, and strokes."""
     NOTHING = 2
     """A guess that knows nothing of the photo."""
     NETWORK = 3

@@ -60,8 +60,12 @@ impl StrokeSet {
     /// The examples of the first phase: lights lie in the plane, so their strokes are examples of it as well; without
     /// them bright lamps would be cut out of a dark ceiling. What is no light says nothing of the plane.
     pub fn plane_examples(&self) -> Vec<Stroke> {
-        let lights = self.lights.iter().filter(|s| s.positive);
-        self.plane.iter().chain(lights).cloned().collect()
+        self.plane_strokes().cloned().collect()
+    }
+
+    /// The same, one by one.
+    pub fn plane_strokes(&self) -> impl Iterator<Item = &Stroke> {
+        self.plane.iter().chain(self.lights.iter().filter(|s| s.positive))
     }
 }
 

@@ -1,0 +1,45 @@
+//! What strokes say of the room: at most one thing of each kind from each cell of a grid, so that neither the width of the brush
+//! nor the number of strokes decides.
+
+use super::RoomView;
+use crate::error::Result;
+use crate::image::try_vec;
+use crate::job::Job;
+use glam::{DMat3, DVec2, DVec3};
+
+/// Cells along each side of the photo. Odd: no pixel's centre lies between two, and a mirrored photo has mirrored cells.
+const CELLS: usize = 15;
+
+/// What the strokes of one kind in a cell say.
+pub struct Spot {
+    /// The ray, in room axes, to the mean of their pixels.
+    pub ray: DVec3,
+    /// On the plane, or elsewhere.
+    pub positive: bool,
+    /// Share of the kind's spots.
+    pub weight: f64,
+}
+
+/// The spots of a view's strokes. Pixels off the image are passed over; those that both kinds cover speak for both.
+pub fn spots(room: &RoomView, to_room: &DMat3, [width, height]: [usize; 2], job: Job) -> Result<Vec<Spot>> {
+    let mut cells = try_vec(2 * CELLS * CELLS, (DVec2::ZERO, 0.0))?;
+    for stroke in room.strokes {
+        job.check()?;
+        for pixel in stroke.pixels.iter().map(|&p| p as usize).filter(|p| *p < width * height) {
+            let (x, y) = (pixel % width, pixel / width);
+            let cell = [(2 * x + 1) * CELLS / (2 * width), (2 * y + 1) * CELLS / (2 * height)];
+            let (sum, count) = &mut cells[2 * (cell[1] * CELLS + cell[0]) + usize::from(stroke.positive)];
+            *sum += DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
+            *count += 1.0;
+        }
+    }
+    let painted = |positive: bool| cells.iter().skip(usize::from(positive)).step_by(2).filter(|c| c.1 > 0.0);
+    let counts = [false, true].map(|positive| painted(positive).count());
+    let spots = [false, true].into_iter().flat_map(|positive| {
+        painted(positive).map(move |(sum, count)| {
+            let ray = *to_room * room.perspective.ray(sum / *count);
+            Spot { ray, positive, weight: 1.0 / counts[usize::from(positive)] as f64 }
+        })
+    });
+    Ok(spots.filter(|spot| spot.ray.is_finite()).collect())
+}
