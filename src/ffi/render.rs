@@ -16,8 +16,8 @@ use super::stage::{Stage, need};
 use super::status::luxfer_status;
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::Image;
-use crate::job::Monitor;
-use crate::render::{self, Film, Outputs, parts};
+use crate::job::{Job, Monitor};
+use crate::render::{self, Film, Outputs, World, parts};
 use crate::scene::{Camera, Scene};
 use std::sync::Arc;
 
@@ -174,6 +174,28 @@ impl Inputs {
         };
         Ok((object, scene, camera))
     }
+
+    /// The same with settings, as one rendering; params may be NULL for the defaults.
+    pub(super) fn shot(&self, params: *const luxfer_render_params) -> Result<Shot> {
+        let (object, scene, camera) = self.view()?;
+        let params = render::Params { outputs: self.outputs.clone(), ..params::read(params)?.params() };
+        Ok(Shot { object, scene, camera, params })
+    }
+}
+
+/// A rendering as it was asked for when its job started, whatever is changed while that runs.
+pub(super) struct Shot {
+    object: Arc<SceneObject>,
+    scene: Arc<Scene>,
+    pub(super) camera: Camera,
+    pub(super) params: render::Params,
+}
+
+impl Shot {
+    /// The scene made ready.
+    pub(super) fn world(&self, job: Job) -> Result<Arc<World>> {
+        self.object.world(&self.scene, job)
+    }
 }
 
 #[derive(Clone)]
@@ -263,12 +285,10 @@ pub unsafe extern "C" fn luxfer_render_start(
     job: *mut *mut luxfer_job,
 ) -> luxfer_status {
     enter(render, |stage| {
-        let inputs = stage.inputs();
-        let (object, scene, camera) = inputs.view()?;
-        let params = render::Params { outputs: inputs.outputs, ..params::read(params)?.params() };
+        let shot = stage.inputs().shot(params)?;
         stage.start(job, move |_, stage, job| {
-            let world = object.world(&scene, job.part(0.0, 0.05))?;
-            render::run(&world, &camera, &params, job.part(0.05, 1.0), &mut |film| {
+            let world = shot.world(job.part(0.0, 0.05))?;
+            render::run(&world, &shot.camera, &shot.params, job.part(0.05, 1.0), &mut |film| {
                 // What is on the way can be done without.
                 if let Ok(copy) = film.try_clone() {
                     stage.publish(copy);

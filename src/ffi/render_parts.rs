@@ -115,14 +115,12 @@ pub unsafe extern "C" fn luxfer_render_start_part(
     job: *mut *mut luxfer_job,
 ) -> luxfer_status {
     enter(render, |stage| {
-        let inputs = stage.inputs();
-        let (object, scene, camera) = inputs.view()?;
-        let params = Params { outputs: inputs.outputs, ..params::read(params)?.params() };
-        let part = params::read(part)?.part(&params);
+        let shot = stage.inputs().shot(params)?;
+        let part = params::read(part)?.part(&shot.params);
         let path = PathBuf::from(text(path, "path")?);
         stage.start(job, move |_, _, job| {
-            let world = object.world(&scene, job.part(0.0, 0.05))?;
-            let rendered = parts::run(&world, &camera, &params, &part, job.part(0.05, 0.99))?;
+            let world = shot.world(job.part(0.0, 0.05))?;
+            let rendered = parts::run(&world, &shot.camera, &shot.params, &part, job.part(0.05, 0.99))?;
             rendered.save(&path)?;
             Ok(rendered.film)
         })
@@ -168,12 +166,10 @@ pub unsafe extern "C" fn luxfer_render_start_merge(
 ) -> luxfer_status {
     enter(render, |stage| {
         let inputs = stage.inputs();
-        let (object, scene, camera) = inputs.view()?;
-        let params = Params { outputs: inputs.outputs, ..params::read(params)?.params() };
-        let files = inputs.parts;
+        let (shot, files) = (inputs.shot(params)?, inputs.parts);
         stage.start(job, move |_, _, job| -> Result<Film> {
-            let world = object.world(&scene, job.part(0.0, 0.1))?;
-            parts::merge(&world, &camera, &params, &files, job.part(0.1, 1.0))
+            let world = shot.world(job.part(0.0, 0.1))?;
+            parts::merge(&world, &shot.camera, &shot.params, &files, job.part(0.1, 1.0))
         })
     })
 }
