@@ -8,6 +8,8 @@
 //! `cargo bench --bench plan -- renderings` or `-- transfers` makes the one or the other alone.
 
 mod harness;
+#[path = "plan/outcomes.rs"]
+mod outcomes;
 #[path = "plan/photos.rs"]
 mod photos;
 #[path = "plan/renderings.rs"]
@@ -17,8 +19,7 @@ mod transfers;
 
 use harness::{Table, figure, quantile};
 use luxfer::exec::Pool;
-use luxfer::image::Image;
-use std::time::Duration;
+use outcomes::{Outcomes, within};
 
 fn main() {
     let pool = Pool::new(1).expect("a thread");
@@ -36,42 +37,6 @@ fn main() {
             figure(&format!("plan.{name}.median"), quantile(ratios, 0.5), "x");
         }
     });
-}
-
-/// Processor time of the calling thread.
-fn cpu() -> Duration {
-    let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
-    // SAFETY: the call fills the structure it is given.
-    unsafe { libc::clock_gettime(libc::CLOCK_THREAD_CPUTIME_ID, &mut time) };
-    Duration::new(time.tv_sec as u64, time.tv_nsec as u32)
-}
-
-fn timed<T>(work: impl FnOnce() -> T) -> (f64, T) {
-    let start = cpu();
-    let value = work();
-    ((cpu() - start).as_secs_f64(), value)
-}
-
-/// What came out over what was expected.
-#[derive(Default)]
-struct Outcomes {
-    times: Vec<f64>,
-    errors: Vec<f64>,
-}
-
-/// The share of ratios that are 1 give or take a quarter of what was expected.
-fn within(ratios: &[f64]) -> f64 {
-    ratios.iter().filter(|r| (*r - 1.0).abs() <= 0.25).count() as f64 / ratios.len().max(1) as f64
-}
-
-fn mean(image: &Image) -> f64 {
-    image.data.iter().map(|&v| f64::from(v)).sum::<f64>() / image.data.len() as f64
-}
-
-/// Root mean square error of two pictures with independent errors, relative to their mean.
-fn error_of(a: &Image, b: &Image) -> f64 {
-    let square = a.data.iter().zip(&b.data).map(|(&a, &b)| f64::from(a - b).powi(2)).sum::<f64>();
-    (square / a.data.len() as f64 / 2.0).sqrt() / (0.5 * (mean(a) + mean(b)))
 }
 
 /// Expected and found, and their ratio.

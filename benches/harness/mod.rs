@@ -7,6 +7,7 @@
 // Each bench is a crate of its own and uses a part of this.
 #![allow(dead_code)]
 
+mod clock;
 pub mod embree;
 #[cfg(feature = "stylize")]
 pub mod judge;
@@ -14,7 +15,7 @@ pub mod peer;
 pub mod plot;
 pub mod scenes;
 
-use std::time::Instant;
+pub use clock::{Clock, time};
 
 /// One headline figure.
 pub fn figure(name: &str, value: f64, unit: &str) {
@@ -27,42 +28,6 @@ pub fn figure(name: &str, value: f64, unit: &str) {
 pub fn absent(name: &str, reason: &str) {
     println!("figure {name} absent -");
     println!("# {name} is absent: {reason}");
-}
-
-/// Which clock a piece of work is held against.
-#[derive(Clone, Copy)]
-pub enum Clock {
-    /// Time on the wall: for work on several threads.
-    Wall,
-    /// Processor time of the calling thread: for work on one thread, blind to what else the machine does.
-    Thread,
-    /// Processor time of all threads of this process: what work on several of them costs, whoever else is there.
-    Process,
-}
-
-impl Clock {
-    fn seconds(self, start: Instant) -> f64 {
-        match self {
-            Self::Wall => start.elapsed().as_secs_f64(),
-            Self::Thread => processor_seconds(libc::CLOCK_THREAD_CPUTIME_ID),
-            Self::Process => processor_seconds(libc::CLOCK_PROCESS_CPUTIME_ID),
-        }
-    }
-}
-
-fn processor_seconds(clock: libc::clockid_t) -> f64 {
-    let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
-    // SAFETY: the call fills the structure it is given.
-    unsafe { libc::clock_gettime(clock, &mut time) };
-    time.tv_sec as f64 + time.tv_nsec as f64 * 1e-9
-}
-
-/// Seconds that `work` takes, and what it gives.
-pub fn time<T>(clock: Clock, work: impl FnOnce() -> T) -> (f64, T) {
-    let origin = Instant::now();
-    let before = clock.seconds(origin);
-    let value = work();
-    (clock.seconds(origin) - before, value)
 }
 
 /// Times of several rivals, taken in turns.

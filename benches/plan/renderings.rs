@@ -1,7 +1,9 @@
 //! Plans of renderings.
 
 use super::harness::scenes::{self, Absent, Setting};
-use super::{Outcomes, Table, columns, cpu, error_of, timed};
+use super::harness::{Clock, time};
+use super::outcomes::{Outcomes, error_of};
+use super::{Table, columns};
 use luxfer::job::Monitor;
 use luxfer::plan::{self, Goal};
 use luxfer::render::{self, Film, Params, World};
@@ -46,10 +48,13 @@ fn outcome(setting: &Setting, world: &World, size: [usize; 2], goal: Goal, all: 
     let [width, height] = size;
     let monitor = Monitor::default();
     let params = Params { width, height, seed: 7, ..Params::default() };
-    let plan = plan::rendering(world, &setting.camera, &params, goal, &cpu, monitor.job()).expect("a plan");
+    let plan =
+        plan::rendering(world, &setting.camera, &params, goal, &|| Clock::Thread.now(), monitor.job()).expect("a plan");
     let shoot = |seed| -> (f64, Film) {
         let params = Params { seed, time_budget_ms: 0, ..plan.params.clone() };
-        timed(|| render::run(world, &setting.camera, &params, monitor.job(), &mut |_| ()).expect("a film"))
+        time(Clock::Thread, || {
+            render::run(world, &setting.camera, &params, monitor.job(), &mut |_| ()).expect("a film")
+        })
     };
     let [(s, a), (t, b)] = [shoot(100), shoot(200)];
     let (seconds, error) = (0.5 * (s + t), error_of(&a.beauty, &b.beauty));

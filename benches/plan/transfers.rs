@@ -1,8 +1,9 @@
 //! Plans of the light of whole transfers.
 
-use super::harness::scenes;
+use super::harness::{Clock, scenes, time};
+use super::outcomes::{Outcomes, error_of, mean};
 use super::photos::{self, Photo};
-use super::{Outcomes, Table, columns, cpu, error_of, mean, timed};
+use super::{Table, columns};
 use luxfer::demo;
 use luxfer::image::Image;
 use luxfer::job::Monitor;
@@ -92,7 +93,7 @@ fn outcome(
     let mut transfer = Transfer { input, params: Params::default(), ..Transfer::default() };
     (transfer.params.render.width, transfer.params.render.height) = (width, width * 9 / 16);
     transfer.run(Stage::View, Stage::Emission, monitor.job(), |_| ()).map_err(|e| e.to_string())?;
-    let plan = plan::lighting(&transfer, goal, &cpu, monitor.job()).map_err(|e| e.to_string())?;
+    let plan = plan::lighting(&transfer, goal, &|| Clock::Thread.now(), monitor.job()).map_err(|e| e.to_string())?;
 
     transfer.params.relight = luxfer::relight::Params { time_budget_ms: 0, ..plan.relight.clone() };
     transfer.params.render = luxfer::render::Params { time_budget_ms: 0, ..plan.render.clone() };
@@ -122,7 +123,7 @@ fn outcome(
 
 /// Seconds of a stage.
 fn run(transfer: &mut Transfer, stage: Stage) -> Result<f64, String> {
-    let (seconds, result) = timed(|| transfer.run(stage, stage, Monitor::default().job(), |_| ()));
+    let (seconds, result) = time(Clock::Thread, || transfer.run(stage, stage, Monitor::default().job(), |_| ()));
     result.map_err(|e| e.to_string())?;
     Ok(seconds)
 }
