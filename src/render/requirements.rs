@@ -39,6 +39,11 @@ pub struct Requirements {
     pub brightest: Option<usize>,
     /// Triangles without an area, which no ray can meet.
     pub flat_triangles: usize,
+    /// Meshes that are closed and transparent, and the first of them: glass that bends light, which is not modelled.
+    pub solids: usize,
+    pub first_solid: Option<usize>,
+    /// A material that is transparent and rough: glass that scatters light, which is not modelled.
+    pub frosted: Option<usize>,
 }
 
 impl Requirements {
@@ -87,6 +92,18 @@ impl Requirements {
         if self.flat_triangles > 0 {
             sentences.push(format!("{} triangles have no area: no ray meets them.", self.flat_triangles));
         }
+        if let Some(first) = self.first_solid {
+            let meshes = match self.solids {
+                1 => format!("Mesh {first} is"),
+                count => format!("{count} meshes, the first of them mesh {first}, are"),
+            };
+            sentences
+                .push(format!("{meshes} closed and transparent: light goes straight on through, and is not bent."));
+        }
+        if let Some(material) = self.frosted {
+            let what = "transparent and rough: light goes straight on through, and is not scattered";
+            sentences.push(format!("Material {material} is {what}."));
+        }
         sentences
     }
 }
@@ -128,6 +145,9 @@ pub fn analyse(scene: &Scene, table: Option<&AlbedoTable>) -> (Requirements, Vec
         needed.normal_maps |= finish.bumpy;
         for substance in extremes(material, base, layers) {
             needed.see(&substance);
+            if substance.transmission != Vec3::ZERO && substance.roughness >= MIRROR_ROUGHNESS {
+                needed.frosted.get_or_insert(index);
+            }
             let albedo = albedo_bound(&substance, table);
             if needed.brightest.is_none() || albedo.max_element() > needed.albedo.max_element() {
                 needed.brightest = Some(index);
@@ -147,6 +167,13 @@ pub fn analyse(scene: &Scene, table: Option<&AlbedoTable>) -> (Requirements, Vec
             if let Some(t) = texture {
                 varied[t.texture] |= counts && !ranges[t.texture].is_constant();
             }
+        }
+    }
+    for (index, mesh) in scene.meshes.iter().enumerate() {
+        let material = &scene.materials[mesh.material];
+        if material.transmission > 0.0 && material.metallic < 1.0 && mesh.is_closed() {
+            needed.solids += 1;
+            needed.first_solid.get_or_insert(index);
         }
     }
     needed.textures = varied.iter().filter(|&&v| v).count();

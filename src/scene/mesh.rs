@@ -1,5 +1,6 @@
 //! Triangle meshes.
 
+use crate::rng::hash;
 use glam::{Vec2, Vec3};
 
 /// Triangles in world space. Front faces are counter-clockwise.
@@ -32,5 +33,52 @@ impl Mesh {
 
     pub fn corners(&self, triangle: usize) -> [Vec3; 3] {
         self.triangles[triangle].map(|i| self.positions[i as usize])
+    }
+
+    /// Whether its triangles, wound alike, enclose a volume: then every edge is passed as often one way as the other. Corners at
+    /// the same place are one. Edges are counted by their hashes, which takes no memory and is wrong once in 2^64 meshes.
+    pub fn is_closed(&self) -> bool {
+        // -0 + 0 = 0.
+        let place = |p: Vec3| hash(0, &(p + Vec3::ZERO).to_array().map(|v| v.to_bits().into()));
+        let boundary = (0..self.triangles.len()).fold(0u64, |sum, triangle| {
+            let [a, b, c] = self.corners(triangle).map(place);
+            let edges = [[a, b], [b, c], [c, a]];
+            edges.iter().fold(sum, |sum, &[a, b]| sum.wrapping_add(hash(1, &[a, b])).wrapping_sub(hash(1, &[b, a])))
+        });
+        !self.triangles.is_empty() && boundary == 0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_box_is_closed_until_a_side_is_taken_away() {
+        // Each side has corners of its own, as where normals are sharp.
+        let mut cube = Mesh::default();
+        let mut corner = Vec3::splat(-1.0);
+        for axis in 0..3 {
+            let [u, v] = [1, 2].map(|k| 2.0 * Vec3::AXES[(axis + k) % 3]);
+            for (corner, u, v) in [(corner, v, u), (corner + 2.0 * Vec3::AXES[axis], u, v)] {
+                let side = Mesh::parallelogram(corner, u, v, 0);
+                let first = cube.positions.len() as u32;
+                cube.positions.extend(side.positions);
+                cube.triangles.extend(side.triangles.iter().map(|t| t.map(|i| i + first)));
+            }
+        }
+        assert!(cube.is_closed());
+        // Zeros of either sign are one place.
+        cube.positions.iter_mut().for_each(|p| p.x += 1.0);
+        corner.x = 0.0;
+        cube.positions.iter_mut().filter(|p| **p == corner).take(1).for_each(|p| p.x = -0.0);
+        assert!(cube.is_closed());
+        let mut open = cube.clone();
+        open.triangles.truncate(10);
+        assert!(!open.is_closed());
+        let mut turned = cube.clone();
+        turned.triangles[3].swap(0, 1);
+        assert!(!turned.is_closed());
+        assert!(!Mesh::parallelogram(corner, Vec3::X, Vec3::Y, 0).is_closed() && !Mesh::default().is_closed());
     }
 }

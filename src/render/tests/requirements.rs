@@ -41,8 +41,9 @@ fn what_can_occur_is_found_and_what_cannot_is_named() {
     assert!(r.diffuse && r.glossy && r.mirror && r.glass && r.alpha && r.normal_maps);
     assert!(r.surfaces && r.textured_surfaces && r.points && r.environment);
     assert!(!r.spots && !r.directional && r.textures == 1);
-    // The poles of the sphere.
-    assert_eq!(r.left_out(), ["48 triangles have no area: no ray meets them."]);
+    // The poles of the sphere; and the pane is not as smooth as it would have to be.
+    let frosted = "Material 4 is transparent and rough: light goes straight on through, and is not scattered.";
+    assert_eq!(r.left_out(), ["48 triangles have no area: no ray meets them.", frosted]);
 
     let plain = Scene { meshes: vec![inward_sphere(2.0, 0)], materials: vec![matt(0.5, 1.0)], ..Scene::default() };
     let found = |change: &dyn Fn(&mut Scene)| {
@@ -88,6 +89,34 @@ fn what_can_occur_is_found_and_what_cannot_is_named() {
     };
     assert_eq!((textured(0.5).textures, textured(0.5).albedo), (0, Vec3::splat(0.25)));
     assert_eq!((textured(0.75).textures, textured(0.75).albedo), (1, Vec3::splat(0.375)));
+}
+
+/// A ball of glass shows the world upside down, and a pane shows it as it is: which of them a scene has is told.
+#[test]
+fn glass_that_would_bend_light_is_named() {
+    let glass = Material { transmission: 1.0, metallic: 0.0, roughness: 0.0, ..Material::default() };
+    let mut pane = Mesh::parallelogram(Vec3::ZERO, Vec3::X, Vec3::Y, 1);
+    let named = |glass: &Material, meshes: &[&Mesh]| {
+        let mut scene = everything();
+        scene.materials.truncate(1);
+        scene.meshes = [inward_sphere(2.0, 0)].into_iter().chain(meshes.iter().map(|&m| m.clone())).collect();
+        scene.materials.push(glass.clone());
+        scene.textures.clear();
+        let text = world(scene).requirements().left_out().join(" ");
+        (text.contains("is not bent"), text.contains("is not scattered"), text)
+    };
+    let ball = inward_sphere(0.4, 1);
+    let (bent, scattered, text) = named(&glass, &[&pane, &ball]);
+    assert!(bent && !scattered && text.contains("Mesh 2 is closed"), "{text}");
+    let (bent, _, text) = named(&glass, &[&ball, &pane, &ball]);
+    assert!(bent && text.contains("2 meshes, the first of them mesh 1, are closed"), "{text}");
+    assert!(!named(&glass, &[&pane]).0);
+    assert!(!named(&Material { transmission: 0.0, ..glass.clone() }, &[&ball]).0);
+    let (bent, scattered, text) = named(&Material { roughness: 0.5, ..glass.clone() }, &[&pane]);
+    assert!(!bent && scattered && text.contains("Material 1 is"), "{text}");
+    // Where no mesh has it, it is no matter.
+    pane.material = 0;
+    assert!(!named(&Material { roughness: 0.5, ..glass }, &[&pane]).1);
 }
 
 #[test]
