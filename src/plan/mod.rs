@@ -15,9 +15,9 @@
 //! Assumed: the machine does then what it does now, with as many threads; while a plan is made nothing else keeps them busy.
 //!
 //! Not modelled: the stages before the light, which no setting trades error for time in, and whose errors they state
-//! themselves; the chance in what a plan looks at: where a few pixels, such as those that see the edge of a small lamp, have
-//! most of an image's error, it may be half as much again as expected; light that neither these few paths nor the picture's
-//! are likely to find; layers beside the picture, which take time of their own.
+//! themselves; bright paths so rare that a plan meets one by chance or none, such as of a small lamp in polish: the picture's
+//! error may then be twice or half of what is expected; that a picture that stops at an error may fall below it by as much as its last
+//! pass brings; layers beside the picture, which take time of their own.
 
 mod curve;
 mod picture;

@@ -4,7 +4,7 @@ use super::curve::{Curve, allocate};
 use super::{Clock, Expected, Goal, PATIENCE, overtime};
 use crate::error::Result;
 use crate::job::Job;
-use crate::render::probe::{self, PATHS};
+use crate::render::probe::{self, PATHS, REPLICATIONS, nets};
 use crate::render::{self, Probe, World};
 use crate::scene::Camera;
 
@@ -61,9 +61,12 @@ impl Picture {
         self.pixels * paths * self.probe.seconds_per_path.max(1e-12)
     }
 
-    /// With as many paths for every pixel.
-    fn error(&self, paths: f64) -> f64 {
-        self.curve().square(self.seconds(paths)).sqrt()
+    /// With as many paths for every pixel. The curve is that of whole nets; other numbers of paths are several, and the
+    /// error of each is taken for its own. So more paths may even do worse: a few beside a net bring little but their error.
+    fn error(&self, paths: u32) -> f64 {
+        let (curve, replications) = (self.curve(), f64::from(REPLICATIONS));
+        let square = |points: f64| replications * curve.square(self.seconds(replications * points));
+        nets(paths).map(f64::from).map(|points| points * points * square(points)).sum::<f64>().sqrt() / f64::from(paths)
     }
 
     /// How many times fewer paths reach an error when they may go where they are needed: the ideal is the square of what
@@ -89,21 +92,30 @@ impl Picture {
             ..params.clone()
         };
         let even = seconds / self.seconds(1.0);
-        let alike = |paths: f64| {
-            let paths = paths.clamp(FEWEST, MOST);
-            let expected = Expected { seconds: self.seconds(paths), error: self.error(paths) };
-            Rendering { params: render::Params { samples: paths as u32, ..plain.clone() }, expected }
+        let wanted = self.curve().square(seconds).sqrt();
+        let count = |paths: f64| paths.clamp(FEWEST, MOST) as u32;
+        let alike = |paths: u32| {
+            let expected = Expected { seconds: self.seconds(paths.into()), error: self.error(paths) };
+            Rendering { params: render::Params { samples: paths, ..plain.clone() }, expected }
         };
         match goal {
             Goal::Error(_) if even > EVEN => {
-                let error = self.error(even);
+                let error = wanted;
                 let samples = (PATIENCE * even).min(MOST) as u32;
                 let expected = Expected { seconds: self.seconds(EVEN + (even - EVEN) / self.saved()), error };
                 Rendering { params: render::Params { samples, target_error: error as f32, ..plain }, expected }
             }
-            Goal::Error(_) => alike(even.ceil()),
+            Goal::Error(_) => {
+                let mut counts = count(even.ceil())..=EVEN as u32;
+                alike(counts.find(|&paths| self.error(paths) <= wanted).unwrap_or(EVEN as u32))
+            }
             Goal::Seconds(_) => {
-                let mut plan = alike(even.floor());
+                // The most that there is time for, or less to whole nets.
+                let most = count(even);
+                let whole = (0..most.ilog2()).map(|bits| most >> bits << bits).filter(|&paths| paths >= FEWEST as u32);
+                let error = |paths: &u32| self.error(*paths);
+                let best = whole.min_by(|a, b| error(a).total_cmp(&error(b))).unwrap_or(most);
+                let mut plan = alike(best);
                 plan.params.time_budget_ms = overtime(plan.expected);
                 plan
             }

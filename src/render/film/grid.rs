@@ -1,5 +1,8 @@
 //! Tiles of an image: the order in which pixels are kept.
 
+use crate::error::Result;
+use crate::image::try_collect;
+
 /// Side of a tile in pixels: the unit of work, and of the decision where more paths go.
 pub const TILE: usize = 8;
 /// Pixels of a tile.
@@ -47,6 +50,19 @@ impl Grid {
         let part = |at: usize, size: usize| TILE.min(size - at * TILE);
         part(tile % self.across(), self.width) * part(tile / self.across(), self.height)
     }
+
+    /// For values of the tiles, for each the mean of its own and those around it, or its own if that is larger.
+    pub fn heeding_neighbours(&self, values: &[f64]) -> Result<Vec<f64>> {
+        let (across, down) = (self.across(), self.down());
+        let around = |i: usize, n: usize| i.saturating_sub(1)..(i + 2).min(n);
+        let at = |tile: usize| {
+            let (columns, rows) = (around(tile % across, across), around(tile / across, down));
+            let count = columns.len() * rows.len();
+            let sum: f64 = rows.flat_map(|y| columns.clone().map(move |x| values[y * across + x])).sum();
+            values[tile].max(sum / count as f64)
+        };
+        try_collect((0..values.len()).map(at))
+    }
 }
 
 #[cfg(test)]
@@ -68,5 +84,15 @@ mod tests {
             }
             assert!(seen.iter().all(|&n| n == 1));
         }
+    }
+
+    #[test]
+    fn tiles_heed_those_beside_them_and_no_others() {
+        let grid = Grid { width: 4 * TILE, height: 3 * TILE };
+        let mut values = vec![0.0; grid.tiles()];
+        values[0] = 12.0;
+        let heeded = grid.heeding_neighbours(&values).unwrap();
+        assert_eq!(heeded[..6], [12.0, 2.0, 0.0, 0.0, 2.0, 12.0 / 9.0]);
+        assert!(heeded[6..].iter().all(|&v| v == 0.0));
     }
 }

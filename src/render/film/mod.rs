@@ -7,10 +7,12 @@
 //! they are the same for any number of threads.
 //!
 //! For renders that are done in parts, `sums` adds up the paths of some pixels apart from all others, by the light of a
-//! `survey` instead of the passes before. What an image will take, a `probe` tells from a few of its tiles.
+//! `survey` instead of the passes before. What an image will take, a `probe` tells from a few of its tiles, which it chooses
+//! at a `glance` of all.
 
 mod block;
 mod clock;
+mod glance;
 mod grid;
 mod interval;
 mod pixel;

@@ -162,19 +162,6 @@ impl Canvas<'_> {
             pixels.map(square).sum::<f64>() / self.grid.area(tile) as f64
         })
     }
-
-    /// For each tile the mean of it and the tiles around it, or its own value if that is larger.
-    fn heeding_neighbours(&self, values: &[f64]) -> Vec<f64> {
-        let (across, down) = (self.grid.across(), self.grid.down());
-        let around = |i: usize, n: usize| i.saturating_sub(1)..(i + 2).min(n);
-        let at = |tile: usize| {
-            let (columns, rows) = (around(tile % across, across), around(tile / across, down));
-            let count = columns.len() * rows.len();
-            let sum: f64 = rows.flat_map(|y| columns.clone().map(move |x| values[y * across + x])).sum();
-            values[tile].max(sum / count as f64)
-        };
-        (0..values.len()).map(at).collect()
-    }
 }
 
 /// Decides pass by pass.
@@ -266,10 +253,10 @@ impl<'p> Plan<'p> {
         let mean = whole(tallies).level();
         let mut wanted = try_vec(tallies.len(), 0.0)?;
         if target_error > 0.0 {
-            self.want_together(canvas, tallies, target_error, &mut wanted);
+            self.want_together(canvas, tallies, target_error, &mut wanted)?;
         }
         if relative_error > 0.0 {
-            self.want_together(canvas, &canvas.relative_tallies(mean, job)?, relative_error, &mut wanted);
+            self.want_together(canvas, &canvas.relative_tallies(mean, job)?, relative_error, &mut wanted)?;
         }
         if pixel_error > 0.0 {
             let doubts = canvas.doubts(DARK * mean, job)?;
@@ -281,13 +268,13 @@ impl<'p> Plan<'p> {
     }
 
     /// Raises what is wanted to the least paths that bring the error of all tiles together down to a target.
-    fn want_together(&self, canvas: &Canvas, tallies: &[Tally], target: f32, wanted: &mut [f64]) {
+    fn want_together(&self, canvas: &Canvas, tallies: &[Tally], target: f32, wanted: &mut [f64]) -> Result<()> {
         let (whole, target) = (whole(tallies), f64::from(target));
         if whole.error() <= target {
-            return;
+            return Ok(());
         }
         let spreads: Vec<f64> = tallies.iter().map(|t| t.spread / f64::from(t.pixels)).collect();
-        let deviations: Vec<f64> = canvas.heeding_neighbours(&spreads).into_iter().map(f64::sqrt).collect();
+        let deviations: Vec<f64> = canvas.grid.heeding_neighbours(&spreads)?.into_iter().map(f64::sqrt).collect();
         // In proportion n = k d they leave the mean square error mean(s / k d), with s the variance of single paths.
         let mean_of = |value: &dyn Fn(usize) -> f64| {
             (0..tallies.len()).map(|t| value(t) * f64::from(tallies[t].pixels)).sum::<f64>() / f64::from(whole.pixels)
@@ -296,6 +283,7 @@ impl<'p> Plan<'p> {
         let needed = left / (target * whole.level()).powi(2);
         let allowed = f64::from(self.params.samples) / mean_of(&|t| deviations[t]);
         wanted.iter_mut().zip(&deviations).for_each(|(w, d)| *w = w.max(needed.min(allowed) * d));
+        Ok(())
     }
 }
 

@@ -4,20 +4,26 @@
 //! So some tiles are rendered as the image will be, each pixel of its true size, with the neighbours it shares its paths
 //! with; they stand for the rest. A few tiles with the edge of a lamp may have most of an image's error, so tiles are
 //! chosen with a probability in proportion to how much a first look finds their light to vary, and weighed by its
-//! reciprocal (Horvitz and Thompson 1952).
+//! reciprocal (Horvitz and Thompson 1952). A look may miss the sliver of a lamp, which the tile beside it shows more of: so
+//! tiles heed their neighbours. The middle of a lamp does not vary at all, and is hardly ever chosen, though it may have most of
+//! an image's light. So how bright the image is follows from the first look at all of it, and the chosen tiles correct
+//! that by what they find it to be off (the difference estimator of Särndal, Swensson and Wretman 1992).
 //!
 //! Stratified points let the variance of pixels fall faster than their number rises, by how much depends on the scene. So it
-//! is known at three numbers of paths; at the largest only of the tiles that have most of it, and of the others as if
-//! their paths were independent from the second on.
+//! is known at three numbers of paths; at the largest of a few of those tiles, chosen in turn in proportion to their part in it
+//! at the second.
 
 use super::Eye;
-use super::grid::{AREA, Grid, TILE};
-use super::pixel::Pixel;
+use super::glance::{Glance, glances};
+use super::grid::{AREA, Grid};
+pub use super::pixel::REPLICATIONS;
+use super::pixel::{Pixel, share};
 use super::plan::Pass;
 use super::survey::Survey;
 use super::tile::{Setting, Tile};
 use crate::error::Result;
 use crate::exec;
+use crate::image::try_collect;
 use crate::job::Job;
 use crate::render::{Params, World};
 use crate::rng::Rng;
@@ -25,15 +31,12 @@ use crate::scene::Camera;
 use std::sync::atomic::AtomicU64;
 use std::time::Duration;
 
-/// Tiles that a first look is taken at, and that are rendered, at most.
-const LOOKED_AT: usize = 2048;
+/// Tiles that are rendered, at most.
 const TILES: usize = 128;
-/// Paths of each of their pixels, in three passes: powers of four, at which points are stratified best.
-pub const PATHS: [u32; 3] = [4, 16, 64];
-/// Tiles that are given the last of them.
+/// Paths of each of their pixels, in three passes: each replication's are a power of four, at which points are stratified best.
+pub const PATHS: [u32; 3] = [REPLICATIONS, 4 * REPLICATIONS, 16 * REPLICATIONS];
+/// Tiles that are given the last of them, at most.
 const DEEP: usize = 32;
-/// Paths of the first look at a tile, along each side.
-const LOOKS: usize = 4;
 /// Chance of a tile whose light does not vary at all, relative to the mean.
 const FLOOR: f64 = 0.5;
 /// Tells the paths of the probe from those of the image.
@@ -53,11 +56,22 @@ pub struct Probe {
     pub contrast: f64,
 }
 
+/// The nets that so many paths of a pixel consist of, each by its number of points, a power of two: every replication has
+/// its own.
+pub fn nets(paths: u32) -> impl Iterator<Item = u32> {
+    let nets = |points: u32| (0..u32::BITS).map(move |bit| points & 1 << bit).filter(|&points| points > 0);
+    (0..REPLICATIONS).flat_map(move |replication| nets(share(paths, replication)))
+}
+
 /// A tile that stands for others.
 struct Chosen {
     tile: usize,
     /// How many tiles it stands for.
     weight: f64,
+    /// For how many of the chosen, with the same part in the error, it stands in the last pass; 0 if it is not in it.
+    deep: f64,
+    /// Its mean at first sight.
+    looked: f64,
     pixels: [Pixel; AREA],
     /// Paths of each pixel, and the seconds they took.
     paths: f64,
@@ -69,6 +83,8 @@ struct Chosen {
 struct Tally {
     weight: f64,
     pixels: f64,
+    /// What was expected of `mean` and of `square`.
+    looked: [f64; 2],
     mean: f64,
     square: f64,
     variance: f64,
@@ -91,38 +107,38 @@ pub fn run(
     let eye = Eye::new(world, camera, params);
     let params = &Params { seed: params.seed ^ SALT, ..params.clone() };
     let survey = Survey::new(world, &eye, params, job.part(0.0, 0.05))?;
-    let mut chosen = choose(&survey, grid, params.seed, job.part(0.05, 0.1))?;
+    let looked = glances(&survey, grid, job.part(0.05, 0.1))?;
+    let mut rng = Rng::new(params.seed, &[]);
+    let mut chosen = choose(&looked, grid, &mut rng)?;
 
     let discarded = AtomicU64::new(0);
     let setting = Setting { world, eye: &eye, seed: params.seed, grid, level: survey.level(), discarded: &discarded };
     let start = clock();
-    let render = |chosen: &mut [Chosen], count: u32, part: Job| {
+    let render = |chosen: &mut [Chosen], count: u32, part: Job| -> Result<Vec<Tally>> {
         let wanted = Pass::alike(grid.tiles(), count)?;
         exec::for_rows(chosen, 1, part, |_, chosen| {
-            let Chosen { tile, pixels, seconds, paths, .. } = &mut chosen[0];
-            let start = clock();
-            Tile::new(setting, *tile, pixels, None).extend(&wanted, || part.is_cancelled());
-            *seconds += clock().saturating_sub(start).as_secs_f64();
-            *paths = f64::from(count);
+            let Chosen { tile, pixels, seconds, paths, deep, .. } = &mut chosen[0];
+            if *deep > 0.0 {
+                let start = clock();
+                Tile::new(setting, *tile, pixels, None).extend(&wanted, || part.is_cancelled());
+                *seconds += clock().saturating_sub(start).as_secs_f64();
+                *paths = f64::from(count);
+            }
         })?;
-        job.check()
+        job.check()?;
+        Ok(chosen.iter().map(|c| tally(grid, c)).collect())
     };
-    let tallies = |chosen: &[Chosen]| chosen.iter().map(|c| tally(grid, c)).collect::<Vec<_>>();
+    let area = (grid.width * grid.height) as f64;
+    let mean = |tallies: &[Tally], of: &dyn Fn(&Tally) -> f64| total(tallies, of) / area;
 
-    render(&mut chosen, PATHS[0], job.part(0.1, 0.2))?;
-    let few = mean(&tallies(&chosen), |t| t.variance);
-    render(&mut chosen, PATHS[1], job.part(0.2, 0.6))?;
-    chosen.sort_by(|a, b| {
-        let part = |c: &Chosen| c.weight * tally(grid, c).variance;
-        part(b).total_cmp(&part(a)).then(a.tile.cmp(&b.tile))
-    });
-    let middle = tallies(&chosen);
-    let deep = chosen.len().min(DEEP);
-    render(&mut chosen[..deep], PATHS[2], job.part(0.6, 1.0))?;
-    let mut last = tallies(&chosen);
-    let independent = f64::from(PATHS[1]) / f64::from(PATHS[2]);
-    last[deep..].iter_mut().for_each(|t| t.variance *= independent);
-    let variances = [few, mean(&middle, |t| t.variance), mean(&last, |t| t.variance)];
+    let few = render(&mut chosen, PATHS[0], job.part(0.1, 0.2))?;
+    let middle = render(&mut chosen, PATHS[1], job.part(0.2, 0.6))?;
+    let part = |t: &Tally| t.weight * t.variance;
+    let mut steps = Steps::new(total(&middle, &|t| t.variance), DEEP.min(chosen.len()), &mut rng);
+    chosen.iter_mut().zip(&middle).for_each(|(c, t)| c.deep = steps.stands_for(part(t)));
+    let last = render(&mut chosen, PATHS[2], job.part(0.6, 1.0))?;
+    let many = chosen.iter().zip(&last).map(|(c, t)| c.deep * part(t)).sum::<f64>() / area;
+    let variances = [mean(&few, &|t| t.variance), mean(&middle, &|t| t.variance), many];
     let seconds = clock().saturating_sub(start).as_secs_f64();
 
     // What threads come to together, were the tiles as those of the image.
@@ -131,66 +147,61 @@ pub fn run(
     let alike = sum(&|c, _| c.seconds) / paths;
     let weighed = sum(&|c, _| c.weight * c.seconds / c.paths) / sum(&|c, t| c.weight * t.pixels);
     let bias = if alike > 0.0 { weighed / alike } else { 1.0 };
-    let brightness = mean(&last, |t| t.mean).max(f64::MIN_POSITIVE);
+    let seen =
+        |power: i32| (0..grid.tiles()).map(|t| grid.area(t) as f64 * looked[t].mean.powi(power)).sum::<f64>() / area;
+    let brightness = (seen(1) + mean(&last, &|t| t.mean - t.looked[0])).max(f64::MIN_POSITIVE);
+    let square = seen(2) + mean(&last, &|t| t.square - t.looked[1]);
     Ok(Probe {
         seconds_per_path: seconds / paths * bias,
         squares: variances.map(|v| v / (brightness * brightness)),
-        saved: saved(&middle),
-        contrast: (mean(&last, |t| t.square).max(0.0).sqrt() / brightness).max(1.0),
+        saved: saved(&middle, area),
+        contrast: (square.max(0.0).sqrt() / brightness).max(1.0),
     })
 }
 
 /// Tiles by how much their light varies.
-fn choose(survey: &Survey, grid: Grid, seed: u64, job: Job) -> Result<Vec<Chosen>> {
-    let (tiles, mut rng) = (grid.tiles(), Rng::new(seed, &[]));
-    // One in each stretch of the rows of tiles.
-    let count = tiles.min(LOOKED_AT);
-    let place = |i: usize| ((i as f64 + rng.next_f64()) * tiles as f64 / count as f64) as usize;
-    let looked_at: Vec<usize> = (0..count).map(place).map(|tile| tile.min(tiles - 1)).collect();
-    let varies = exec::map(count, job, |i| survey.variation(grid, looked_at[i]))?;
-    let floor = FLOOR * varies.iter().sum::<f64>() / count as f64;
-    let chances: Vec<f64> = varies.iter().map(|v| v + if floor > 0.0 { floor } else { 1.0 }).collect();
-    let total: f64 = chances.iter().sum();
+fn choose(looked: &[Glance], grid: Grid, rng: &mut Rng) -> Result<Vec<Chosen>> {
+    let variances = try_collect(looked.iter().map(|l| l.variance))?;
+    let varies = grid.heeding_neighbours(&variances)?;
+    let deviation = |tile: usize| varies[tile].sqrt();
+    let sum: f64 = (0..looked.len()).map(deviation).sum();
+    let floor = if sum > 0.0 { FLOOR * sum / looked.len() as f64 } else { 1.0 };
 
-    // Evenly spaced steps along the chances; one longer than a step is met more than once.
-    let wanted = count.min(TILES);
-    let step = total / wanted as f64;
-    let (mut next, mut end) = (rng.next_f64() * step, 0.0);
-    let mut chosen = Vec::with_capacity(wanted);
-    for (&tile, chance) in looked_at.iter().zip(chances) {
-        end += chance;
-        let mut met = 0.0;
-        while next < end {
-            (next, met) = (next + step, met + 1.0);
-        }
-        if met > 0.0 {
-            chosen.push(Chosen {
-                tile,
-                weight: met * step / chance,
-                pixels: [Pixel::default(); AREA],
-                paths: 0.0,
-                seconds: 0.0,
-            });
+    let mut steps = Steps::new(sum + floor * looked.len() as f64, looked.len().min(TILES), rng);
+    let mut chosen = Vec::with_capacity(TILES);
+    for (tile, glance) in looked.iter().enumerate() {
+        let weight = steps.stands_for(deviation(tile) + floor);
+        if weight > 0.0 {
+            let pixels = [Pixel::default(); AREA];
+            chosen.push(Chosen { tile, weight, deep: 1.0, looked: glance.mean, pixels, paths: 0.0, seconds: 0.0 });
         }
     }
     Ok(chosen)
 }
 
-impl Survey<'_> {
-    /// Standard deviation of the radiance of paths over a tile.
-    fn variation(&self, grid: Grid, tile: usize) -> f64 {
-        let (left, top) = grid.corner(tile);
-        let (mut count, mut sum, mut squares) = (0.0, 0.0, 0.0);
-        // One in each square of the tile, at another place in each of its rows.
-        let side = TILE / LOOKS;
-        for i in 0..LOOKS * LOOKS {
-            let (column, row) = (i % LOOKS, i / LOOKS);
-            let (x, y) = (column * side + (row + column) % side, row * side + column % side);
-            let at = [(left + x).min(grid.width - 1), (top + y).min(grid.height - 1)];
-            let radiance = self.look(at, 1).mean().element_sum() / 3.0;
-            (count, sum, squares) = (count + 1.0, sum + radiance, squares + radiance * radiance);
+/// Evenly spaced steps along the chances of items in a row: those that are met are chosen.
+struct Steps {
+    step: f64,
+    next: f64,
+    end: f64,
+}
+
+impl Steps {
+    /// So many of them along all chances, which have this sum.
+    fn new(sum: f64, count: usize, rng: &mut Rng) -> Self {
+        let step = sum / count as f64;
+        Self { step, next: rng.next_f64() * step, end: 0.0 }
+    }
+
+    /// How many items like the next one, of this chance, it stands for; 0 if it is not chosen. One whose chance is longer than
+    /// a step is met more than once.
+    fn stands_for(&mut self, chance: f64) -> f64 {
+        self.end += chance;
+        let mut met = 0.0;
+        while self.next < self.end {
+            (self.next, met) = (self.next + self.step, met + 1.0);
         }
-        f64::max(squares / count - (sum / count) * (sum / count), 0.0).sqrt()
+        if met > 0.0 { met * self.step / chance } else { 0.0 }
     }
 }
 
@@ -203,17 +214,50 @@ fn tally(grid: Grid, chosen: &Chosen) -> Tally {
         sum.square += ((mean * mean).element_sum() - variance.element_sum()) / 3.0;
         sum.variance += variance.element_sum() / 3.0;
     }
+    sum.looked = [1, 2].map(|power| sum.pixels * chosen.looked.powi(power));
     sum
 }
 
-/// Mean over the pixels of the image.
-fn mean(tallies: &[Tally], of: impl Fn(&Tally) -> f64) -> f64 {
-    let sum = |of: &dyn Fn(&Tally) -> f64| tallies.iter().map(|t| t.weight * of(t)).sum::<f64>();
-    sum(&of) / sum(&|t| t.pixels)
+/// Sum over the image.
+fn total(tallies: &[Tally], of: &dyn Fn(&Tally) -> f64) -> f64 {
+    tallies.iter().map(|t| t.weight * of(t)).sum()
 }
 
 /// In proportion to the standard deviation of a tile's paths, the error of even paths needs so many times fewer (Neyman 1934).
-fn saved(tallies: &[Tally]) -> f64 {
-    let deviation = mean(tallies, |t| (t.variance * t.pixels).sqrt());
-    if deviation > 0.0 { (mean(tallies, |t| t.variance) / (deviation * deviation)).max(1.0) } else { 1.0 }
+fn saved(tallies: &[Tally], area: f64) -> f64 {
+    let deviation = total(tallies, &|t| (t.variance * t.pixels).sqrt());
+    if deviation > 0.0 { (total(tallies, &|t| t.variance) * area / (deviation * deviation)).max(1.0) } else { 1.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_chosen_stands_for_all() {
+        // The sum of anything is found on the average, and that of the chances always.
+        let chances = [0.1, 3.0, 0.0, 0.4, 1.5, 0.2, 7.0];
+        let values = [5.0, 1.0, 0.0, 2.0, 4.0, 3.0, 9.0];
+        let (mut rng, mut mean) = (Rng::new(3, &[]), 0.0);
+        let rounds = 20_000;
+        for _ in 0..rounds {
+            let mut steps = Steps::new(chances.iter().sum(), 4, &mut rng);
+            let weights = chances.map(|chance| steps.stands_for(chance));
+            let sum = |of: &[f64]| weights.iter().zip(of).map(|(w, v)| w * v).sum::<f64>();
+            assert!((sum(&chances) - chances.iter().sum::<f64>()).abs() < 1e-9 && weights[2] == 0.0);
+            mean += sum(&values) / f64::from(rounds);
+        }
+        // The sum has a standard deviation of some 30.
+        assert!((mean - 24.0).abs() < 4.0 * 30.0 / f64::from(rounds).sqrt(), "{mean}");
+        assert_eq!(Steps::new(0.0, 4, &mut rng).stands_for(0.0), 0.0);
+    }
+
+    #[test]
+    fn paths_are_nets_of_every_replication() {
+        let nets = |paths| super::nets(paths).collect::<Vec<_>>();
+        assert_eq!((nets(PATHS[0]), nets(PATHS[2])), (vec![1; 4], vec![16; 4]));
+        assert_eq!(nets(28), [[1, 2, 4]; 4].concat());
+        assert_eq!(nets(9), [1, 2, 2, 2, 2]);
+        assert!((0..300).all(|paths| super::nets(paths).sum::<u32>() == paths));
+    }
 }
