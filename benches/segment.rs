@@ -46,6 +46,7 @@ fn main() {
     pool.run(|| {
         calibration(&rooms);
         samples(&rooms);
+        knobs(&rooms);
         channels(&rooms);
     });
 }
@@ -417,37 +418,60 @@ fn written(plot: &Plot, name: &str) {
     }
 }
 
+/// Strokes of the rooms, in the order of their cases.
+const STROKES: [&str; 2] = ["every surface", "one wall only"];
+const SAMPLES: [usize; 8] = [5, 10, 25, 100, 250, 1000, 5000, 25_000];
+
+/// Median seconds and mean error, 1 - IoU, of every other room.
+fn seconds_and_error(rooms: &[&Case], half: usize, params: &Params) -> [f64; 2] {
+    let run = |case: &&Case| {
+        let (seconds, found) = time(Clock::Wall, || segmented(case, params));
+        (seconds, 1.0 - iou(&found.mask, &case.truth))
+    };
+    let runs: Vec<(f64, f64)> = rooms.iter().skip(half).step_by(2).map(run).collect();
+    let error = runs.iter().map(|r| r.1).sum::<f64>() / runs.len() as f64;
+    [median(&runs.iter().map(|r| r.0).collect::<Vec<_>>()), error]
+}
+
 /// The paper's Fig. 5.
 fn samples(rooms: &[&Case]) {
     let mut error = Plot::new("Samples of each class", "samples", "1 - IoU");
     let mut took = Plot::new("Time of training and inference", "samples", "ms");
-    for (name, half) in [("every surface", 0), ("one wall only", 1)] {
-        let (mut errors, mut times) = (Vec::new(), Vec::new());
-        for count in [5, 10, 25, 100, 250, 1000, 5000, 25_000] {
-            let params = Params { samples_per_class: count, ..Params::default() };
-            let runs: Vec<(f64, f64)> = rooms
-                .iter()
-                .skip(half)
-                .step_by(2)
-                .map(|case| {
-                    let (seconds, found) = time(Clock::Wall, || segmented(case, &params));
-                    (seconds, 1.0 - iou(&found.mask, &case.truth))
-                })
-                .collect();
-            errors.push([count as f64, runs.iter().map(|r| r.1).sum::<f64>() / runs.len() as f64]);
-            times.push([count as f64, 1e3 * median(&runs.iter().map(|r| r.0).collect::<Vec<_>>())]);
-        }
-        error.add(name, errors);
-        took.add(name, times);
+    for (half, name) in STROKES.iter().enumerate() {
+        let points = SAMPLES.map(|samples_per_class| {
+            let params = Params { samples_per_class, ..Params::default() };
+            (samples_per_class as f64, seconds_and_error(rooms, half, &params))
+        });
+        error.add(name, points.map(|(count, [_, error])| [count, error]));
+        took.add(name, points.map(|(count, [seconds, _])| [count, 1e3 * seconds]));
     }
     let mut table = Table::new(["samples", "1 - IoU, every surface", "one wall only", "ms"]);
-    for i in 0..error.series[0].points.len() {
+    for i in 0..SAMPLES.len() {
         let [e, f, t] = [&error.series[0], &error.series[1], &took.series[0]].map(|s| s.points[i]);
         table.row([e[0].to_string(), format!("{:.4}", e[1]), format!("{:.4}", f[1]), format!("{:.0}", t[1])]);
     }
     table.print("Samples (the paper's Fig. 5)");
     written(&error, "segment_samples");
     written(&took, "segment_samples_time");
+}
+
+/// Error against time over the samples of each class, with channels that are chosen and with all of them, and over the
+/// refinement's windows.
+fn knobs(rooms: &[&Case]) {
+    let mut plot = Plot::new("Segmentation of a megapixel", "seconds", "1 - IoU");
+    let all = (1 << CHANNELS) - 1;
+    for (half, strokes) in STROKES.iter().enumerate() {
+        for (name, channels) in [("samples", 0), ("samples, all channels", all)] {
+            let points = SAMPLES.map(|samples_per_class| {
+                seconds_and_error(rooms, half, &Params { samples_per_class, channels, ..Params::default() })
+            });
+            plot.add(&format!("{name}: {strokes}"), points);
+        }
+        let points = [2, 4, 8, 16, 32]
+            .map(|refine_radius| seconds_and_error(rooms, half, &Params { refine_radius, ..Params::default() }));
+        plot.add(&format!("refined: {strokes}"), points);
+    }
+    written(&plot, "segment_knobs");
 }
 
 /// The paper's Fig. 6.

@@ -1,29 +1,46 @@
 //! Vanishing points: accuracy on labelled sets of segments and from the pixels of re-projected panoramas, by method, and
-//! error against time as lines or pixels are left out.
+//! error against time as lines or pixels are left out; the last also on generated rooms, whose directions are exact.
 
 mod harness;
 #[path = "../tests/truth/mod.rs"]
 mod truth;
 
+use glam::{DMat3, DVec3, Quat};
 use harness::plot::Plot;
-use harness::{Clock, Table, absent, figure, interleaved, quantile, time};
+use harness::{Clock, Table, absent, figure, interleaved, quantile, scenes, time};
+use luxfer::demo::photo::{self, photograph};
 use luxfer::exec::Pool;
 use luxfer::geometry::Segment;
 use luxfer::image::pyramid;
 use luxfer::job::Monitor;
 use luxfer::rectify::{self, Metric, Params, Search, vanishing};
+use luxfer::scene::Camera;
+use std::sync::Arc;
 use truth::{GivenSet, Labelled, area, errors, given_set, labelled_photos};
 
 /// Segments of which `vp.ms` tells the time, and images that it is the median of.
 const SEGMENTS: usize = 500;
 const TIMED: usize = 25;
+/// Shares of their sides that photos are reduced to.
+const SCALES: [f64; 6] = [0.15, 0.25, 0.4, 0.6, 0.8, 1.0];
+/// Size of generated photos.
+const SIZE: [usize; 2] = [1200, 800];
+/// How generated cameras are turned: to the left and up, in radians.
+const TURNS: [[f32; 2]; 4] = [[0.0, 0.0], [0.3, 0.1], [-0.25, -0.15], [0.8, 0.0]];
+/// How often a photo is looked at for the time it takes.
+const ROUNDS: usize = 3;
 
 fn main() {
     let pool = Pool::new(2).unwrap();
     let sets = ["nyu_dev", "yud_dev"].map(given_set);
     pool.run(|| given_segments(&sets));
     let photos = labelled_photos();
-    pool.run(|| panoramas(&photos));
+    pool.run(|| {
+        panoramas(&photos);
+        let mut plot = Plot::new("Vanishing points of generated rooms, reduced", "seconds", "median error, degrees");
+        reductions(&mut plot, &rooms());
+        plot.write("vp_rooms").unwrap();
+    });
 }
 
 fn methods() -> [(&'static str, Params); 4] {
@@ -109,14 +126,14 @@ fn given_segments(sets: &[Option<GivenSet>; 2]) {
     figure("vp.ms", quantile(&ms, 0.5), "ms");
 
     // The shortest left out.
-    let mut plot = Plot::new("Vanishing points from the longest segments", "ms per image", "100 - AUC@10, %");
+    let mut plot = Plot::new("Vanishing points from the longest segments", "seconds", "100 - AUC@10, %");
     for (name, set) in ["nyu_dev", "yud_dev"].iter().zip(sets).filter_map(|(n, s)| Some((n, s.as_ref()?))) {
         for (method, params) in &methods()[..2] {
             let points = [20, 50, 100, 200, 400, 1000].map(|most| {
                 let images = set.images.iter().map(|(s, t)| (longest(s, most), t.clone())).collect();
                 let part = GivenSet { images, ..*set };
                 let (seconds, angles) = time(Clock::Wall, || part.angles(params));
-                [seconds * 1e3 / part.images.len() as f64, 100.0 * (1.0 - area(&angles, 10.0))]
+                [seconds / part.images.len() as f64, 100.0 * (1.0 - area(&angles, 10.0))]
             });
             plot.add(&format!("{name}: {}", method.split(',').next().unwrap_or_default()), points);
         }
@@ -154,7 +171,7 @@ fn panoramas(photos: &[Labelled]) {
     }
     let mut table =
         Table::new(["method", "median deg", "90 % below", "beyond 5 deg", "error / stated: half", "90 %", "ms"]);
-    let mut plot = Plot::new("Vanishing points from pixels, photos reduced", "ms per photo", "median error, degrees");
+    let mut plot = Plot::new("Vanishing points from pixels, photos reduced", "seconds", "median error, degrees");
     for (k, (method, params)) in methods().iter().enumerate() {
         let all: Vec<(f64, Vec<[f64; 2]>)> = photos.iter().map(|p| found(p, params)).collect();
         let flat: Vec<[f64; 2]> = all.iter().flat_map(|a| a.1.clone()).collect();
@@ -176,11 +193,9 @@ fn panoramas(photos: &[Labelled]) {
             figure("vp.panorama.median_deg", quantile(&angles, 0.5), "degrees");
             figure("vp.panorama.failures", failures as f64, "count");
         }
-        if k == 0 || k == 3 {
-            plot.add(method, [0.2, 0.35, 0.5, 0.7, 1.0].map(|scale| reduced(photos, params, scale)));
-        }
     }
     table.print("From pixels of re-projected panoramas, focal length unknown");
+    reductions(&mut plot, photos);
     plot.write("vp_pixels").unwrap();
     figure("vp.megapixel.ms", megapixel(photos), "ms");
 }
@@ -200,21 +215,69 @@ fn megapixel(photos: &[Labelled]) -> f64 {
     quantile(&ms, 0.5)
 }
 
-/// Median milliseconds and median error on photos reduced to a share of their sides.
-fn reduced(photos: &[Labelled], params: &Params, scale: f64) -> [f64; 2] {
-    let (mut ms, mut angles) = (Vec::new(), Vec::new());
-    for photo in photos {
-        let (taken, list) = found(&resized(photo, scale), params);
-        ms.push(taken);
-        angles.extend(list.iter().map(|e| e[0]));
+/// Error against time as photos are reduced, by method.
+fn reductions(plot: &mut Plot, photos: &[Labelled]) {
+    for (method, params) in methods().iter().filter(|(_, params)| params.metric == Metric::Segment) {
+        plot.add(method, SCALES.map(|scale| reduced(photos, params, scale)));
     }
-    [quantile(&ms, 0.5), quantile(&angles, 0.5)]
+}
+
+/// Median seconds and median error on photos reduced to a share of their sides.
+fn reduced(photos: &[Labelled], params: &Params, scale: f64) -> [f64; 2] {
+    let (mut seconds, mut angles) = (Vec::new(), Vec::new());
+    for photo in photos {
+        let small = resized(photo, scale);
+        let runs: Vec<_> = (0..ROUNDS).map(|_| found(&small, params)).collect();
+        seconds.push(1e-3 * quantile(&runs.iter().map(|r| r.0).collect::<Vec<_>>(), 0.5));
+        angles.extend(runs[0].1.iter().map(|e| e[0]));
+    }
+    [quantile(&seconds, 0.5), quantile(&angles, 0.5)]
+}
+
+/// Photos of the generated rooms: what is not furniture runs along the axes of the world, as the camera sees them.
+fn rooms() -> Vec<Labelled> {
+    let settings = [scenes::demo_office(), scenes::demo_room()].into_iter().flatten();
+    settings
+        .flat_map(|setting| {
+            let scene = Arc::new(setting.scene);
+            TURNS.map(|turn| {
+                let camera = turned(&setting.camera, turn);
+                let [width, height] = SIZE;
+                let params = photo::Params { width, height, samples: 16, seed: 1 };
+                let taken = photograph(scene.clone(), &camera, &params, Monitor::default().job());
+                Labelled {
+                    name: format!("{}, turned by {turn:?}", setting.name),
+                    photo: taken.expect("a photo").0,
+                    intrinsics: intrinsics(&camera),
+                    directions: axes(&camera),
+                }
+            })
+        })
+        .collect()
+}
+
+fn turned(camera: &Camera, [left, up]: [f32; 2]) -> Camera {
+    let right = camera.forward.cross(camera.up);
+    let turn = Quat::from_rotation_y(left) * Quat::from_axis_angle(right, up);
+    Camera { forward: turn * camera.forward, up: turn * camera.up, ..camera.clone() }
+}
+
+fn intrinsics(camera: &Camera) -> DMat3 {
+    let [width, height] = SIZE.map(|side| side as f64);
+    let focal = height / 2.0 / f64::from(camera.fov_y / 2.0).tan();
+    DMat3::from_cols(DVec3::X * focal, DVec3::Y * focal, DVec3::new(width / 2.0, height / 2.0, 1.0))
+}
+
+/// The axes of the world as a camera sees them: to the right, down, ahead.
+fn axes(camera: &Camera) -> Vec<DVec3> {
+    let [right, down, ahead] = [camera.forward.cross(camera.up), -camera.up, camera.forward].map(|v| v.as_dvec3());
+    DVec3::AXES.map(|axis| DVec3::new(right.dot(axis), down.dot(axis), ahead.dot(axis)).normalize()).to_vec()
 }
 
 /// A photo with its sides times `scale`.
 fn resized(photo: &Labelled, scale: f64) -> Labelled {
     let [width, height] = [photo.photo.width, photo.photo.height].map(|side| (side as f64 * scale).round() as usize);
     let small = pyramid::resize(&photo.photo, width, height, Monitor::default().job()).unwrap();
-    let k = glam::DMat3::from_diagonal(glam::DVec3::new(scale, scale, 1.0)) * photo.intrinsics;
+    let k = DMat3::from_diagonal(DVec3::new(scale, scale, 1.0)) * photo.intrinsics;
     Labelled { name: photo.name.clone(), photo: small, intrinsics: k, directions: photo.directions.clone() }
 }

@@ -4,16 +4,18 @@
 //! Both have the same image of three floats a pixel, the same size of the result and two threads. Ours interpolates and
 //! averages as it has to; OpenCV's warps know no averaging (`INTER_AREA` is taken as linear there): its linear and its
 //! cubic interpolation are timed, the figure is beside the cubic, which is what ours is where nothing is minified. The
-//! truth is the mean of a hundred points of each pixel.
+//! truth is the mean of a hundred points of each pixel. The filter has no settings; whether it wants any is what its
+//! error against time shows where more pixels are made than are wanted, and averaged, or fewer, and enlarged.
 
 mod harness;
 
 use glam::{DMat3, DVec2, DVec3};
 use harness::peer::Peer;
+use harness::plot::Plot;
 use harness::{Clock, Table, absent, figure, median, time};
 use luxfer::exec::Pool;
 use luxfer::geometry::Homography;
-use luxfer::image::Image;
+use luxfer::image::{Image, pyramid};
 use luxfer::job::Monitor;
 use luxfer::rectify::warp;
 use std::path::{Path, PathBuf};
@@ -27,9 +29,15 @@ const INTERPOLATIONS: [&str; 2] = ["linear", "cubic"];
 const MINIFIED: f64 = 1.5;
 const MAGNIFIED: f64 = 1.0;
 
+/// Sides that are warped to, relative to those wanted.
+const DENSITIES: [f64; 6] = [0.25, 0.5, 0.75, 1.0, 2.0, 3.0];
+
 fn main() {
     let pool = Pool::new(2).unwrap();
-    if let Err(reason) = run(&pool) {
+    let identity = Homography(DMat3::IDENTITY);
+    let source = Image::from_fn(SOURCE[0], SOURCE[1], |x, y| exact(&identity, x, y, 6)).unwrap();
+    pool.run(|| densities(&source));
+    if let Err(reason) = run(&pool, &source) {
         for name in ["warp.vs_opencv", "warp.busy_vs_opencv", "warp.minified.psnr_gain"] {
             absent(name, &reason);
         }
@@ -93,6 +101,51 @@ fn minification(map: &Homography, p: DVec2) -> f64 {
     u.perp_dot(v).abs().sqrt()
 }
 
+/// Source pixels to each pixel of the result, along a side; of those whose surroundings lie wholly inside the source.
+fn minifications(map: &Homography) -> Vec<f64> {
+    let limit = DVec2::new(SOURCE[0] as f64, SOURCE[1] as f64) - 16.0;
+    let inside = |p: DVec2| {
+        let DVec3 { x, y, z } = map.apply_homogeneous(p);
+        let q = DVec2::new(x, y) / z;
+        q.min_element() > 16.0 && q.cmple(limit).all()
+    };
+    let place = |i: usize| DVec2::new((i % OUT[0]) as f64 + 0.5, (i / OUT[0]) as f64 + 0.5);
+    let places = (0..OUT[0] * OUT[1]).map(place);
+    places.map(|p| if inside(p) { minification(map, p) } else { f64::NAN }).collect()
+}
+
+/// What a map shows of the picture, exactly.
+fn truth(map: &Homography) -> Image {
+    Image::from_fn(OUT[0], OUT[1], |x, y| exact(map, x, y, 10)).unwrap()
+}
+
+/// Error against time as more or fewer pixels are made than are wanted.
+fn densities(source: &Image) {
+    let monitor = Monitor::default();
+    let mut plot = Plot::new("Warping, 1024 x 768 from 2048 x 1536", "seconds", "root mean square error");
+    let mut table = Table::new(["map", "pixels warped to, along a side", "seconds", "PSNR dB"]);
+    for (name, map) in maps() {
+        let (truth, admitted) = (truth(&map), minifications(&map).into_iter().map(f64::is_finite).collect::<Vec<_>>());
+        let points = DENSITIES.map(|density| {
+            let [width, height] = OUT.map(|side| (side as f64 * density) as usize);
+            let dense = Homography(map.0 * DMat3::from_scale(DVec2::splat(1.0 / density)));
+            let run = || {
+                let warped = warp(source, &dense, width, height, monitor.job()).unwrap();
+                let is_wanted = [width, height] == OUT;
+                if is_wanted { warped } else { pyramid::resize(&warped, OUT[0], OUT[1], monitor.job()).unwrap() }
+            };
+            let runs: Vec<(f64, Image)> = (0..ROUNDS).map(|_| time(Clock::Wall, run)).collect();
+            let seconds = median(&runs.iter().map(|r| r.0).collect::<Vec<_>>());
+            let psnr = psnr(&runs[0].1.data, &truth.data, &admitted);
+            table.row([name.to_string(), format!("{density}"), format!("{seconds:.4}"), format!("{psnr:.2}")]);
+            [seconds, 10f64.powf(-psnr / 20.0)]
+        });
+        plot.add(name, points);
+    }
+    table.print("Warps to more or fewer pixels than are wanted, then averaged or enlarged");
+    plot.write("warp_density").unwrap();
+}
+
 /// Peak signal-to-noise ratio in dB of the pixels that a condition admits.
 fn psnr(found: &[f32], truth: &[f32], admitted: &[bool]) -> f64 {
     let mut squares = (0.0, 0.0);
@@ -108,14 +161,12 @@ fn write(path: &Path, image: &Image) -> Result<(), String> {
         .map_err(|e| e.to_string())
 }
 
-fn run(pool: &Pool) -> Result<(), String> {
+fn run(pool: &Pool, source: &Image) -> Result<(), String> {
     let folder: PathBuf = Path::new(env!("CARGO_MANIFEST_DIR")).join("out/bench");
     std::fs::create_dir_all(&folder).map_err(|e| e.to_string())?;
     let [image, out] = ["warp_image.bin", "warp_result.bin"].map(|name| folder.join(name));
     let mut peer = Peer::start("segment", "warp.py")?;
-    let identity = Homography(DMat3::IDENTITY);
-    let source = Image::from_fn(SOURCE[0], SOURCE[1], |x, y| exact(&identity, x, y, 6)).map_err(|e| e.to_string())?;
-    write(&image, &source)?;
+    write(&image, source)?;
 
     let head = [
         "map and pixels",
@@ -147,7 +198,7 @@ fn run(pool: &Pool) -> Result<(), String> {
         let [mut seconds, mut busy]: [[Vec<f64>; 3]; 2] = Default::default();
         let mut found: [Vec<f32>; 3] = Default::default();
         for round in 0..=ROUNDS {
-            let warped = || warp(&source, &map, OUT[0], OUT[1], monitor.job()).unwrap();
+            let warped = || warp(source, &map, OUT[0], OUT[1], monitor.job()).unwrap();
             let (on_processors, (taken, warped)) = pool.run(|| time(Clock::Process, || time(Clock::Wall, warped)));
             seconds[0].push(taken);
             busy[0].push(on_processors);
@@ -167,18 +218,7 @@ fn run(pool: &Pool) -> Result<(), String> {
                 seconds.iter_mut().chain(&mut busy).for_each(Vec::clear);
             }
         }
-        let truth = Image::from_fn(OUT[0], OUT[1], |x, y| exact(&map, x, y, 10)).map_err(|e| e.to_string())?;
-        // Pixels whose surroundings lie wholly inside the source.
-        let place = |i: usize| DVec2::new((i % OUT[0]) as f64 + 0.5, (i / OUT[0]) as f64 + 0.5);
-        let limit = DVec2::new(SOURCE[0] as f64, SOURCE[1] as f64) - 16.0;
-        let inside = |p: DVec2| {
-            let DVec3 { x, y, z } = map.apply_homogeneous(p);
-            let q = DVec2::new(x, y) / z;
-            q.min_element() > 16.0 && q.cmple(limit).all()
-        };
-        let sizes: Vec<f64> = (0..OUT[0] * OUT[1])
-            .map(|i| if inside(place(i)) { minification(&map, place(i)) } else { f64::NAN })
-            .collect();
+        let (truth, sizes) = (truth(&map), minifications(&map));
         let ms = seconds.iter().chain(&busy).map(|s| format!("{:.1}", 1e3 * median(s))).collect::<Vec<_>>();
         for (kind, admits) in
             [("magnified", &(|s: f64| s < MAGNIFIED) as &dyn Fn(f64) -> bool), ("minified", &|s| s > MINIFIED)]

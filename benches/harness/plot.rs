@@ -16,9 +16,12 @@ pub struct Series {
     pub points: Vec<[f64; 2]>,
 }
 
-const SIZE: [f64; 2] = [760.0, 480.0];
-/// Room for labels: left, right, top, bottom.
-const MARGIN: [f64; 4] = [70.0, 180.0, 40.0, 55.0];
+/// Of the part with the curves.
+const SIZE: [f64; 2] = [510.0, 385.0];
+/// Room for labels: left, top, bottom.
+const MARGIN: [f64; 3] = [70.0, 40.0, 55.0];
+/// Room for the names of the curves, beside a letter's width for each letter.
+const LEGEND: [f64; 2] = [44.0, 6.6];
 /// Distinct also for those who do not tell red from green (Okabe and Ito 2008).
 const COLOURS: [&str; 8] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#8a8a00"];
 
@@ -53,8 +56,10 @@ impl Plot {
     }
 
     fn svg(&self) -> String {
-        let [width, height] = SIZE;
-        let [left, right, top, bottom] = MARGIN;
+        let [left, top, bottom] = MARGIN;
+        let longest = self.series.iter().map(|s| s.name.chars().count()).max().unwrap_or(0);
+        let right = LEGEND[0] + LEGEND[1] * longest as f64;
+        let [width, height] = [left + SIZE[0] + right, top + SIZE[1] + bottom];
         let axes = [0, 1].map(|k| Axis::covering(self.series.iter().flat_map(|s| s.points.iter().map(move |p| p[k]))));
         let x = |v: f64| left + axes[0].place(v) * (width - left - right);
         let y = |v: f64| height - bottom - axes[1].place(v) * (height - top - bottom);
