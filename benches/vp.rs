@@ -24,7 +24,7 @@ const TIMED: usize = 25;
 /// Shares of their sides that photos are reduced to.
 const SCALES: [f64; 6] = [0.15, 0.25, 0.4, 0.6, 0.8, 1.0];
 /// Size of generated photos.
-const SIZE: [usize; 2] = [1200, 800];
+const SIZE: [usize; 2] = [900, 600];
 /// How generated cameras are turned: to the left and up, in radians.
 const TURNS: [[f32; 2]; 4] = [[0.0, 0.0], [0.3, 0.1], [-0.25, -0.15], [0.8, 0.0]];
 /// How often a photo is looked at for the time it takes.
@@ -243,7 +243,7 @@ fn rooms() -> Vec<Labelled> {
             TURNS.map(|turn| {
                 let camera = turned(&setting.camera, turn);
                 let [width, height] = SIZE;
-                let params = photo::Params { width, height, samples: 16, seed: 1 };
+                let params = photo::Params { width, height, samples: 6, seed: 1 };
                 let taken = photograph(scene.clone(), &camera, &params, Monitor::default().job());
                 Labelled {
                     name: format!("{}, turned by {turn:?}", setting.name),
