@@ -11,8 +11,8 @@
 //! Beside the image, `layers` makes images of light by the way it came (`lpe`) and of surfaces (`aov`) from the same paths;
 //! [`illuminance`] calculates grids and maps of meshes in lux. For previews, `denoise` filters noise out, with a bias.
 //!
-//! Not modelled: volumes, refraction in solids, frosted glass, polarisation, wavelengths, depth of field, motion blur. Of a
-//! scene's solids of glass and frosted glass [`Requirements::left_out`] tells.
+//! Not modelled: volumes, refraction in solids, frosted glass, polarisation, wavelengths, depth of field, motion blur. Solids of
+//! glass and frosted glass in a scene are named by [`Requirements::left_out`], in C by `luxfer_scene_requirements_text`.
 
 mod aov;
 mod ballot;
