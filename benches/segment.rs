@@ -465,11 +465,11 @@ fn knobs(rooms: &[&Case]) {
             let points = SAMPLES.map(|samples_per_class| {
                 seconds_and_error(rooms, half, &Params { samples_per_class, channels, ..Params::default() })
             });
-            plot.add(&format!("{name}: {strokes}"), points);
+            plot.add(&format!("{strokes}: {name}"), points);
         }
         let points = [2, 4, 8, 16, 32]
             .map(|refine_radius| seconds_and_error(rooms, half, &Params { refine_radius, ..Params::default() }));
-        plot.add(&format!("refined: {strokes}"), points);
+        plot.add(&format!("{strokes}: refined"), points);
     }
     written(&plot, "segment_knobs");
 }

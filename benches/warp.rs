@@ -140,7 +140,7 @@ fn densities(source: &Image) {
             table.row([name.to_string(), format!("{density}"), format!("{seconds:.4}"), format!("{psnr:.2}")]);
             [seconds, 10f64.powf(-psnr / 20.0)]
         });
-        plot.add(name, points);
+        plot.add(&format!("{name}: more or fewer pixels"), points);
     }
     table.print("Warps to more or fewer pixels than are wanted, then averaged or enlarged");
     plot.write("warp_density").unwrap();

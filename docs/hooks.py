@@ -105,19 +105,23 @@ def value(kind: str, words: list[str], path: str, files) -> str:
 
 
 def front(name: str, path: str) -> str:
-    """The Pareto front of a plot whose first axis is time and whose second is to be small."""
+    """The Pareto front of a plot whose first axis is time and whose second is to be small; of each problem, if curves are called "problem: method"."""
     if not (BENCH / f"{name}.csv").exists():
         return ""
     with open(BENCH / f"{name}.csv", newline="") as file:
         (_, seconds, error), *rows = csv.reader(file)
     if seconds != "seconds":
         raise PluginError(f"{path}: {name} is no plot against time")
-    points = sorted((float(x), float(y), series) for series, x, y in rows)
-    best, table = float("inf"), f"| {seconds} | {error} | of |\n|---|---|---|\n"
-    for x, y, series in points:
-        if y < best:
-            best = y
-            table += f"| {x:.3g} | {y:.3g} | {series} |\n"
+    problems: dict[str, list[tuple[float, float, str]]] = {}
+    for series, x, y in rows:
+        problems.setdefault(series.rpartition(": ")[0], []).append((float(x), float(y), series))
+    table = f"| {seconds} | {error} | of |\n|---|---|---|\n"
+    for points in problems.values():
+        best = float("inf")
+        for x, y, series in sorted(points):
+            if y < best:
+                best = y
+                table += f"| {x:.3g} | {y:.3g} | {series} |\n"
     return table
 
 
