@@ -77,13 +77,14 @@ blender: lib
 	@benches/peers/install.sh python
 	@target/peers/python/bin/python bindings/blender/build.py out/blender
 
-# The pictures are drawn by the guide's own blocks of code and by the examples that it shows.
+# The pictures are drawn by the guide's own blocks of code, by the examples that it shows, and by Blender where it is installed.
 docs: lib $(addprefix out/,$(GUIDE))
 	@benches/peers/install.sh docs
 	@rm -rf target/docs
 	@for name in $(GUIDE); do mkdir -p target/docs/examples/$$name && (cd target/docs/examples/$$name && ../../../../out/$$name >/dev/null) || exit 1; done
 	@target/peers/docs/bin/python docs/blocks.py check
 	@target/peers/docs/bin/python docs/blocks.py run target/docs/pictures $(LIB) python
+	@target/peers/docs/bin/python docs/screenshots.py target/docs/pictures/screenshots $(LIB)
 	@NO_MKDOCS_2_WARNING=1 target/peers/docs/bin/mkdocs build --strict
 	@echo "look at out/docs/index.html (its search needs a server, such as python3 -m http.server --directory out/docs)"
 

@@ -3,7 +3,8 @@
 On a page `{{ settings luxfer_x_params }}` and `{{ fields luxfer_x_report }}` are the fields of a struct with their comments,
 `{{ limits stage }}` is what the source of a stage says it leaves out, `{{ figure name }}` is a figure of `make bench`,
 `{{ figures prefix ... }}` a table of them, `{{ plot name }}` a plot that it has drawn, and `{{ front name }}` the settings of a plot of error
-against time that no other beats in both. Names of the C interface in code spans become links; one that does not exist is an error.
+against time that no other beats in both. `{{ screenshot name what it shows }}` is a picture by docs/screenshots.py. Names of the C interface
+in code spans become links; one that does not exist is an error.
 """
 
 from __future__ import annotations
@@ -96,6 +97,11 @@ def value(kind: str, words: list[str], path: str, files) -> str:
         return f"| figure | value | unit |\n|---|---|---|\n{rows}"
     if kind == "front":
         return front(words[0], path)
+    if kind == "screenshot":
+        name, *caption = words
+        if files.get_file_from_path(f"screenshots/{name}.png") is None:
+            return "*(`make docs` takes the picture that belongs here, where there are Blender and Xvfb.)*"
+        return f"![{' '.join(caption)}]({reference.relative(f'screenshots/{name}.png', path)})"
     if kind == "plot":
         name, bench = words
         if files.get_file_from_path(f"plots/{name}.svg") is None:

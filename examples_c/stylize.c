@@ -90,10 +90,12 @@ int main(int argc, char **argv) {
         fprintf(stderr, "this build of luxfer has no stylisation\n");
         return 0;
     }
+    /* --8<-- [start:guides] */
     source = render(LUXFER_DEMO_SPHERE_ON_TABLE, &params, "exemplar");
     target = render(LUXFER_DEMO_STILL_LIFE, &params, "target");
     /* All things are of one red: edges tell a ball from the ring behind it, so they weigh more than any kind of light. */
     check(luxfer_stylize_add_guides(stylize, source, target, LUXFER_GUIDES_WITH_EDGES, 2.5f), "guides");
+    /* --8<-- [end:guides] */
     s = panels_begin(1 + STYLES, 2, 480, 360);
     image = full(source);
     panels_add(&s, 0, 0, image, 1 / EXPOSURE);
@@ -109,12 +111,14 @@ int main(int argc, char **argv) {
         luxfer_image *artwork = NULL;
         luxfer_job *job = NULL;
         report.struct_size = sizeof report;
+        /* --8<-- [start:paint] */
         check(luxfer_demo_artwork(source, LUXFER_ARTWORK_PEN + i, &artwork), names[i]);
         check(luxfer_stylize_set_artwork(stylize, artwork), names[i]);
         check(luxfer_stylize_start(stylize, NULL, &job), names[i]);
         finish(job, names[i]);
         check(luxfer_stylize_get_image(stylize, LUXFER_STYLIZE_IMAGE_PICTURE, &image), names[i]);
         check(luxfer_stylize_get_report(stylize, &report), names[i]);
+        /* --8<-- [end:paint] */
         printf("%-8s guide error %.3f, %.0f %% of the artwork used\n", names[i], report.guide_error, 100 * report.used);
         panels_add(&s, 1 + i, 0, artwork, 1);
         panels_add(&s, 1 + i, 1, image, 1);

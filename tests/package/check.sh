@@ -1,6 +1,7 @@
 #!/bin/sh
 # Installs luxfer into a scratch folder and builds programs against it: by pkg-config, by find_package, again after the
-# installed tree has been moved, and with the source tree as a part of their project. Nothing is left after an uninstall.
+# installed tree has been moved, and with the source tree as a part of their project. Nothing is left after an uninstall, and the
+# tarball of `make dist` has and installs the same.
 #
 #   check.sh SOURCE BUILT SCRATCH    BUILT is the folder where cargo has put libluxfer.so and libluxfer.a
 set -eu
@@ -119,5 +120,16 @@ step "DESTDIR"
 run_make install DESTDIR="$scratch/stage" PREFIX=/usr
 [ -f stage/usr/lib/libluxfer.a ] || fail "nothing in stage/usr/lib"
 grep -r "$scratch" stage/usr/lib/pkgconfig stage/usr/lib/cmake && fail "installed files name the folder they were staged in"
+
+if [ -e "$source/.git" ]; then # the tarball is of what git has
+  step "dist"
+  run_make dist
+  tar -xzf "$source/out/luxfer-$version.tar.gz"
+  (cd "luxfer-$version" && find . ! -type d | sed 's|^./||' | sort) >packed
+  git -C "$source" ls-tree -r --name-only HEAD | sort | cmp - packed || fail "the tarball is not the last commit"
+  make --no-print-directory -s -C "luxfer-$version" PROFILE="$built" install DESTDIR="$scratch/dist" PREFIX=/usr
+  (cd stage && find .) | sort >staged
+  (cd dist && find .) | sort | cmp - staged || fail "the tarball installs something else"
+fi
 rm -rf "$scratch"
 echo "package: all checks passed"

@@ -21,6 +21,9 @@ from mathutils import Matrix, Vector
 TO_LUXFER = Matrix(((1, 0, 0, 0), (0, 0, 1, 0), (0, -1, 0, 0), (0, 0, 0, 1)))
 TO_BLENDER = TO_LUXFER.transposed()
 
+#: What Blender calls the colour space of luxfer's pictures, and the colour that a Principled BSDF emits.
+LINEAR, EMISSION = "Linear Rec.709", "Emission Color"
+
 
 def pixels(image: bpy.types.Image) -> np.ndarray:
     """An image's pixels, (height, width, 4), rows from the top; a view of one copy."""
@@ -55,7 +58,7 @@ def store(name: str, values: np.ndarray, linear: bool, pack: bool = True) -> bpy
         if out is not None:
             bpy.data.images.remove(out)
         out = bpy.data.images.new(name, width, height, alpha=False, float_buffer=linear)
-    out.colorspace_settings.name = "Linear Rec.709" if linear else "sRGB"
+    out.colorspace_settings.name = LINEAR if linear else "sRGB"
     out.pixels.foreach_set(rgba.ravel())
     out.update()
     if pack:
@@ -122,8 +125,8 @@ def place_light(context: luxfer.Context, out: luxfer.Scene, thing: bpy.types.Obj
         if slot.material is None or "luxfer_base" not in slot.material:
             continue
         nodes = slot.material.node_tree.nodes
-        surface = next((n for n in nodes if n.type == "BSDF_PRINCIPLED" and n.inputs["Emission Color"].is_linked), None)
-        texture = surface.inputs["Emission Color"].links[0].from_node if surface else None
+        surface = next((n for n in nodes if n.type == "BSDF_PRINCIPLED" and n.inputs[EMISSION].is_linked), None)
+        texture = surface.inputs[EMISSION].links[0].from_node if surface else None
         if texture is not None and texture.type == "TEX_IMAGE" and texture.image is not None:
             nits = surface.inputs["Emission Strength"].default_value
             out.place_emission(thing.name, image(context, texture.image), (nits, nits, nits))

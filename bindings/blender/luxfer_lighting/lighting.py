@@ -281,7 +281,7 @@ def emissive(base: bpy.types.Material | None, image: bpy.types.Image, nits: floa
     texture = nodes.new("ShaderNodeTexImage")
     texture.image, texture.interpolation, texture.extension = image, "Closest", "EXTEND"
     links.new(uv.outputs["UV"], texture.inputs["Vector"])
-    links.new(texture.outputs["Color"], surface.inputs["Emission Color"])
+    links.new(texture.outputs["Color"], surface.inputs[convert.EMISSION])
     surface.inputs["Emission Strength"].default_value = nits
     uv.location = surface.location.x - 520, surface.location.y - 300
     texture.location = surface.location.x - 300, surface.location.y - 300
