@@ -174,7 +174,7 @@ class Background:
         if _current is None:
             if message:
                 self.report({"WARNING" if message == "Cancelled" else "ERROR"}, message)
-            return {"CANCELLED" if message else "FINISHED"}
+            return {"CANCELLED" if message else "FINISHED", "PASS_THROUGH"}  # the event is not ours: it may be Ctrl+Z
         if event.type == "ESC":
             cancel()
         return {"PASS_THROUGH"}
