@@ -21,6 +21,10 @@ const LATTICE_SLACK: f64 = 0.2;
 
 /// By how much, relatively, lamps of a kind may differ in area, in both sides and in their ratio.
 const LIKE: f64 = 0.25;
+/// By how much more, in pixels of the photo: blur and glow make a lamp so much longer that the photo shows small. Beyond the last
+/// of these no lamps are alike.
+const BLUR: f64 = 2.0;
+const LEAST_LIKE: f64 = 0.5;
 /// A lamp is shown sharply if it covers this share of the photo pixels that the largest of its kind does.
 const SHARP: f64 = 0.4;
 
@@ -185,8 +189,9 @@ pub fn wrapped(instances: &[Instance], size: DVec2) -> Vec<Instance> {
 pub fn show_sharply(exemplar: &Exemplar, instances: &mut [Instance], seed: u64) {
     let lamps = &exemplar.components.list;
     let sharp = |k: usize| -> Vec<usize> {
+        let like = (LIKE + BLUR / exemplar.photo_area[k].max(1.0).sqrt()).min(LEAST_LIKE);
         let is_like = |j: &usize| {
-            let close = |a: usize, b: usize| (a as f64 - b as f64).abs() <= LIKE * a.max(b) as f64;
+            let close = |a: usize, b: usize| (a as f64 - b as f64).abs() <= like * a.max(b) as f64;
             let (a, b) = (&lamps[k], &lamps[*j]);
             let ([w, h], [u, v]) = (a.size(), b.size());
             // As large and of the same proportions; and with nothing cut off.
