@@ -39,8 +39,8 @@ class Preview:
         self.photo = self.reduced(convert.pixels(photo)[..., :3], smooth=True)
         encoded = not photo.is_float and photo.colorspace_settings.name == "sRGB"
         self.transfer = luxfer.Transfer(work.context(), luxfer.Image(work.context(), self.photo, "srgb" if encoded else "linear"))
-        self.job: luxfer.Job[luxfer.Transfer] | None = self.transfer.start("view", "features")
-        self.stage = "features"
+        self.job: luxfer.Job[luxfer.Transfer] | None = self.transfer.start("view", "view")
+        self.stage = "view"
         self.strokes: np.ndarray | None = None
         self.masks: dict[str, np.ndarray] = {}  # by stage
         self.shown: dict[str, np.ndarray] = {}  # the last complete ones
@@ -72,7 +72,9 @@ class Preview:
         self.begin("plane")
 
     def begin(self, stage: str) -> None:
-        self.stage, self.job = stage, self.transfer.start(stage, stage)
+        # Strokes on the plane lay out the room, which is among the features.
+        first = "features" if stage == "plane" else stage
+        self.stage, self.job = stage, self.transfer.start(first, stage)
 
     def read(self, job: luxfer.Job[luxfer.Transfer]) -> None:
         """The mask of a stage, if there are strokes for it; then the next stage."""
@@ -80,7 +82,7 @@ class Preview:
             job.wait()
         except luxfer.errors.Degenerate as error:
             self.hint = HINTS.get(self.stage, str(error))
-        if self.stage == "features":
+        if self.stage == "view":
             return
         if not self.hint:
             self.masks[self.stage] = self.transfer.image(f"{self.stage}-mask").numpy()
