@@ -5,6 +5,7 @@
 //! twenty texels the outline does not tell squares from discs as wide.
 
 use super::Luminaire;
+use crate::geometry::polygon;
 use glam::{DVec2, Vec2Swizzles};
 use std::collections::BTreeMap;
 
@@ -90,10 +91,7 @@ pub fn tell<'a>(lamps: impl Iterator<Item = (&'a mut Luminaire, usize)>) {
 /// Sides of the smallest rectangle around some corners, the long one first: one of its sides lies along one of their convex
 /// hull's (Freeman and Shapira 1975), so along one between two of them.
 fn smallest_rectangle(corners: &[DVec2]) -> DVec2 {
-    let extent = |axis: DVec2| {
-        let along = corners.iter().map(|p| p.dot(axis));
-        along.clone().fold(f64::NEG_INFINITY, f64::max) - along.fold(f64::INFINITY, f64::min)
-    };
+    let extent = |axis: DVec2| polygon::extent(corners, axis);
     let hull = hull(corners);
     let edges = hull.iter().zip(hull.iter().cycle().skip(1)).filter_map(|(a, b)| (*b - *a).try_normalize());
     let sides = edges.map(|axis| DVec2::new(extent(axis), extent(axis.perp())));

@@ -134,10 +134,7 @@ fn within(lamp: Luminaire, size: DVec2) -> Luminaire {
         return Luminaire { area: 0.0, outline: Vec::new(), kind: 0, ..lamp };
     }
     let axis = DVec2::from_angle(lamp.orientation);
-    let extent = |axis: DVec2| {
-        let along = outline.iter().map(|p| p.dot(axis));
-        along.clone().fold(f64::NEG_INFINITY, f64::max) - along.fold(f64::INFINITY, f64::min)
-    };
+    let extent = |axis: DVec2| polygon::extent(&outline, axis);
     // What is left may be longer across than along.
     let (size, quarter) = (DVec2::new(extent(axis), extent(axis.perp())), std::f64::consts::FRAC_PI_2);
     let (size, orientation) = match lamp.orientation {

@@ -9,6 +9,7 @@ use super::plan::{Plan, Tile};
 use super::recover::Lights;
 use super::{Input, Luminaire};
 use crate::error::Result;
+use crate::geometry::polygon;
 use crate::image::try_vec;
 use crate::job::Job;
 use glam::{DVec2, DVec3, Vec3};
@@ -187,10 +188,7 @@ impl Light {
         let down = self.spans.iter().flat_map(|s| [corner(s.left, s.row), corner(s.left, s.row + s.rows)]);
         let up = self.spans.iter().rev().flat_map(|s| [corner(s.right, s.row + s.rows), corner(s.right, s.row)]);
         let ring: Vec<DVec2> = down.chain(up).collect();
-        let extent = |axis: DVec2| {
-            let along = ring.iter().map(|p| p.dot(axis));
-            along.clone().fold(f64::NEG_INFINITY, f64::max) - along.fold(f64::INFINITY, f64::min)
-        };
+        let extent = |axis: DVec2| polygon::extent(&ring, axis);
         let axis = DVec2::from_angle(orientation);
         let size = DVec2::new(extent(axis), extent(axis.perp()));
         Luminaire {

@@ -2,6 +2,12 @@
 
 use glam::DVec2;
 
+/// How far some points reach along a unit direction.
+pub fn extent(points: &[DVec2], axis: DVec2) -> f64 {
+    let along = points.iter().map(|p| p.dot(axis));
+    along.clone().fold(f64::NEG_INFINITY, f64::max) - along.fold(f64::INFINITY, f64::min)
+}
+
 /// Signed area, positive where the corners run from x towards y.
 pub fn area(corners: &[DVec2]) -> f64 {
     let next = corners.iter().cycle().skip(1);
