@@ -92,33 +92,11 @@ pub fn tell<'a>(lamps: impl Iterator<Item = (&'a mut Luminaire, usize)>) {
 /// hull's (Freeman and Shapira 1975), so along one between two of them.
 fn smallest_rectangle(corners: &[DVec2]) -> DVec2 {
     let extent = |axis: DVec2| polygon::extent(corners, axis);
-    let hull = hull(corners);
+    let hull = polygon::convex_hull(corners.to_vec());
     let edges = hull.iter().zip(hull.iter().cycle().skip(1)).filter_map(|(a, b)| (*b - *a).try_normalize());
     let sides = edges.map(|axis| DVec2::new(extent(axis), extent(axis.perp())));
     let smallest = sides.min_by(|a, b| (a.x * a.y).total_cmp(&(b.x * b.y))).unwrap_or_default();
     if smallest.x >= smallest.y { smallest } else { smallest.yx() }
-}
-
-/// The convex hull of some points (Andrew 1979).
-fn hull(points: &[DVec2]) -> Vec<DVec2> {
-    let mut sorted = points.to_vec();
-    sorted.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
-    let chain = |points: &mut dyn Iterator<Item = &DVec2>| {
-        let mut chain: Vec<DVec2> = Vec::new();
-        for &p in points {
-            while let [.., a, b] = chain[..]
-                && (b - a).perp_dot(p - a) <= 0.0
-            {
-                chain.pop();
-            }
-            chain.push(p);
-        }
-        chain.pop();
-        chain
-    };
-    let mut hull = chain(&mut sorted.iter());
-    hull.extend(chain(&mut sorted.iter().rev()));
-    hull
 }
 
 #[cfg(test)]

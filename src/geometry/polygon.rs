@@ -30,6 +30,34 @@ pub fn clip(corners: &[DVec2], normal: DVec2, offset: f64) -> Vec<DVec2> {
     out
 }
 
+/// The convex hull of some points, counter-clockwise in a plane with y up: Andrew's monotone chain (1979).
+pub fn convex_hull(mut points: Vec<DVec2>) -> Vec<DVec2> {
+    points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+    points.dedup();
+    let mut hull: Vec<DVec2> = Vec::new();
+    let half = |hull: &mut Vec<DVec2>, start: usize, p: DVec2| {
+        while hull.len() >= start + 2 {
+            let (a, b) = (hull[hull.len() - 2], hull[hull.len() - 1]);
+            if (b - a).perp_dot(p - b) > 0.0 {
+                break;
+            }
+            hull.pop();
+        }
+        hull.push(p);
+    };
+    for &p in &points {
+        half(&mut hull, 0, p);
+    }
+    let start = hull.len().saturating_sub(1);
+    for &p in points.iter().rev().skip(1) {
+        half(&mut hull, start, p);
+    }
+    if hull.len() > 1 {
+        hull.pop();
+    }
+    hull
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

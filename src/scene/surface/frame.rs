@@ -1,5 +1,6 @@
 //! The rectangle around a planar patch, with axes that do not depend on how its triangles are stored.
 
+use crate::geometry::polygon;
 use glam::{DVec2, DVec3};
 
 /// Axes within this angle of a world axis are taken to mean it: 1°.
@@ -62,7 +63,7 @@ pub fn bound(points: &[DVec3], centre: DVec3, u: DVec3, normal: DVec3) -> Frame 
 fn smallest(points: &[DVec3], centre: DVec3, upright: DVec3, normal: DVec3) -> DVec3 {
     let v = down_of(upright, normal);
     let flat = points.iter().map(|p| DVec2::new((*p - centre).dot(upright), (*p - centre).dot(v)));
-    let hull = convex_hull(flat.collect());
+    let hull = polygon::convex_hull(flat.collect());
     let mut best = (f64::INFINITY, DVec2::X);
     for (i, a) in hull.iter().enumerate() {
         let Some(edge) = (hull[(i + 1) % hull.len()] - *a).try_normalize() else { continue };
@@ -82,34 +83,6 @@ fn smallest(points: &[DVec3], centre: DVec3, upright: DVec3, normal: DVec3) -> D
     let turns = [edge, edge.perp(), -edge, -edge.perp()];
     let nearest = turns.into_iter().fold(edge, |a, b| if b.x > a.x + 1e-12 { b } else { a });
     (upright * nearest.x + v * nearest.y).normalize_or(upright)
-}
-
-/// Andrew's monotone chain (1979), counter-clockwise in a plane with y up.
-fn convex_hull(mut points: Vec<DVec2>) -> Vec<DVec2> {
-    points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
-    points.dedup();
-    let mut hull: Vec<DVec2> = Vec::new();
-    let half = |hull: &mut Vec<DVec2>, start: usize, p: DVec2| {
-        while hull.len() >= start + 2 {
-            let (a, b) = (hull[hull.len() - 2], hull[hull.len() - 1]);
-            if (b - a).perp_dot(p - b) > 0.0 {
-                break;
-            }
-            hull.pop();
-        }
-        hull.push(p);
-    };
-    for &p in &points {
-        half(&mut hull, 0, p);
-    }
-    let start = hull.len().saturating_sub(1);
-    for &p in points.iter().rev().skip(1) {
-        half(&mut hull, start, p);
-    }
-    if hull.len() > 1 {
-        hull.pop();
-    }
-    hull
 }
 
 #[cfg(test)]
