@@ -66,6 +66,38 @@ fn vanishing_points_of_photos_meet_their_truth() {
     assert!((0.4..1.1).contains(&at(0.5)) && at(0.9) < 2.5);
 }
 
+/// Views cut out of panoramas have no distortion, and what is measured of it stays within what is stated; York Urban's camera has
+/// a barrel.
+#[test]
+fn distortion_is_told_of_lenses_that_have_some() {
+    let measured = |name: &str, photo: &Image| {
+        let view = rectify::find_view(photo, &Params::default(), Monitor::default().job()).unwrap();
+        let share = view.distortion.map(|found| found.corner / found.error);
+        println!("{name:22} {:?}", view.distortion);
+        share
+    };
+    let mut shares: Vec<f64> =
+        labelled_photos().iter().filter_map(|l| measured(&l.name, &l.photo)).map(f64::abs).collect();
+    let Some(folder) = data("photos") else { return };
+    shares.sort_by(f64::total_cmp);
+    let at = |p: f64| shares[(p * shares.len() as f64) as usize];
+    println!(
+        "distortion / stated error: half below {:.2}, 68 % below {:.2}, 90 % below {:.2}",
+        at(0.5),
+        at(0.68),
+        at(0.9)
+    );
+    assert!(at(0.5) < 1.1 && at(0.9) < 2.5);
+
+    let york = ["008", "009", "034", "037", "047", "049", "059", "076"].map(|number| {
+        let name = format!("yud_{number}");
+        let photo = io::load(&folder.join(format!("{name}.jpg")), Encoding::Srgb).unwrap().to_rgb().unwrap();
+        measured(&name, &photo).unwrap_or(0.0)
+    });
+    let barrels = york.iter().filter(|share| **share < -2.0).count();
+    assert!(barrels >= 5 && york.iter().all(|share| *share < 1.0), "{york:.1?}");
+}
+
 #[test]
 fn vanishing_points_of_labelled_segments_meet_the_published_protocol() {
     for (name, least) in [("yud_dev", 0.885), ("nyu_dev", 0.76)] {

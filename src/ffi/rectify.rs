@@ -194,9 +194,15 @@ pub struct luxfer_rectify_report {
     pub pixel_size: f64,
     /// Trust in the aspect ratio, in [0, 1]: low where the focal length had to be assumed.
     pub aspect_confidence: f64,
+    /// How far outwards the lens moves what it shows in the corners of the photo, as a share of their distance from its centre:
+    /// below 0 for a barrel, as of wide angles. It is measured by how far straight lines are bent, and not undone. NaN where the
+    /// photo has too few lines to tell.
+    pub distortion: f64,
+    /// Its standard deviation; NaN where it is.
+    pub distortion_error: f64,
 }
 
-const REPORT_SIZE: usize = 8 + 72 + 24 + 16 + 24 + 72 + 8 + 72 + 64 + 32 + 16;
+const REPORT_SIZE: usize = 8 + 72 + 24 + 16 + 24 + 72 + 8 + 72 + 64 + 32 + 32;
 
 // SAFETY: plain numbers.
 unsafe impl Versioned for luxfer_rectify_report {
@@ -220,6 +226,8 @@ unsafe impl Versioned for luxfer_rectify_report {
             corner_errors: [0.0; 4],
             pixel_size: 0.0,
             aspect_confidence: 0.0,
+            distortion: f64::NAN,
+            distortion_error: f64::NAN,
         }
     }
 }
@@ -241,6 +249,8 @@ impl luxfer_rectify_report {
             focal: camera.focal,
             principal: camera.principal.to_array(),
             axes: camera.axes.to_cols_array_2d(),
+            distortion: view.distortion.map_or(f64::NAN, |d| d.corner),
+            distortion_error: view.distortion.map_or(f64::NAN, |d| d.error),
             ..Self::defaults()
         };
         let Some(unwarped) = unwarped else { return report };

@@ -1,7 +1,7 @@
 //! Rectification: edges to lines to vanishing points to a homography to an unwarped texture ("Lighting Style Transfer", §5).
 //!
 //! ```text
-//! photo ─▶ gradient ─▶ segments ───────▶ vanishing ─▶ camera ─▶ View
+//! photo ─▶ gradient ─▶ segments ───────▶ vanishing ─▶ camera ─▶ View ◀─ distortion ◀─ segments
 //!             └─▶ canny ─▶ hough ─┘        ├ manhattan ─ sphere
 //!                                          └ successive ─ metric
 //! View + mask ─▶ plane ─▶ quad ─▶ unwarp ─▶ resample ─▶ Unwarped
@@ -20,12 +20,13 @@
 //! few, and noisy for their length, those of directions are up to an eighth too small (the mean square of true over stated
 //! ones is 1.3 with 14 lines an axis and a pixel of noise, 1.0 to 1.15 with more lines or less noise).
 //!
-//! Not modelled: lens distortion, pixels that are not square, rooms whose walls are not at right angles (their directions
+//! Not modelled: lens distortion, which is measured however ([`View::distortion`]), pixels that are not square, rooms whose walls are not at right angles (their directions
 //! are found, but the axes are made orthogonal).
 
 mod biweight;
 mod camera;
 pub mod canny;
+mod distortion;
 mod footprint;
 mod four;
 mod gather;
@@ -45,6 +46,7 @@ mod tests;
 mod unwarp;
 pub mod vanishing;
 
+pub use distortion::Distortion;
 pub use resample::warp;
 pub use unwarp::unwarp;
 
@@ -161,6 +163,8 @@ pub struct View {
     /// One for each column of `perspective.axes`.
     pub vanishing_points: [VanishingPoint; 3],
     pub perspective: Perspective,
+    /// How far the lens bends straight lines; absent where a photo has too few of them, or was not seen itself.
+    pub distortion: Option<Distortion>,
 }
 
 /// Finds lines, vanishing points and the camera of a linear RGB photo. Pixels that are not finite make no lines.
@@ -168,40 +172,55 @@ pub struct View {
 /// A photo in which no two lines meet is an [`ErrorKind::Degenerate`](crate::error::ErrorKind) error.
 pub fn find_view(photo: &Image, params: &Params, job: Job) -> Result<View> {
     params.check()?;
-    let segments = find_segments(photo, params, job.part(0.0, 0.7))?;
-    view_from_segments(&segments, photo.width, photo.height, params, job.part(0.7, 1.0))
+    let Lines { segments, distortion } = find_lines(photo, params, job.part(0.0, 0.7))?;
+    let view = view_from_segments(&segments, photo.width, photo.height, params, job.part(0.7, 1.0))?;
+    Ok(View { distortion, ..view })
 }
 
 /// The straight edges of a photo, in its pixels.
 pub fn find_segments(photo: &Image, params: &Params, job: Job) -> Result<Vec<Segment>> {
+    find_lines(photo, params, job).map(|lines| lines.segments)
+}
+
+/// The straight edges of a photo, in its pixels, and how straight they are.
+struct Lines {
+    segments: Vec<Segment>,
+    distortion: Option<Distortion>,
+}
+
+fn find_lines(photo: &Image, params: &Params, job: Job) -> Result<Lines> {
+    let size = DVec2::new(photo.width as f64, photo.height as f64);
+    let centre = params.principal.unwrap_or(0.5 * size);
     let longest = photo.width.max(photo.height);
     if longest <= DETECTION_SIDE {
-        return segments_at_full_size(photo, params, job);
+        return lines_at_full_size(photo, centre, params, job);
     }
     let reduce = |side: usize| (side * DETECTION_SIDE).div_ceil(longest).max(1);
     let reduced = pyramid::resize(photo, reduce(photo.width), reduce(photo.height), job.part(0.0, 0.3))?;
-    let scale = DVec2::new(photo.width as f64 / reduced.width as f64, photo.height as f64 / reduced.height as f64);
-    let mut segments = segments_at_full_size(&reduced, params, job.part(0.3, 1.0))?;
-    for s in &mut segments {
+    let scale = size / DVec2::new(reduced.width as f64, reduced.height as f64);
+    let mut lines = lines_at_full_size(&reduced, centre / scale, params, job.part(0.3, 1.0))?;
+    for s in &mut lines.segments {
         (s.a, s.b) = (s.a * scale, s.b * scale);
     }
-    Ok(segments)
+    Ok(lines)
 }
 
-fn segments_at_full_size(photo: &Image, params: &Params, job: Job) -> Result<Vec<Segment>> {
+fn lines_at_full_size(photo: &Image, centre: DVec2, params: &Params, job: Job) -> Result<Lines> {
     let luma = gradient::encoded_luma(photo, job.part(0.0, 0.2))?;
     let gradients = gradient::gradients(&luma, job.part(0.2, 0.4))?;
-    match params.detector {
-        LineDetector::Regions => segments::detect(&gradients, job.part(0.4, 1.0)),
+    let segments = match params.detector {
+        LineDetector::Regions => segments::detect(&gradients, job.part(0.4, 1.0))?,
         LineDetector::Hough => {
             let edges = canny::edges(&gradients, job.part(0.4, 0.5))?;
             let peaks = hough::peaks(&gradients, &edges, params.hough_band, job.part(0.5, 0.7))?;
             match params.metric {
-                Metric::Segment => hough::pieces(&gradients, &edges, &peaks, params.hough_band, job.part(0.7, 1.0)),
-                Metric::VisibleLine => Ok(hough::whole_lines(&gradients, &peaks)),
+                Metric::Segment => hough::pieces(&gradients, &edges, &peaks, params.hough_band, job.part(0.7, 1.0))?,
+                Metric::VisibleLine => hough::whole_lines(&gradients, &peaks),
             }
         }
-    }
+    };
+    let distortion = distortion::measure(&gradients, &segments, centre);
+    Ok(Lines { segments, distortion })
 }
 
 /// The same as [`find_view`] from segments found by other means.
@@ -222,6 +241,7 @@ pub fn view_from_segments(
         segments: segments.iter().copied().zip(found.members.iter().map(axis)).collect(),
         vanishing_points: oriented.vanishing_points,
         perspective: oriented.perspective,
+        distortion: None,
     })
 }
 

@@ -1,0 +1,253 @@
+//! Whether the lens bends what is straight: the plumb-line test (Brown 1971, "Close-range camera calibration"; Devernay and
+//! Faugeras 2001, "Straight lines have to be straight").
+//!
+//! A lens that shows r from the centre what belongs at r (1 - k r² / R²), R being half the picture's diagonal, shows a line as a curve
+//! y of t with `y (1 - k (y² + t²) / R²)` the same all along. Where it passes the centre at distance d its curvature is
+//! `2 k d / R² / (1 - 3 k d² / R²)`. So the second power of t over d tells k, line by line; what the many lines of a room say together is
+//! robust against mouldings and vaults that are bent themselves.
+
+use super::gradient::{Gradients, SIGMA};
+use crate::geometry::Segment;
+use glam::DVec2;
+
+/// How far the lens moves what it shows in the corners of the picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Distortion {
+    /// k: as a share of the distance from the centre, outwards; < 0 is a barrel.
+    pub corner: f64,
+    /// Standard deviation of it, with what lenses are off from this model.
+    pub error: f64,
+    /// Lines that agree.
+    pub lines: usize,
+}
+
+/// Shortest segment that is looked at, in pixels, and how much of each end is left out, where corners bend edges.
+const SHORTEST: f64 = 30.0;
+const END: f64 = 4.0;
+/// Pixels on each side of a segment among which its edge is looked for.
+const ACROSS: i32 = 4;
+/// Least share of a segment along which its edge must be found.
+const FOUND: f64 = 0.7;
+/// Fewest lines that tell anything.
+const FEWEST: usize = 12;
+/// Least error of an edge's place in pixels: what no average takes away.
+const FLOOR: f64 = 0.01;
+/// Pixels by which an edge that is one strays from its parabola at most, root mean square.
+const RAGGED: f64 = 0.25;
+/// Limit of Tukey's biweight in standard deviations (95 % efficiency).
+const LIMIT: f64 = 4.685;
+/// Segments of one real line: both sides of a frame, its pieces.
+const TWINS: f64 = 2.0;
+/// What lenses are off from the model: views cut out of panoramas, which have no distortion but their stitching's, show about as
+/// much beside the error that their lines tell.
+const MODEL: f64 = 0.006;
+
+/// What the straight lines of a photo say of its lens, whose axis meets the picture in `centre`; nothing where they are few.
+pub fn measure(gradients: &Gradients, segments: &[Segment], centre: DVec2) -> Option<Distortion> {
+    let diagonal = 0.5 * DVec2::new(gradients.width as f64, gradients.height as f64).length();
+    let said: Vec<Said> = segments.iter().filter_map(|s| Said::by(gradients, s, centre, diagonal)).collect();
+    combine(&said)
+}
+
+/// What one line says.
+#[derive(Clone, Copy, Debug)]
+struct Said {
+    /// k, but for the term of the curvature that is quadratic in it.
+    corner: f64,
+    /// One over its variance.
+    weight: f64,
+    /// (d / R)².
+    place: f64,
+}
+
+impl Said {
+    /// k, where it is nearly known.
+    fn given(&self, nearly: f64) -> f64 {
+        self.corner * (1.0 - 3.0 * nearly * self.place)
+    }
+}
+
+impl Said {
+    fn by(gradients: &Gradients, segment: &Segment, centre: DVec2, diagonal: f64) -> Option<Self> {
+        let along = (segment.b - segment.a).try_normalize()?;
+        let distance = along.perp().dot(0.5 * (segment.a + segment.b) - centre);
+        let places = places(gradients, segment)?;
+        let (bend, variance) = parabola(&places)?;
+        let leverage = distance / (diagonal * diagonal);
+        let weight = leverage * leverage / variance;
+        let place = (distance / diagonal).powi(2);
+        (weight > 0.0).then_some(Self { corner: bend / leverage, weight, place })
+    }
+}
+
+/// Where the edge is, along a segment and across it, pixel by pixel: where the gradient that points its way is steepest, which
+/// other edges nearby do not draw to their side.
+fn places(gradients: &Gradients, segment: &Segment) -> Option<Vec<DVec2>> {
+    let length = segment.length();
+    if length < SHORTEST {
+        return None;
+    }
+    let along = (segment.b - segment.a) / length;
+    let across = along.perp();
+    let steps = (length - 2.0 * END) as usize;
+    let profile = |t: f64| (-ACROSS..=ACROSS).map(move |o| segment.a + along * t + across * f64::from(o));
+    // The sense of the edge, from its middle.
+    let sense: f64 = (0..steps).map(|i| slope(gradients, segment.a + along * (END + i as f64), across)).sum();
+    let mut places = Vec::new();
+    for t in (0..steps).map(|i| END + i as f64) {
+        let slopes: Vec<f64> = profile(t).map(|at| slope(gradients, at, across) * sense.signum()).collect();
+        let Some(best) = (0..slopes.len()).max_by(|&i, &k| slopes[i].total_cmp(&slopes[k])) else { continue };
+        // An edge that leaves the strip, or is none, says nothing; between pixels it is at the top of a parabola.
+        let inside = best > 0 && best + 1 < slopes.len() && slopes[best] > 0.0;
+        if inside
+            && let [a, b, c] = slopes[best - 1..=best + 1]
+            && a + c < 2.0 * b
+        {
+            let offset = best as f64 - f64::from(ACROSS) + 0.5 * (a - c) / (a - 2.0 * b + c);
+            places.push(DVec2::new(t, offset));
+        }
+    }
+    (places.len() as f64 >= FOUND * steps as f64).then_some(places)
+}
+
+/// Derivative of the encoded luma along a direction, between pixels.
+fn slope(gradients: &Gradients, at: DVec2, direction: DVec2) -> f64 {
+    let at = at - 0.5;
+    let cell = at.floor();
+    let inside = cell.cmpge(DVec2::ZERO).all()
+        && cell.x + 1.0 < gradients.width as f64
+        && cell.y + 1.0 < gradients.height as f64;
+    if !inside {
+        return 0.0;
+    }
+    let (f, first) = (at - cell, cell.y as usize * gradients.width + cell.x as usize);
+    let of = |i: usize| {
+        let [x, y] = gradients.derivative[i].map(f64::from);
+        direction.dot(DVec2::new(x, y))
+    };
+    let row = |first: usize| of(first) * (1.0 - f.x) + of(first + 1) * f.x;
+    row(first) * (1.0 - f.y) + row(first + gradients.width) * f.y
+}
+
+/// The coefficient of the second power in the parabola through some points, and its variance: by polynomials that are
+/// orthogonal on them.
+fn parabola(points: &[DVec2]) -> Option<(f64, f64)> {
+    let count = points.len() as f64;
+    if points.len() < 8 {
+        return None;
+    }
+    let mean = points.iter().sum::<DVec2>() / count;
+    let first = |p: &DVec2| p.x - mean.x;
+    let sums = points.iter().fold((0.0, 0.0), |(s, c), p| (s + first(p).powi(2), c + first(p).powi(3)));
+    let second = |p: &DVec2| first(p).powi(2) - sums.1 / sums.0 * first(p) - sums.0 / count;
+    let part = |of: &dyn Fn(&DVec2) -> f64| {
+        let (dot, square) = points.iter().fold((0.0, 0.0), |(d, s), p| (d + of(p) * p.y, s + of(p).powi(2)));
+        (dot / square, square)
+    };
+    let ((tilt, _), (bend, square)) = (part(&first), part(&second));
+    let residual = |p: &DVec2| p.y - mean.y - tilt * first(p) - bend * second(p);
+    let noise = points.iter().map(|p| residual(p).powi(2)).sum::<f64>() / (count - 3.0);
+    // Neighbours share the Gaussian that the picture was smoothed with, whose autocorrelation is this long.
+    let shared = 2.0 * std::f64::consts::PI.sqrt() * f64::from(SIGMA);
+    let variance = (noise + FLOOR * FLOOR) * shared / square;
+    (noise < RAGGED * RAGGED && variance > 0.0 && variance.is_finite()).then_some((bend, variance))
+}
+
+/// The k that most lines agree on: an M-estimate from their weighted median, with the error that their disagreement tells.
+fn combine(said: &[Said]) -> Option<Distortion> {
+    if said.len() < FEWEST {
+        return None;
+    }
+    let mut corner = weighted_median(said.iter().map(|s| (s.corner, s.weight.sqrt())).collect());
+    let spread = |corner: f64| {
+        let off = said.iter().map(|s| ((s.corner - corner).abs() * s.weight.sqrt(), 1.0)).collect();
+        (1.4826 * weighted_median(off)).max(1.0)
+    };
+    let mut result = None;
+    for _ in 0..20 {
+        let limit = LIMIT * spread(corner);
+        let (mut weights, mut sum, mut squares, mut lines) = (0.0, 0.0, 0.0, 0);
+        for s in said {
+            let off = s.given(corner) - corner;
+            let residual = off * s.weight.sqrt() / limit;
+            let agreement = (1.0 - residual * residual).max(0.0).powi(2);
+            weights += agreement * s.weight;
+            sum += agreement * s.weight * s.given(corner);
+            squares += (agreement * s.weight * off).powi(2).max(agreement.powi(2) * s.weight);
+            lines += usize::from(agreement > 0.0);
+        }
+        corner = sum / weights;
+        result = Some(Distortion { corner, error: ((TWINS * squares).sqrt() / weights).hypot(MODEL), lines });
+    }
+    result.filter(|r| r.lines >= FEWEST && r.corner.is_finite() && r.error.is_finite())
+}
+
+fn weighted_median(mut values: Vec<(f64, f64)>) -> f64 {
+    values.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let half = 0.5 * values.iter().map(|v| v.1).sum::<f64>();
+    let mut sum = 0.0;
+    for (value, weight) in values {
+        sum += weight;
+        if sum >= half {
+            return value;
+        }
+    }
+    0.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{gradient, segments};
+    use super::*;
+    use crate::image::Image;
+    use crate::job::Monitor;
+    use crate::rng::Rng;
+
+    /// A boarded wall seen aslant through a lens, its lower boards across, with noise.
+    fn photo(k: f64, [width, height]: [usize; 2], seed: u64) -> Image {
+        let centre = 0.5 * DVec2::new(width as f64, height as f64);
+        let diagonal = centre.length();
+        Image::from_fn(width, height, |x, y| {
+            let mut sum = 0.0;
+            for s in 0..9 {
+                let at = DVec2::new(x as f64 + (s % 3) as f64 / 3.0, y as f64 + (s / 3) as f64 / 3.0) + 1.0 / 6.0;
+                let shown = (at - centre) / diagonal;
+                let p = shown * (1.0 - k * shown.length_squared());
+                let depth = 1.0 + 0.4 * p.x + 0.15 * p.y;
+                let wall = DVec2::new(p.x + 0.1 * p.y, p.y) / depth * 9.0;
+                let board = if p.y < 0.1 { wall.x } else { wall.y };
+                sum += if board.rem_euclid(1.0) < 0.3 { 0.1 } else { 0.5 };
+            }
+            [(sum / 9.0 + 0.01 * Rng::new(seed, &[x as u64, y as u64]).normal()) as f32; 3]
+        })
+        .unwrap()
+    }
+
+    fn measured(photo: &Image) -> Option<Distortion> {
+        let monitor = Monitor::default();
+        let luma = gradient::encoded_luma(photo, monitor.job()).unwrap();
+        let gradients = gradient::gradients(&luma, monitor.job()).unwrap();
+        let segments = segments::detect(&gradients, monitor.job()).unwrap();
+        measure(&gradients, &segments, 0.5 * DVec2::new(photo.width as f64, photo.height as f64))
+    }
+
+    #[test]
+    fn the_bend_of_a_lens_is_found_within_its_error() {
+        for k in [-0.06, -0.02, 0.0, 0.015, 0.04] {
+            for (size, seed) in [([600, 400], 1), ([360, 480], 2)] {
+                let found = measured(&photo(k, size, seed)).unwrap();
+                println!("k {k}: {found:?}");
+                assert!((found.corner - k).abs() < 0.002, "k {k}: {found:?}");
+                assert!(found.error < 0.007, "k {k}: {found:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn little_is_said_of_pictures_without_lines() {
+        let noise = |x: usize, y: usize| [Rng::new(3, &[x as u64, y as u64]).next_f32(); 3];
+        let noise = Image::from_fn(200, 200, noise).unwrap();
+        assert_eq!(measured(&noise), None);
+        assert_eq!(measured(&Image::from_fn(3, 3, |_, _| [0.5; 3]).unwrap()), None);
+    }
+}
