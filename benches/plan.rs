@@ -1,11 +1,12 @@
 //! Whether plans come true: seconds and errors that `plan` expects against those of the runs it plans.
 //!
-//! Of renderings and of the light of whole transfers, on scenes, sizes and photos of all kinds; nothing was fitted to any.
+//! Of renderings, of the light of whole transfers and of stylisations, on scenes, sizes and photos of all kinds; nothing was fitted to any.
 //! Times are of one thread, by its own clock, so that what else the machine does weighs on neither side; time budgets, which
 //! are of the clock on the wall, are taken off for that, and the paths that they bound stay. The error of a picture is that
-//! of two pictures of different seeds, which needs no reference: half the mean square of their difference.
+//! of two pictures of different seeds, which needs no reference: half the mean square of their difference; that of a stylisation
+//! the root of its energy.
 //!
-//! `cargo bench --bench plan -- renderings` or `-- transfers` makes the one or the other alone.
+//! `cargo bench --bench plan -- renderings`, `-- transfers` or `-- stylisations` makes one of them alone.
 
 mod harness;
 #[path = "plan/outcomes.rs"]
@@ -14,6 +15,9 @@ mod outcomes;
 mod photos;
 #[path = "plan/renderings.rs"]
 mod renderings;
+#[cfg(feature = "stylize")]
+#[path = "plan/stylisations.rs"]
+mod stylisations;
 #[path = "plan/transfers.rs"]
 mod transfers;
 
@@ -23,14 +27,19 @@ use outcomes::{Outcomes, within};
 
 fn main() {
     let pool = Pool::new(1).expect("a thread");
-    let asked = |what: &str| std::env::args().any(|a| a == what);
+    let asked: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with('-')).collect();
+    let wants = |what: &str| asked.is_empty() || asked.iter().any(|a| a == what);
     pool.run(|| {
         let mut all = Outcomes::default();
-        if !asked("transfers") {
+        if wants("renderings") {
             renderings::measure(&mut all);
         }
-        if !asked("renderings") {
+        if wants("transfers") {
             transfers::measure(&mut all);
+        }
+        #[cfg(feature = "stylize")]
+        if wants("stylisations") {
+            stylisations::measure(&mut all);
         }
         for (name, ratios) in [("time", &all.times), ("error", &all.errors)] {
             figure(&format!("plan.{name}.within_25"), 100.0 * within(ratios), "%");

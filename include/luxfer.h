@@ -1295,6 +1295,14 @@ typedef struct luxfer_rectify_report {
     double pixel_size;
     /** Trust in the aspect ratio, in [0, 1]: low where the focal length had to be assumed. */
     double aspect_confidence;
+    /**
+     * How far outwards the lens moves what it shows in the corners of the photo, as a share of their distance from its centre:
+     * below 0 for a barrel, as of wide angles. It is measured by how far straight lines are bent, and not undone. NaN where the
+     * photo has too few lines to tell.
+     */
+    double distortion;
+    /** Its standard deviation; NaN where it is. */
+    double distortion_error;
 } luxfer_rectify_report;
 
 /** Regions of like gradient direction, with sub-pixel end points. */
@@ -3846,12 +3854,12 @@ luxfer_status luxfer_transfer_save_fixtures(luxfer_transfer *transfer,
  * Planning
  *
  * Settings for an error or a time, before anything is rendered: state either, and a plan tells with which settings
- * relighting and rendering come to it, how long each should take, and what error should be left. What a path costs and
- * how much light scatters depends on the scene, so a plan measures it on a small part of the very work, which takes some
- * tenths of a second beside making the scene ready. It assumes that the machine stays as quiet as it is meanwhile.
+ * relighting and rendering, or a stylisation, come to it, how long each should take, and what error should be left. What a
+ * path costs and how much light scatters depends on the scene, so a plan measures it on a small part of the very work, which
+ * takes some tenths of a second beside making the scene ready. It assumes that the machine stays as quiet as it is meanwhile.
  *
  * Errors are those of a picture: the root mean square over its pixels, relative to its mean, of noise and of what the
- * solution of the emission makes too bright or too dark.
+ * solution of the emission makes too bright or too dark; that of a stylisation is told by luxfer_plan_start_stylize.
  * ==================================================================================================================== */
 
 /** A plan. See luxfer_plan_create. */
@@ -3875,21 +3883,19 @@ typedef struct luxfer_plan_params {
 typedef struct luxfer_plan_report {
     /** sizeof(luxfer_plan_report), set by the caller. */
     uint32_t struct_size;
-    /** 1 if the plan relights, as that of a transfer; 0 if it is of a rendering. */
+    /** 1 if the plan relights, as that of a transfer; 0 if it is of a rendering or a stylisation. */
     uint32_t relights;
     /** Seconds for all that is planned. */
     double seconds;
     /** Error of the picture. */
     double error;
-    /** Seconds for relighting, which makes the scene ready first; 0 in a plan of a rendering. */
+    /** Seconds for relighting, which makes the scene ready first; 0 in other plans than that of a transfer. */
     double relight_seconds;
-    /**
-     * The error that luxfer_relight_report should state, half the width of its interval; 0 in a plan of a rendering.
-     */
+    /** The error that luxfer_relight_report should state, half the width of its interval; 0 in other plans. */
     double relight_error;
-    /** Seconds for rendering; in a plan of a transfer it makes the scene ready first. */
+    /** Seconds for rendering; in a plan of a transfer it makes the scene ready first; 0 in a plan of a stylisation. */
     double render_seconds;
-    /** The error that luxfer_render_report should state. */
+    /** The error that luxfer_render_report should state; 0 in a plan of a stylisation. */
     double render_error;
 } luxfer_plan_report;
 
@@ -3938,14 +3944,14 @@ luxfer_status luxfer_plan_get_report(luxfer_plan *plan, luxfer_plan_report *repo
  * Gets the settings to render with: those given, with what the plan has chosen. With an error as goal rendering stops when it
  * is reached; with a time the number of paths is chosen, and time_budget_ms is a quarter more than they should take, so
  * that the picture is the same every time unless the machine is slower than it was. Set params->struct_size before. Any
- * thread. LUXFER_NOT_READY before a job has succeeded.
+ * thread. LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND in a plan of a stylisation.
  */
 luxfer_status luxfer_plan_get_render_params(luxfer_plan *plan,
                                             luxfer_render_params *params);
 
 /**
  * Gets the settings to relight with, likewise. Set params->struct_size before. Any thread.
- * LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND in a plan of a rendering.
+ * LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND in other plans than that of a transfer.
  */
 luxfer_status luxfer_plan_get_relight_params(luxfer_plan *plan, luxfer_relight_params *params);
 
@@ -4471,6 +4477,36 @@ luxfer_status luxfer_stylize_get_pass(luxfer_stylize *stylize,
                                       uint32_t round,
                                       uint32_t index,
                                       luxfer_stylize_pass *pass);
+
+/* ====================================================================================================================
+ * Planning of stylisations
+ *
+ * How careful a stylisation can be in a time, or has to be for an error. A plan tries settings from quick to careful on the very
+ * input at a part of its resolution, which takes about a tenth of the time of LUXFER_STYLIZE_FULL, and less for large targets.
+ * ==================================================================================================================== */
+
+/**
+ * Starts a job that plans a stylisation, of all of the target, with the artwork, guides and masks that stylize has now.
+ * settings give all that is kept, the preset's resolution with it: only numbers of rounds and sweeps are chosen; NULL for the
+ * defaults. params says what for; the error is the root of luxfer_stylize_report.energy: how far matched patches differ,
+ * root mean square, in colours and guides in [0, 1]. A goal out of reach gives the settings nearest to it. The caller
+ * releases *job. Any thread.
+ * LUXFER_INVALID_ARGUMENT if params is NULL, or has not one of its fields set, or a setting is out of range;
+ * LUXFER_INVALID_OPERATION if artwork or guides are missing or a job runs already. The job may end as that of
+ * luxfer_stylize_start.
+ */
+luxfer_status luxfer_plan_start_stylize(luxfer_plan *plan,
+                                        luxfer_stylize *stylize,
+                                        const luxfer_stylize_params *settings,
+                                        const luxfer_plan_params *params,
+                                        luxfer_job **job);
+
+/**
+ * Gets the settings to stylise with: those given, with what the plan has chosen. Set params->struct_size before. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND in a plan of something else.
+ */
+luxfer_status luxfer_plan_get_stylize_params(luxfer_plan *plan,
+                                             luxfer_stylize_params *params);
 
 /* ====================================================================================================================
  * Print sheets

@@ -56,6 +56,7 @@ const GROUPS: &[&str] = &[
     "stylize_params",
     "stylize",
     "stylize_results",
+    "plan_stylize",
     "sheet",
     "demo",
     "demo_photo",
@@ -355,7 +356,8 @@ layouts! {
     luxfer_rectify_params: struct_size detector search metric hough_band focal principal plane_axes max_side reserved
         max_magnification seed;
     luxfer_rectify_report: struct_size segments vanishing_points vanishing_errors vanishing_support focal_source
-        focal principal axes is_unwarped reserved to_photo corners corner_errors pixel_size aspect_confidence;
+        focal principal axes is_unwarped reserved to_photo corners corner_errors pixel_size aspect_confidence
+        distortion distortion_error;
     luxfer_emission_params: struct_size width height block scale working_side metadata_weight seed least_regularity
         whole_lamps offset clip_level even_lamps tileable centred;
     luxfer_emission_report: struct_size luminaires error regularity exemplar_lamps sampling_error;

@@ -44,6 +44,8 @@ mod pattern;
 mod photometry;
 mod placement;
 mod plan;
+#[cfg(feature = "stylize")]
+mod plan_stylize;
 mod query;
 mod rectify;
 mod relight;
@@ -92,6 +94,8 @@ pub use pattern::*;
 pub use photometry::*;
 pub use placement::*;
 pub use plan::*;
+#[cfg(feature = "stylize")]
+pub use plan_stylize::*;
 pub use query::*;
 pub use rectify::*;
 pub use relight::*;

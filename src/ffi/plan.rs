@@ -1,12 +1,12 @@
 //! Planning
 //!
 //! Settings for an error or a time, before anything is rendered: state either, and a plan tells with which settings
-//! relighting and rendering come to it, how long each should take, and what error should be left. What a path costs and
-//! how much light scatters depends on the scene, so a plan measures it on a small part of the very work, which takes some
-//! tenths of a second beside making the scene ready. It assumes that the machine stays as quiet as it is meanwhile.
+//! relighting and rendering, or a stylisation, come to it, how long each should take, and what error should be left. What a
+//! path costs and how much light scatters depends on the scene, so a plan measures it on a small part of the very work, which
+//! takes some tenths of a second beside making the scene ready. It assumes that the machine stays as quiet as it is meanwhile.
 //!
 //! Errors are those of a picture: the root mean square over its pixels, relative to its mean, of noise and of what the
-//! solution of the emission makes too bright or too dark.
+//! solution of the emission makes too bright or too dark; that of a stylisation is told by luxfer_plan_start_stylize.
 
 use super::context::luxfer_context;
 use super::guard::{enter, guard};
@@ -23,7 +23,8 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::plan::{self, Expected, Goal};
 use crate::relight;
 use crate::render;
-use std::sync::Arc;
+#[cfg(feature = "stylize")]
+use crate::stylize;
 
 /// A plan. See luxfer_plan_create.
 pub struct luxfer_plan {
@@ -54,7 +55,7 @@ unsafe impl Versioned for luxfer_plan_params {
 }
 
 impl luxfer_plan_params {
-    fn goal(&self) -> Result<Goal> {
+    pub(super) fn goal(&self) -> Result<Goal> {
         if self.reserved != 0 {
             return Err(Error::argument(format!("plan.reserved is {}; it must be 0", self.reserved)));
         }
@@ -78,19 +79,19 @@ impl luxfer_plan_params {
 pub struct luxfer_plan_report {
     /// sizeof(luxfer_plan_report), set by the caller.
     pub struct_size: u32,
-    /// 1 if the plan relights, as that of a transfer; 0 if it is of a rendering.
+    /// 1 if the plan relights, as that of a transfer; 0 if it is of a rendering or a stylisation.
     pub relights: u32,
     /// Seconds for all that is planned.
     pub seconds: f64,
     /// Error of the picture.
     pub error: f64,
-    /// Seconds for relighting, which makes the scene ready first; 0 in a plan of a rendering.
+    /// Seconds for relighting, which makes the scene ready first; 0 in other plans than that of a transfer.
     pub relight_seconds: f64,
-    /// The error that luxfer_relight_report should state, half the width of its interval; 0 in a plan of a rendering.
+    /// The error that luxfer_relight_report should state, half the width of its interval; 0 in other plans.
     pub relight_error: f64,
-    /// Seconds for rendering; in a plan of a transfer it makes the scene ready first.
+    /// Seconds for rendering; in a plan of a transfer it makes the scene ready first; 0 in a plan of a stylisation.
     pub render_seconds: f64,
-    /// The error that luxfer_render_report should state.
+    /// The error that luxfer_render_report should state; 0 in a plan of a stylisation.
     pub render_error: f64,
 }
 
@@ -112,25 +113,46 @@ unsafe impl Versioned for luxfer_plan_report {
     }
 }
 
-/// What a plan has come to.
+/// What a plan has come to: settings, and what each stage should take and leave.
+#[derive(Default)]
 pub(super) struct Made {
-    render: render::Params,
-    rendering: Expected,
-    relight: Option<(relight::Params, Expected)>,
     whole: Expected,
+    render: Option<(render::Params, Expected)>,
+    relight: Option<(relight::Params, Expected)>,
+    #[cfg(feature = "stylize")]
+    stylize: Option<stylize::Params>,
 }
 
 impl From<plan::Rendering> for Made {
     fn from(plan: plan::Rendering) -> Self {
-        Self { render: plan.params, rendering: plan.expected, relight: None, whole: plan.expected }
+        Self { whole: plan.expected, render: Some((plan.params, plan.expected)), ..Self::default() }
     }
 }
 
 impl From<plan::Lighting> for Made {
     fn from(plan: plan::Lighting) -> Self {
         let plan::Lighting { relight, render, solving, rendering, whole } = plan;
-        Self { render, rendering, relight: Some((relight, solving)), whole }
+        Self { whole, render: Some((render, rendering)), relight: Some((relight, solving)), ..Self::default() }
     }
+}
+
+#[cfg(feature = "stylize")]
+impl From<plan::Stylisation> for Made {
+    fn from(plan: plan::Stylisation) -> Self {
+        Self { whole: plan.expected, stylize: Some(plan.params), ..Self::default() }
+    }
+}
+
+impl Made {
+    #[cfg(feature = "stylize")]
+    pub(super) fn stylize(&self) -> Result<&stylize::Params> {
+        planned(&self.stylize, "stylises")
+    }
+}
+
+/// What a plan has for a stage, which must be one that it is of.
+fn planned<'a, T>(part: &'a Option<T>, does: &str) -> Result<&'a T> {
+    part.as_ref().ok_or_else(|| Error::new(ErrorKind::NotFound, format!("the plan is of nothing that {does}")))
 }
 
 impl Handle for luxfer_plan {
@@ -214,15 +236,16 @@ pub unsafe extern "C" fn luxfer_plan_get_report(
     enter(plan, |stage| {
         let out = Report::new(report)?;
         let made = stage.output()?;
-        let solving = made.relight.as_ref().map_or(Expected::default(), |(_, expected)| *expected);
+        let [solving, rendering] =
+            [made.relight.as_ref().map(|r| r.1), made.render.as_ref().map(|r| r.1)].map(Option::unwrap_or_default);
         out.set(luxfer_plan_report {
             relights: u32::from(made.relight.is_some()),
             seconds: made.whole.seconds,
             error: made.whole.error,
             relight_seconds: solving.seconds,
             relight_error: solving.error,
-            render_seconds: made.rendering.seconds,
-            render_error: made.rendering.error,
+            render_seconds: rendering.seconds,
+            render_error: rendering.error,
             ..luxfer_plan_report::defaults()
         });
         Ok(())
@@ -232,7 +255,7 @@ pub unsafe extern "C" fn luxfer_plan_get_report(
 /// Gets the settings to render with: those given, with what the plan has chosen. With an error as goal rendering stops when it
 /// is reached; with a time the number of paths is chosen, and time_budget_ms is a quarter more than they should take, so
 /// that the picture is the same every time unless the machine is slower than it was. Set params->struct_size before. Any
-/// thread. LUXFER_NOT_READY before a job has succeeded.
+/// thread. LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND in a plan of a stylisation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_plan_get_render_params(
     plan: *mut luxfer_plan,
@@ -240,13 +263,14 @@ pub unsafe extern "C" fn luxfer_plan_get_render_params(
 ) -> luxfer_status {
     enter(plan, |stage| {
         let out = Report::new(params)?;
-        out.set(luxfer_render_params::of(&stage.output()?.render));
+        let made = stage.output()?;
+        out.set(luxfer_render_params::of(&planned(&made.render, "renders")?.0));
         Ok(())
     })
 }
 
 /// Gets the settings to relight with, likewise. Set params->struct_size before. Any thread.
-/// LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND in a plan of a rendering.
+/// LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND in other plans than that of a transfer.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_plan_get_relight_params(
     plan: *mut luxfer_plan,
@@ -254,14 +278,8 @@ pub unsafe extern "C" fn luxfer_plan_get_relight_params(
 ) -> luxfer_status {
     enter(plan, |stage| {
         let out = Report::new(params)?;
-        let made: Arc<Made> = stage.output()?;
-        let (relight, _) = made.relight.as_ref().ok_or_else(|| {
-            Error::new(
-                ErrorKind::NotFound,
-                "the plan is of a rendering, which relights nothing; start it for a transfer",
-            )
-        })?;
-        out.set(luxfer_relight_params::of(relight));
+        let made = stage.output()?;
+        out.set(luxfer_relight_params::of(&planned(&made.relight, "relights")?.0));
         Ok(())
     })
 }

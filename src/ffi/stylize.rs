@@ -80,6 +80,27 @@ enum Target {
     Within(Arc<Pixels>, Option<Arc<Pixels>>),
 }
 
+impl Inputs {
+    /// Whether there is enough to start with.
+    pub(super) fn check(&self) -> Result<()> {
+        need(&self.artwork, "luxfer_stylize_set_artwork")?;
+        need(&self.guides.first(), "luxfer_stylize_add_guide")?;
+        Ok(())
+    }
+
+    /// Does what is to be done with the input, as of a first frame.
+    pub(super) fn with_input<T>(&self, work: impl FnOnce(&stylize::Input) -> Result<T>) -> Result<T> {
+        let guides: Vec<Guide> = self.guides.iter().map(Pair::guide).collect();
+        let artwork = need(&self.artwork, "luxfer_stylize_set_artwork")?.image();
+        let (target_mask, known) = match &self.target {
+            Target::All => (None, None),
+            Target::Within(mask, known) => (Some(mask.image()), known.as_ref().map(|k| k.image())),
+        };
+        let source_mask = self.source_mask.as_ref().map(|m| m.image());
+        work(&stylize::Input { source_mask, target_mask, known, ..stylize::Input::new(artwork, &guides) })
+    }
+}
+
 /// Adds a guide, or replaces the one of its name.
 fn add(guides: &mut Vec<Pair>, pair: Pair) -> Result<()> {
     let others = guides.iter().filter(|g| g.name != pair.name);
@@ -285,34 +306,23 @@ pub unsafe extern "C" fn luxfer_stylize_start(
     enter(stylize, |stage| {
         let settings = params::read(params)?;
         let (params, keep) = (settings.params()?, params::flag(settings.keep_for_update, "keep_for_update")?);
-        need(&stage.inputs().artwork, "luxfer_stylize_set_artwork")?;
-        need(&stage.inputs().guides.first(), "luxfer_stylize_add_guide")?;
+        stage.inputs().check()?;
         let previous = match stage.inputs().motion {
             Some(motion) => Some((stage.output()?.field()?, motion)),
             None => None,
         };
         stage.start(job, move |inputs, stage, job| {
-            let guides: Vec<Guide> = inputs.guides.iter().map(Pair::guide).collect();
-            let (target_mask, known) = match &inputs.target {
-                Target::All => (None, None),
-                Target::Within(mask, known) => (Some(mask.image()), known.as_ref().map(|k| k.image())),
-            };
-            let input = stylize::Input {
-                artwork: need(&inputs.artwork, "luxfer_stylize_set_artwork")?.image(),
-                guides: &guides,
-                source_mask: inputs.source_mask.as_ref().map(|m| m.image()),
-                target_mask,
-                known,
-                previous: previous.as_ref().map(|p| &*p.0),
-                motion: previous.as_ref().map(|p| p.1.image()),
-            };
             let publish = |glimpse: stylize::Glimpse| stage.publish(Stylised::unfinished(glimpse));
-            if keep {
-                let (study, output) = stylize::Study::new(&input, &params, &publish, job)?;
-                Ok(Stylised::finished(output, Some(study)))
-            } else {
-                Ok(Stylised::finished(stylize::run_and_publish(&input, &params, &publish, job)?, None))
-            }
+            let (before, motion) = (previous.as_ref().map(|p| &*p.0), previous.as_ref().map(|p| p.1.image()));
+            inputs.with_input(|input| {
+                let input = stylize::Input { previous: before, motion, ..*input };
+                if keep {
+                    let (study, output) = stylize::Study::new(&input, &params, &publish, job)?;
+                    Ok(Stylised::finished(output, Some(study)))
+                } else {
+                    Ok(Stylised::finished(stylize::run_and_publish(&input, &params, &publish, job)?, None))
+                }
+            })
         })
     })
 }

@@ -41,4 +41,5 @@ absent! {
     luxfer_stylize_set_motion
     luxfer_stylize_start luxfer_stylize_update luxfer_stylize_get_image luxfer_stylize_get_report luxfer_stylize_get_level
     luxfer_stylize_get_round luxfer_stylize_get_pass luxfer_stylize_retain
+    luxfer_plan_start_stylize luxfer_plan_get_stylize_params
 }

@@ -128,7 +128,7 @@ pub(super) fn choice<T: Copy>(values: &[T], index: i32, name: &str, prefix: &str
 }
 
 impl luxfer_stylize_params {
-    fn of(p: &stylize::Params) -> Self {
+    pub(super) fn of(p: &stylize::Params) -> Self {
         Self {
             struct_size: 96,
             mode: p.mode as i32,

@@ -1,4 +1,4 @@
-//! Planning: settings of the stages that make light, for an error or a time, before they run.
+//! Planning: settings of the stages that make light, and of a stylisation, for an error or a time, before they run.
 //!
 //! A caller says how much noise the picture may have, or how long it may take ([`Goal`]); the plan says with which settings
 //! relighting and rendering come to it, how long each is expected to take, and what error it is expected to leave.
@@ -6,11 +6,13 @@
 //! What a path costs and how much paths scatter depends on the machine and on the scene, and nothing that could be counted
 //! before tells it. So it is measured: a few tiles of the very image are rendered ([`picture`], `render::probe`), and a few
 //! paths of the very solution are traced ([`strength`]). Along the curves of error against time that follow, the time is
-//! given out in small steps, each to the stage where it lowers the error of the picture most ([`curve`]).
+//! given out in small steps, each to the stage where it lowers the error of the picture most ([`curve`]). A stylisation is tried
+//! with settings from quick to careful, at a part of its resolution (`stylisation`).
 //!
 //! Errors are those of the picture: root mean square over its pixels, relative to its mean, as [`crate::render::Film::error`]
 //! states it. The solution of the emission makes all light of the picture too bright or too dark by a common factor; what
-//! that adds is its own relative standard error times the picture's contrast, its root mean square over its mean.
+//! that adds is its own relative standard error times the picture's contrast, its root mean square over its mean. That of a
+//! stylisation is the root of its energy.
 //!
 //! Assumed: the machine does then what it does now, with as many threads; while a plan is made nothing else keeps them busy.
 //!
@@ -22,9 +24,13 @@
 mod curve;
 mod picture;
 mod strength;
+#[cfg(feature = "stylize")]
+mod stylisation;
 mod transfer;
 
 pub use picture::{Rendering, rendering};
+#[cfg(feature = "stylize")]
+pub use stylisation::{Stylisation, stylisation};
 pub use transfer::{Lighting, check, lighting};
 
 use crate::error::{Result, check_range};
@@ -33,7 +39,8 @@ use std::time::{Duration, Instant};
 /// What is asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Goal {
-    /// Error of the picture: root mean square over its pixels, relative to its mean, in `[1e-5, 1]`.
+    /// Error of the picture: root mean square over its pixels, relative to its mean, in `[1e-5, 1]`; or root of the energy of a
+    /// stylisation.
     Error(f64),
     /// Seconds for all that is planned, in `[1e-3, 1e6]`.
     Seconds(f64),

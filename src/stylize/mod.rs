@@ -10,7 +10,7 @@
 //!
 //! `guides` normalises, `level` quantises one resolution, `retrieve` matches under the budget, `budget` fits the knee,
 //! `finder` searches,
-//! `schedule` goes from coarse to fine, `study` follows changes of the artwork, `animate` goes from frame to frame, `greedy` is Hertzmann's algorithm for comparison, `report` measures.
+//! `schedule` goes from coarse to fine, `study` follows changes of the artwork, `animate` goes from frame to frame, `greedy` is Hertzmann's algorithm for comparison, `report` measures, `probe` foretells.
 //!
 //! Colours are compared and averaged as they are encoded for display (sRGB), which is how paint is looked at.
 //!
@@ -44,6 +44,7 @@ mod greedy;
 mod guides;
 mod level;
 mod pca;
+mod probe;
 mod report;
 mod retrieve;
 mod schedule;
@@ -54,6 +55,7 @@ mod tests;
 
 pub use budget::{Budget, Hyperbola, budget};
 pub use guides::{Guide, MAX_CHANNELS, Range};
+pub use probe::{Trial, probe};
 pub use report::{LevelReport, Report, Usage};
 pub use retrieve::Pass;
 pub use study::Study;

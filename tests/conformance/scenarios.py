@@ -365,6 +365,11 @@ def planning() -> Scenario:
     s.run("plan_start_transfer", stage, transfer, settings, struct("plan_params", time_budget_ms=50))
     s.call("plan_get_report", stage, struct("plan_report", "size"))
     s.call("plan_get_relight_params", stage, struct("relight_params", "size"))
+    stylize = s.make("stylize_create", s.context)
+    s.call("stylize_set_artwork", stylize, s.image(24, 20))
+    s.call("stylize_add_guide", stylize, "light", s.image(24, 20), s.image(24, 20), 1.0, 0)
+    s.run("plan_start_stylize", stage, stylize, struct("stylize_params"), struct("plan_params", target_error=0.5))
+    s.call("plan_get_stylize_params", stage, struct("stylize_params", "size"))
     return s
 
 

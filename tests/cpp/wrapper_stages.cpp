@@ -299,6 +299,15 @@ void stylisation(const Context &context) {
     stylize.update(artwork, all).wait();
     CHECK(has_size(stylize.image(LUXFER_STYLIZE_IMAGE_SOURCES), 48, 36, 2));
 
+    const auto plan = luxfer::Plan::create(context);
+    luxfer::PlanParams goal;
+    goal.target_error = 1;
+    plan.start(stylize, goal, params).wait();
+    const luxfer_stylize_params hurried = plan.stylize_params();
+    CHECK(hurried.polish == 0 && hurried.iterations <= params.iterations && hurried.seed == params.seed);
+    const luxfer_plan_report expected = plan.report();
+    CHECK(expected.seconds > 0 && expected.error > 0 && expected.render_seconds == 0);
+
     stylize.set_motion(target.motion(target));
     stylize.set_motion(Image());
     stylize.set_painted(all);

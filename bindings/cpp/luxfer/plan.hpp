@@ -4,6 +4,7 @@
 #pragma once
 
 #include "render.hpp"
+#include "stylize.hpp"
 #include "transfer.hpp"
 
 namespace luxfer {
@@ -29,14 +30,23 @@ public:
         return make<Job>(luxfer_plan_start_transfer, transfer.get(), &settings, &params);
     }
 
+    /// All of the target, with what the stylisation has been given.
+    Result<Job> start(const Stylize &stylize, const luxfer_plan_params &params,
+                      const luxfer_stylize_params &settings = StylizeParams()) const {
+        return make<Job>(luxfer_plan_start_stylize, stylize.get(), &settings, &params);
+    }
+
     Result<luxfer_plan_report> report() const { return value<luxfer_plan_report>(luxfer_plan_get_report); }
 
-    /// To render and to relight with.
+    /// To render, to relight and to stylise with.
     Result<luxfer_render_params> render_params() const {
         return value<luxfer_render_params>(luxfer_plan_get_render_params);
     }
     Result<luxfer_relight_params> relight_params() const {
         return value<luxfer_relight_params>(luxfer_plan_get_relight_params);
+    }
+    Result<luxfer_stylize_params> stylize_params() const {
+        return value<luxfer_stylize_params>(luxfer_plan_get_stylize_params);
     }
 };
 

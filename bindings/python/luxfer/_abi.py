@@ -562,6 +562,8 @@ class luxfer_rectify_report(Structure):
         ("corner_errors", c_double * 4),
         ("pixel_size", c_double),
         ("aspect_confidence", c_double),
+        ("distortion", c_double),
+        ("distortion_error", c_double),
     ]
     enumerations: dict[str, type] = {"focal_source": types.FocalSource}
     result = types.RectifyReport
@@ -1510,6 +1512,8 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_stylize_get_level": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("level", c_uint32), ("width", POINTER(c_uint32)), ("height", POINTER(c_uint32)), ("rounds", POINTER(c_uint32))]),
     "luxfer_stylize_get_round": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("level", c_uint32), ("index", c_uint32), ("round", POINTER(luxfer_stylize_round))]),
     "luxfer_stylize_get_pass": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("level", c_uint32), ("round", c_uint32), ("index", c_uint32), ("pass", POINTER(luxfer_stylize_pass))]),
+    "luxfer_plan_start_stylize": (c_int32, [("plan", POINTER(luxfer_plan)), ("stylize", POINTER(luxfer_stylize)), ("settings", POINTER(luxfer_stylize_params)), ("params", POINTER(luxfer_plan_params)), ("job", POINTER(POINTER(luxfer_job)))]),
+    "luxfer_plan_get_stylize_params": (c_int32, [("plan", POINTER(luxfer_plan)), ("params", POINTER(luxfer_stylize_params))]),
     "luxfer_sheet_params_init": (c_int32, [("params", POINTER(luxfer_sheet_params)), ("size", c_size_t)]),
     "luxfer_sheet_print": (c_int32, [("picture", POINTER(luxfer_image)), ("params", POINTER(luxfer_sheet_params)), ("sheet", POINTER(POINTER(luxfer_image)))]),
     "luxfer_sheet_align": (c_int32, [("photo", POINTER(luxfer_image)), ("width", c_uint32), ("height", c_uint32), ("params", POINTER(luxfer_sheet_params)), ("artwork", POINTER(POINTER(luxfer_image))), ("report", POINTER(luxfer_sheet_report))]),

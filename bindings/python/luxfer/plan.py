@@ -1,5 +1,5 @@
-"""Settings for an error or a time, before anything is rendered: which they are, how long relighting and rendering should take,
-and what error should be left."""
+"""Settings for an error or a time, before anything is rendered: which they are, how long relighting and rendering, or a
+stylisation, should take, and what error should be left."""
 
 from __future__ import annotations
 
@@ -11,8 +11,9 @@ from .types import PlanReport
 
 if TYPE_CHECKING:
     from .render import Render
+    from .stylize import Stylize
     from .transfer import Transfer
-    from .types import RelightParams, RenderParams, TransferParams
+    from .types import RelightParams, RenderParams, StylizeParams, TransferParams
 
 
 class Plan(StageBase):
@@ -56,6 +57,18 @@ class Plan(StageBase):
         """Starts to plan those stages and waits for it."""
         return self.start_transfer(transfer, **goal).wait(progress)
 
+    def start_stylize(
+        self, stylize: Stylize, *, target_error: float = 0.0, time_budget_ms: int = 0, settings: StylizeParams | None = None
+    ) -> Job[Plan]:
+        """Starts to plan a stylisation; target_error is the root of the energy that its report tells."""
+        goal = {"target_error": target_error, "time_budget_ms": time_budget_ms}
+        params = _params.fill(_abi.luxfer_stylize_params, settings or {}, [])
+        return self._job("start_stylize", stylize, params, _params.fill(_abi.luxfer_plan_params, goal, []))
+
+    def run_stylize(self, stylize: Stylize, progress: Progress | None = None, **goal: Any) -> Plan:
+        """Starts to plan a stylisation and waits for it."""
+        return self.start_stylize(stylize, **goal).wait(progress)
+
     @property
     def report(self) -> PlanReport:
         """What the plan expects."""
@@ -74,3 +87,10 @@ class Plan(StageBase):
         params = _params.sized(_abi.luxfer_relight_params)
         self._call("get_relight_params", params)
         return cast("RelightParams", _params.settings(params))
+
+    @property
+    def stylize_params(self) -> StylizeParams:
+        """The settings to stylise with."""
+        params = _params.sized(_abi.luxfer_stylize_params)
+        self._call("get_stylize_params", params)
+        return cast("StylizeParams", _params.settings(params))

@@ -1017,6 +1017,12 @@ class RectifyReport:
     """Size of an unwarped pixel as a share of the camera's distance from the plane."""
     aspect_confidence: float
     """Trust in the aspect ratio, in [0, 1]: low where the focal length had to be assumed."""
+    distortion: float
+    """How far outwards the lens moves what it shows in the corners of the photo, as a share of their distance
+    from its centre: below 0 for a barrel, as of wide angles. It is measured by how far straight lines are bent,
+    and not undone. NaN where the photo has too few lines to tell."""
+    distortion_error: float
+    """Its standard deviation; NaN where it is."""
 
 
 class FeaturesParams(TypedDict, total=False):
@@ -1691,19 +1697,20 @@ class PlanReport:
     """What a plan expects."""
 
     relights: int
-    """1 if the plan relights, as that of a transfer; 0 if it is of a rendering."""
+    """1 if the plan relights, as that of a transfer; 0 if it is of a rendering or a stylisation."""
     seconds: float
     """Seconds for all that is planned."""
     error: float
     """Error of the picture."""
     relight_seconds: float
-    """Seconds for relighting, which makes the scene ready first; 0 in a plan of a rendering."""
+    """Seconds for relighting, which makes the scene ready first; 0 in other plans than that of a transfer."""
     relight_error: float
-    """The error that RelightReport should state, half the width of its interval; 0 in a plan of a rendering."""
+    """The error that RelightReport should state, half the width of its interval; 0 in other plans."""
     render_seconds: float
-    """Seconds for rendering; in a plan of a transfer it makes the scene ready first."""
+    """Seconds for rendering; in a plan of a transfer it makes the scene ready first; 0 in a plan of a
+    stylisation."""
     render_error: float
-    """The error that RenderReport should state."""
+    """The error that RenderReport should state; 0 in a plan of a stylisation."""
 
 
 class GuidesParams(TypedDict, total=False):

@@ -1,0 +1,96 @@
+//! A stylisation: how careful it can be in a time, or has to be for an error.
+
+use super::{Clock, Expected, Goal};
+use crate::error::Result;
+use crate::job::Job;
+use crate::stylize::{self, Input, Mode, Params, Trial};
+
+/// A stylisation as it is to be.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stylisation {
+    pub params: Params,
+    /// The error is the root of the energy (Eq. 3): how far the matched patches differ, root mean square, in colours and in
+    /// guides.
+    pub expected: Expected,
+}
+
+/// Plans a stylisation: of `params` all is kept but the numbers of iterations and sweeps. `input.previous` does not count.
+///
+/// # Errors
+/// A goal or a setting out of range; those of [`stylize::run`].
+pub fn stylisation(input: &Input, params: &Params, goal: Goal, clock: Clock, job: Job) -> Result<Stylisation> {
+    goal.check()?;
+    let (ladder, usual) = ladder(params);
+    let trials = stylize::probe(input, &ladder, usual, clock, job)?;
+    let expected = trials.iter().map(|t: &Trial| Expected { seconds: t.seconds, error: t.energy.sqrt() });
+    let rungs: Vec<_> = ladder.into_iter().zip(expected).collect();
+    let (params, expected) = &rungs[chosen(&rungs.iter().map(|r| r.1).collect::<Vec<_>>(), goal)];
+    Ok(Stylisation { params: params.clone(), expected: *expected })
+}
+
+/// Settings from quick to careful, from the front of the knobs' curves in `benches/stylit.rs`, and which of them the presets are
+/// nearest to.
+fn ladder(params: &Params) -> (Vec<Params>, usize) {
+    // These make one pass, or none.
+    if matches!(params.mode, Mode::Greedy | Mode::LitSphere) {
+        return (vec![params.clone()], 0);
+    }
+    let rung = |like: &Params| Params {
+        iterations: like.iterations,
+        coarse_iterations: like.coarse_iterations,
+        finest_iterations: like.finest_iterations,
+        polish: like.polish,
+        sweeps: like.sweeps,
+        ..params.clone()
+    };
+    let (fast, full) = (Params::fast(), Params::default());
+    let rungs = [
+        Params { iterations: 1, coarse_iterations: 2, ..fast.clone() },
+        fast,
+        Params { polish: 1, ..full.clone() },
+        full.clone(),
+        Params { iterations: 8, coarse_iterations: 16, polish: 6, ..full },
+    ];
+    (rungs.iter().map(rung).collect(), 1)
+}
+
+/// The least error within the time, or the least time to the error; where none comes to the goal, the one that is nearest.
+fn chosen(rungs: &[Expected], goal: Goal) -> usize {
+    let indices = 0..rungs.len();
+    let quickest = |a: &usize, b: &usize| rungs[*a].seconds.total_cmp(&rungs[*b].seconds);
+    let best = |a: &usize, b: &usize| rungs[*a].error.total_cmp(&rungs[*b].error);
+    let chosen = match goal {
+        Goal::Seconds(budget) => {
+            let in_time = indices.clone().filter(|&i| rungs[i].seconds <= budget).min_by(best);
+            in_time.or_else(|| indices.min_by(quickest))
+        }
+        Goal::Error(error) => {
+            let near = indices.clone().filter(|&i| rungs[i].error <= error).min_by(quickest);
+            near.or_else(|| indices.min_by(best))
+        }
+    };
+    chosen.unwrap_or(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_rung_that_serves_the_goal_is_chosen() {
+        let rungs =
+            [(1.0, 0.4), (2.0, 0.3), (4.0, 0.31), (8.0, 0.2)].map(|(seconds, error)| Expected { seconds, error });
+        for (goal, expected) in [
+            (Goal::Seconds(0.5), 0),
+            (Goal::Seconds(1.5), 0),
+            (Goal::Seconds(5.0), 1),
+            (Goal::Seconds(99.0), 3),
+            (Goal::Error(0.5), 0),
+            (Goal::Error(0.3), 1),
+            (Goal::Error(0.25), 3),
+            (Goal::Error(0.1), 3),
+        ] {
+            assert_eq!(chosen(&rungs, goal), expected, "{goal:?}");
+        }
+    }
+}
