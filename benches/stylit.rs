@@ -139,9 +139,15 @@ fn presets(pair: &Pair, pool: &Pool) {
         println!("  peak memory {:.0} MiB", peak as f64 / f64::from(1 << 20));
     }
     match judge(pair, &folder().join("stylit_full.png")) {
-        Ok(line) => judged(&line),
+        Ok(line) => judged("full", &line),
         Err(reason) => judged_absent(&reason),
     }
+    // What a perfect copy is judged as, and the most cells that the judge's samples can fall into, whatever the picture.
+    if let Ok(line) = judge(pair, &pair.folder.join("source_style.png")) {
+        judged("artwork", &line);
+    }
+    let cells = (pair.artwork.width.div_ceil(4) * pair.artwork.height.div_ceil(4)) as f64;
+    figure("stylit.bound.used", 100.0 * (1.0 - (1.0 - 1.0 / cells).powf(JUDGE_SAMPLES)), "%");
 }
 
 /// Energy of Eq. 3, use of the exemplar, guide error, and texture kept.
@@ -216,16 +222,20 @@ const JUDGED: [(&str, &str, &str); 5] = [
     ("hf_worst", "(min ", "-"),
 ];
 
+/// Patches of the picture that the judge looks up.
+const JUDGE_SAMPLES: f64 = 40_000.0;
+
 /// The number that follows `before` in the judge's line.
 fn number<'a>(line: &'a str, before: &str) -> Option<&'a str> {
     line.split(before).nth(1)?.split([' ', '%', ')', '\n']).next()
 }
 
-fn judged(line: &str) {
+/// Prints what the judge says of the picture called `of`.
+fn judged(of: &str, line: &str) {
     for (name, before, unit) in JUDGED {
         match number(line, before).and_then(|n| n.parse().ok()) {
-            Some(value) => figure(&format!("stylit.full.{name}"), value, unit),
-            None => absent(&format!("stylit.full.{name}"), "the judge's line has no such number"),
+            Some(value) => figure(&format!("stylit.{of}.{name}"), value, unit),
+            None => absent(&format!("stylit.{of}.{name}"), "the judge's line has no such number"),
         }
     }
 }
@@ -258,7 +268,8 @@ fn update(pair: &Pair, pool: &Pool) {
         let repaint = || pool.run(|| study.repaint(&painted, &stroke, monitor.job())).expect("valid input");
         seconds.push(time(Clock::Wall, repaint).0);
     }
-    println!("\nupdate after a stroke of 200 x 30 pixels, preview: {:.3} s", harness::median(&seconds));
+    println!("\nupdate after a stroke of 200 x 30 pixels, preview");
+    figure("stylit.update.seconds", harness::median(&seconds), "s");
 }
 
 /// Time and memory as the target grows, at fast quality; the exemplar stays.

@@ -64,7 +64,8 @@ impl Quantiser {
     }
 
     pub fn quantise(self, value: f32) -> i16 {
-        (value.clamp(0.0, 1.0) * self.scale).round() as i16
+        // Rounds, since it is not negative; without a call into the C library.
+        (value.clamp(0.0, 1.0) * self.scale + 0.5) as i16
     }
 }
 

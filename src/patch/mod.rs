@@ -33,7 +33,7 @@ pub use kernel::Kernel;
 pub use pyramid::{halve, halve_mask, level_count, level_size};
 pub use search::{Search, Sweep};
 pub use table::{Means, Table};
-pub use vote::{Vote, origins, vote};
+pub use vote::{Vote, origin, vote};
 
 /// Longest side of an image that patches are matched in, in pixels: a position fits into half of a `u32`.
 pub const MAX_SIDE: usize = 32_768;

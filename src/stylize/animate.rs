@@ -47,7 +47,7 @@ fn advect(before: &Field, motion: &Image, patch: usize) -> Result<Field> {
 /// block is not to boil.
 pub(super) fn keep(level: &mut Level, field: &mut Field, params: &Params, seed: u64, job: Job) -> Result<Vec<bool>> {
     let mut picture = level.problem.blank_picture()?;
-    paint(&mut picture, field, level.problem, level, params.vote, job)?;
+    paint(&mut picture, field, level.problem, params.vote, job, |_| true)?;
     level.set_picture(&picture, job)?;
     level.forward().rescore(field, job, |i| level.wanted.contains_index(i))?;
 

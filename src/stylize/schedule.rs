@@ -11,7 +11,7 @@ use crate::exec;
 use crate::image::Image;
 use crate::image::colour::srgb_to_linear;
 use crate::job::Job;
-use crate::patch::{Domain, Field, NONE, Sweep, Vote, level_count, origins, unpack, vote};
+use crate::patch::{Domain, Field, NONE, Sweep, Vote, level_count, origin, unpack, vote};
 use crate::rng::hash;
 
 /// Up to this many pairs of patches the first field is found by comparing all.
@@ -82,7 +82,7 @@ pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Pu
         };
         let mut picture = problem.blank_picture()?;
         let how = if params.mode == Mode::LitSphere { Vote::Nearest } else { params.vote };
-        paint(&mut picture, &current, problem, &level, how, job.part(0.1, 0.12))?;
+        paint(&mut picture, &current, problem, how, job.part(0.1, 0.12), |_| true)?;
 
         // Match and vote.
         let iterations = match (params.mode, l) {
@@ -136,13 +136,15 @@ pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Pu
             let how = if l == 0 && k + 1 == iterations { params.final_vote } else { params.vote };
             match params.mode {
                 Mode::Greedy => restore_known(&mut picture, problem),
-                _ => paint(&mut picture, &current, problem, &level, how, part(0.9, 1.0))?,
+                _ => paint(&mut picture, &current, problem, how, part(0.9, 1.0), |_| true)?,
             }
         }
         reports.push(report);
 
         if l == 0 {
-            let image = finish(&picture, &current, problem, input.artwork, input.known, job)?;
+            let mut image = picture.try_clone()?;
+            let made = Made { field: &current, problem, artwork: input.artwork, known: input.known };
+            finish(&mut image, &picture, made, job.part(1.0, 1.0), |_| true)?;
             let report = Report {
                 levels: reports,
                 usage: Usage::of(&current, &level)?,
@@ -216,16 +218,16 @@ fn checked(field: Field, level: &Level) -> Result<Field> {
     Ok(field)
 }
 
-/// Votes, and puts back what is known.
+/// Votes for the pixels for which `wanted` holds, and puts back what is known.
 pub(super) fn paint(
     picture: &mut Image,
     field: &Field,
     problem: &Problem,
-    level: &Level,
     how: Vote,
     job: Job,
+    wanted: impl Fn(usize) -> bool + Sync,
 ) -> Result<()> {
-    vote(picture, field, &problem.style, &level.allowed, problem.patch, how, job)?;
+    vote(picture, field, &problem.style, problem.patch, how, job, wanted)?;
     restore_known(picture, problem);
     Ok(())
 }
@@ -247,36 +249,37 @@ fn decode(picture: &Image, job: Job) -> Result<Image> {
     Ok(out)
 }
 
-/// The result in linear colour. Pixels that all patches agree on, and known ones, are copied and not decoded, so that
-/// they are the artwork's to the bit.
+/// What an encoded picture was made of.
+pub(super) struct Made<'a> {
+    pub field: &'a Field,
+    pub problem: &'a Problem,
+    /// The artwork and what is known of the target, linear.
+    pub artwork: &'a Image,
+    pub known: Option<&'a Image>,
+}
+
+/// Puts the pixels of an encoded picture for which `wanted` holds into `image`, in linear colour. Those that all patches
+/// agree on, and known ones, are copied and not decoded, so that they are the artwork's to the bit.
 pub(super) fn finish(
+    image: &mut Image,
     picture: &Image,
-    field: &Field,
-    problem: &Problem,
-    artwork: &Image,
-    known: Option<&Image>,
+    made: Made,
     job: Job,
-) -> Result<Image> {
-    let mut image = decode(picture, job)?;
-    if !problem.is_of(artwork) {
-        return Ok(image);
-    }
-    let channels = image.channels;
-    let origins = origins(image.width, image.height, field, problem.patch, job)?;
-    for (pixel, &origin) in image.data.chunks_exact_mut(channels).zip(&origins) {
-        if origin != NONE {
-            let (x, y) = unpack(origin);
-            pixel.copy_from_slice(artwork.pixel(x, y));
-        }
-    }
-    if let Some(mask) = &problem.target_mask {
-        for (i, (pixel, made)) in image.data.chunks_exact_mut(channels).zip(mask).enumerate() {
-            match known {
-                _ if *made => {}
-                Some(known) => pixel.copy_from_slice(&known.data[i * channels..(i + 1) * channels]),
-                None => pixel.fill(0.0),
+    wanted: impl Fn(usize) -> bool + Sync,
+) -> Result<()> {
+    let Made { field, problem, artwork, known } = made;
+    let (width, channels, whole) = (image.width, image.channels, problem.is_of(artwork));
+    let left_out = |i: usize| whole && problem.target_mask.as_ref().is_some_and(|mask| !mask[i]);
+    exec::for_rows(&mut image.data, width * channels, job, |y, row| {
+        for (x, pixel) in row.chunks_exact_mut(channels).enumerate().filter(|(x, _)| wanted(y * width + x)) {
+            match (left_out(y * width + x), known) {
+                (true, Some(known)) => pixel.copy_from_slice(known.pixel(x, y)),
+                (true, None) => pixel.fill(0.0),
+                _ => match whole.then(|| origin(field, problem.patch, x, y)).flatten() {
+                    Some((px, py)) => pixel.copy_from_slice(artwork.pixel(px, py)),
+                    None => pixel.iter_mut().zip(picture.pixel(x, y)).for_each(|(p, v)| *p = srgb_to_linear(*v)),
+                },
             }
         }
-    }
-    Ok(image)
+    })
 }

@@ -1,9 +1,10 @@
 //! Shading study (§4.2): the artist goes on painting, and what was made from the changed part of the artwork is made
-//! anew, starting from the field of the last result. The cost of matching is that of the places concerned.
+//! anew, starting from the field of the last result. The cost of matching and of painting is that of the places concerned;
+//! what is left is to quantise the guides and the artwork again.
 
 use super::level::{Level, Problem, encode, encoded};
 use super::report::sources;
-use super::schedule::{self, paint};
+use super::schedule::{self, Made, paint};
 use super::{Input, Output, Params, Publish};
 use crate::error::{Error, Result};
 use crate::image::{Image, try_vec};
@@ -25,8 +26,13 @@ pub struct Study {
     /// What the target shows outside its mask, linear.
     known: Option<Image>,
     field: Field,
-    /// Pixels of the artwork that have changed since the field was last brought up to date: a cancelled update leaves some.
+    /// The last result, encoded for display and linear.
+    picture: Image,
+    image: Image,
+    /// Pixels of the artwork that have changed since the result was last brought up to date, and pixels of the result that
+    /// this has made old: a cancelled update leaves some.
     pending: Vec<bool>,
+    old: Vec<bool>,
 }
 
 impl Study {
@@ -37,6 +43,8 @@ impl Study {
         let output = schedule::run(&problem, input, params, publish, job.part(0.03, 1.0))?;
         let mut display = input.artwork.try_clone()?;
         encode(&mut display, job)?;
+        let mut picture = output.image.try_clone()?;
+        encode(&mut picture, job)?;
         let study = Self {
             problem,
             params: params.clone(),
@@ -44,6 +52,9 @@ impl Study {
             encoded: display,
             known: input.known.map(Image::try_clone).transpose()?,
             field: output.field.try_clone()?,
+            old: try_vec(picture.width * picture.height, false)?,
+            picture,
+            image: output.image.try_clone()?,
             pending: try_vec(input.artwork.width * input.artwork.height, false)?,
         };
         job.report(1.0);
@@ -78,10 +89,15 @@ impl Study {
             halved = halve_mask(&self.pending, artwork.width, artwork.height, true);
             &halved
         };
-        let picture = rematch(&self.problem, &mut self.field, changed, &self.params, job.part(0.1, 0.9))?;
-        let job = job.part(0.9, 1.0);
-        let image = schedule::finish(&picture, &self.field, &self.problem, &self.artwork, self.known.as_ref(), job)?;
+        let target = Target { field: &mut self.field, picture: &mut self.picture, old: &mut self.old };
+        rematch(&self.problem, target, changed, &self.params, job.part(0.1, 0.9))?;
+        let made =
+            Made { field: &self.field, problem: &self.problem, artwork: &self.artwork, known: self.known.as_ref() };
+        let old = |i: usize| self.old[i];
+        schedule::finish(&mut self.image, &self.picture, made, job.part(0.9, 1.0), old)?;
+        let image = self.image.try_clone()?;
         self.pending.fill(false);
+        self.old.fill(false);
         Ok(image)
     }
 
@@ -91,33 +107,43 @@ impl Study {
     }
 }
 
-/// Matches every target patch anew that shows a changed exemplar pixel, and returns the encoded picture.
-fn rematch(problem: &Problem, field: &mut Field, changed: &[bool], params: &Params, job: Job) -> Result<Image> {
+/// What an update brings up to date.
+struct Target<'a> {
+    field: &'a mut Field,
+    picture: &'a mut Image,
+    old: &'a mut [bool],
+}
+
+/// Matches every target patch anew that shows a changed exemplar pixel, and paints what such patches cover.
+fn rematch(problem: &Problem, target: Target, changed: &[bool], params: &Params, job: Job) -> Result<()> {
+    let Target { field, picture, old } = target;
     let mut level = Level::new(problem, params, 1.0, params.seed, job.part(0.0, 0.05))?;
     let (patch, width) = (problem.patch, problem.style.width);
-    let concerned: Vec<bool> = (field.at.iter().enumerate())
-        .map(|(i, &at)| {
-            let (x, y) = unpack(at);
-            let touches = |row: usize| changed[row * width + x..][..patch].contains(&true);
-            at != NONE && level.wanted.contains_index(i) && (y..y + patch).any(touches)
-        })
-        .collect();
+    let mut concerned = try_vec(field.at.len(), false)?;
+    for (i, concerned) in concerned.iter_mut().enumerate() {
+        let (x, y) = unpack(field.at[i]);
+        let touches = |row: usize| changed[row * width + x..][..patch].contains(&true);
+        *concerned = field.at[i] != NONE && level.wanted.contains_index(i) && (y..y + patch).any(touches);
+        if *concerned {
+            let (x, y) = (i % field.width, i / field.width);
+            (y..y + patch).for_each(|row| old[row * picture.width + x..][..patch].fill(true));
+        }
+    }
 
     // The new paint in the old places, then matching and voting.
-    let mut picture = problem.blank_picture()?;
-    paint(&mut picture, field, problem, &level, params.vote, job.part(0.0, 0.1))?;
+    paint(picture, field, problem, params.vote, job.part(0.0, 0.1), |i| old[i])?;
     for round in 0..ROUNDS {
         let part = |from: f64, to: f64| {
             let n = ROUNDS as f64;
             job.part(0.1 + 0.9 * (round as f64 + from) / n, 0.1 + 0.9 * (round as f64 + to) / n)
         };
-        level.set_picture(&picture, part(0.0, 0.05))?;
+        level.set_picture(picture, part(0.0, 0.05))?;
         let search = level.forward();
         search.rescore(field, part(0.0, 0.2), |i| concerned[i])?;
         let sweep = Sweep { index: round as u64, reach: REACH, fresh: 4 };
         search.sweep(field, sweep, part(0.2, 0.8), |i| concerned[i])?;
         let how = if round + 1 == ROUNDS { params.final_vote } else { params.vote };
-        paint(&mut picture, field, problem, &level, how, part(0.8, 1.0))?;
+        paint(picture, field, problem, how, part(0.8, 1.0), |i| old[i])?;
     }
-    Ok(picture)
+    Ok(())
 }

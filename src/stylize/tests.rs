@@ -381,6 +381,7 @@ fn a_study_follows_its_artwork_where_it_changed_and_nowhere_else() {
             Study::new(&input(&art, &guides), &params, &|_| (), Monitor::default().job()).unwrap();
         let whole = stylise(&input(&art, &guides), &params).unwrap();
         assert!(before.image == whole.image);
+        let (mut late, _) = Study::new(&input(&art, &guides), &params, &|_| (), Monitor::default().job()).unwrap();
 
         // Paint the ball green; the ground stays as it was.
         let changed = Image::from_fn(80, 60, |x, y| [a.pixel(x, y)[2]]).unwrap();
@@ -393,6 +394,13 @@ fn a_study_follows_its_artwork_where_it_changed_and_nowhere_else() {
         assert!(ball[1] > 0.9 && ball[0] < 0.1, "{ball:?}");
         assert_eq!(after.pixel(corner.0, corner.1), before.image.pixel(corner.0, corner.1));
         assert!(study.repaint(&b, &before.image, Monitor::default().job()).is_err());
+
+        // What a cancelled update leaves the next one does.
+        let stopped = Monitor::default();
+        stopped.cancel();
+        assert_eq!(late.repaint(&art, &changed, stopped.job()).unwrap_err().kind, ErrorKind::Cancelled);
+        let nothing = Image::new(80, 60, 1).unwrap();
+        assert!(late.repaint(&art, &nothing, Monitor::default().job()).unwrap() == after);
     }
 }
 
