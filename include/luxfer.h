@@ -4142,7 +4142,7 @@ typedef struct luxfer_stylize_params {
      * follows the guides more closely, in smaller pieces.
      */
     float coarse_guides;
-    /** Rounds on each level coarser than the one before the finest, in [1, 100]; default 12; 6 is the paper's. */
+    /** Rounds on each level coarser than the one before the finest, in [1, 100]; default 24; 6 is the paper's. */
     uint32_t coarse_iterations;
 } luxfer_stylize_params;
 

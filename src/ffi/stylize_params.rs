@@ -104,7 +104,7 @@ pub struct luxfer_stylize_params {
     /// How many times as much the guides weigh on all levels but the finest, in [0, 1000]; default 4; 1 is the paper's. More
     /// follows the guides more closely, in smaller pieces.
     pub coarse_guides: f32,
-    /// Rounds on each level coarser than the one before the finest, in [1, 100]; default 12; 6 is the paper's.
+    /// Rounds on each level coarser than the one before the finest, in [1, 100]; default 24; 6 is the paper's.
     pub coarse_iterations: u32,
 }
 
