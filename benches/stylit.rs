@@ -352,7 +352,9 @@ fn rivals(pair: &Pair, pool: &Pool) {
     let more = |count: usize| ((count as f64 * before / seconds).round() as usize).clamp(1, 100);
     let longer = Params {
         iterations: more(plain.iterations),
-        finest_iterations: more(plain.finest_iterations),
+        coarse_iterations: more(plain.coarse_iterations),
+        finest_iterations: more(plain.finest_iterations + plain.polish),
+        polish: 0,
         ..plain.clone()
     };
     let name = format!("plain EM, {} + {} iterations", longer.iterations, longer.finest_iterations);
