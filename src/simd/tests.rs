@@ -3,7 +3,6 @@
 use super::{Level, forced};
 use crate::demo::{self, photo};
 use crate::exec::Pool;
-use crate::image::Image;
 use crate::job::Monitor;
 use crate::transfer::{Input, Results, STAGES, Stage, Transfer};
 use std::sync::Arc;
@@ -90,6 +89,7 @@ fn the_lighting_transfer_is_the_same_to_the_bit_at_every_level() {
 #[cfg(feature = "stylize")]
 #[test]
 fn a_stylisation_is_the_same_to_the_bit_at_every_level() {
+    use crate::image::Image;
     use crate::stylize::{Finder, Guide, Input, Params, Range, run};
     let ball = |size: usize, radius: f32| {
         let light = move |x: usize, y: usize| {
