@@ -17,6 +17,7 @@ use crate::job::Job;
 use crate::render::World;
 use crate::scene::{Environment, Scene, gltf, surface};
 use glam::Vec3;
+use std::cell::RefCell;
 use std::ffi::{c_char, c_void};
 use std::path::Path;
 use std::sync::{Arc, Mutex};
@@ -134,6 +135,17 @@ impl SceneObject {
         Ok(Arc::new(Self { context: context.clone(), state: Mutex::new(State { scene, world: None, charges }) }))
     }
 
+    /// A scene from a file, each part of which is counted in the budget before it is made.
+    fn read(context: &Arc<Context>, read: impl FnOnce(gltf::Budget) -> Result<Scene>) -> Result<Arc<Self>> {
+        let charges = RefCell::new(Vec::new());
+        let scene = Arc::new(read(&|bytes| {
+            charges.borrow_mut().push(context.charge(bytes)?);
+            Ok(())
+        })?);
+        let state = State { scene, world: None, charges: charges.into_inner() };
+        Ok(Arc::new(Self { context: context.clone(), state: Mutex::new(state) }))
+    }
+
     /// A scene that a stage has made, which is not counted.
     pub(super) fn of_result(context: &Arc<Context>, scene: Arc<Scene>) -> Arc<Self> {
         let state = State { scene, world: None, charges: Vec::new() };
@@ -210,8 +222,8 @@ pub unsafe extern "C" fn luxfer_scene_load(
 ) -> luxfer_status {
     enter(context, |object| {
         let out = Out::new(scene, "scene")?;
-        let loaded = gltf::load(Path::new(text(path, "path")?))?;
-        out.set(handle::give(SceneObject::new(object.context(), Arc::new(loaded))?));
+        let path = Path::new(text(path, "path")?);
+        out.set(handle::give(SceneObject::read(object.context(), |budget| gltf::load(path, budget))?));
         Ok(())
     })
 }
@@ -230,8 +242,7 @@ pub unsafe extern "C" fn luxfer_scene_load_memory(
         let out = Out::new(scene, "scene")?;
         let bytes = bytes(data.cast(), size, "data")?;
         let base = if base_path.is_null() { None } else { Some(Path::new(text(base_path, "base_path")?)) };
-        let loaded = gltf::import(bytes, base)?;
-        out.set(handle::give(SceneObject::new(object.context(), Arc::new(loaded))?));
+        out.set(handle::give(SceneObject::read(object.context(), |budget| gltf::import(bytes, base, budget))?));
         Ok(())
     })
 }

@@ -1,10 +1,11 @@
 //! Nodes, meshes, cameras and lights of a file, brought into world space.
 
+use super::Budget;
 use super::accessor;
 use super::container::{File, missing};
 use super::material::Materials;
 use crate::error::{Error, ErrorKind, Result};
-use crate::image::try_vec;
+use crate::image::{try_collect, try_vec};
 use crate::photometry::{Luminaire, ies};
 use crate::scene::{Camera, Material, Mesh, PunctualLight, Scene};
 use glam::{DMat3, DMat4, DQuat, DVec3, Vec2, Vec3};
@@ -37,21 +38,28 @@ const EXTENSIONS: [&str; 8] = [
 /// Reads a GLB or glTF file held in memory; outside files it names are looked up in `base` and below.
 ///
 /// Errors: `Format` for broken, truncated or lying files, `Unsupported` for what this library does not do, `Io` for
-/// outside files that cannot be read.
-pub fn import(bytes: &[u8], base: Option<&Path>) -> Result<Scene> {
+/// outside files that cannot be read, and what the budget says.
+pub fn import(bytes: &[u8], base: Option<&Path>, budget: Budget) -> Result<Scene> {
     let file = File::parse(bytes, base)?;
     if let Some(unknown) = file.root.extensions_required.iter().find(|e| !EXTENSIONS.contains(&e.as_str())) {
         let message = format!("the file requires the extension {unknown}; save it without that extension");
         return Err(Error::new(ErrorKind::Unsupported, message));
     }
     let mut scene = Scene::default();
-    let mut materials = Materials::new(&file);
+    let mut materials = Materials::new(&file, budget);
     for (i, json) in file.root.materials.iter().enumerate() {
         scene.materials.push(materials.read(i, json).map_err(|e| e.within(format_args!("material {i}")))?);
     }
     scene.textures = materials.textures;
-    let mut importer =
-        Importer { file: &file, scene, default_material: None, profiles: Vec::new(), vertices: 0, triangles: 0 };
+    let mut importer = Importer {
+        file: &file,
+        budget,
+        scene,
+        default_material: None,
+        profiles: Vec::new(),
+        vertices: 0,
+        triangles: 0,
+    };
     importer.nodes()?;
     let scene = importer.scene;
     scene.validate().map_err(|e| Error { kind: ErrorKind::Format, ..e })?;
@@ -60,6 +68,7 @@ pub fn import(bytes: &[u8], base: Option<&Path>) -> Result<Scene> {
 
 struct Importer<'a> {
     file: &'a File<'a>,
+    budget: Budget<'a>,
     scene: Scene,
     /// Made when the first primitive without a material is met.
     default_material: Option<usize>,
@@ -175,7 +184,9 @@ impl Importer<'_> {
         }
         let attribute = |semantic| primitive.attributes.get(&Checked::Valid(semantic)).copied();
         let positions = attribute(Semantic::Positions).ok_or_else(|| Error::format("a primitive has no POSITION"))?;
-        self.reserve(positions, primitive.indices)?;
+        let extras = [(Semantic::Normals, 12), (Semantic::TexCoords(0), 8), (Semantic::TexCoords(1), 8)];
+        let extras = extras.into_iter().filter_map(|(semantic, bytes)| attribute(semantic).map(|_| bytes));
+        self.reserve(positions, 12 + extras.sum::<u64>(), primitive.indices, mode)?;
 
         // Vertices; each attribute must have one value for each position.
         let mut positions = bring_in(accessor::vectors(self.file, positions)?, |p: [f32; 3]| {
@@ -214,7 +225,7 @@ impl Importer<'_> {
         // Triangles of all three kinds, with their winding restored after a reflection.
         let indices = match primitive.indices {
             Some(index) => accessor::indices(self.file, index)?,
-            None => (0..count as u32).collect(),
+            None => try_collect(0..count as u32)?,
         };
         if let Some(beyond) = indices.iter().find(|&&i| i as usize >= count) {
             return Err(Error::format(format!("an index is {beyond}, but there are {count} vertices")));
@@ -225,7 +236,7 @@ impl Importer<'_> {
         }
         if !normals.is_empty() {
             checked("NORMAL", normals.len())?;
-            mend_normals(&positions, &mut normals, &triangles);
+            mend_normals(&positions, &mut normals, &triangles)?;
         }
         let material = match primitive.material {
             Some(index) if index.value() < self.file.root.materials.len() => index.value(),
@@ -238,13 +249,20 @@ impl Importer<'_> {
     }
 
     /// Counts what a primitive will add before anything is allocated: instances multiply what a small file holds.
-    fn reserve(&mut self, positions: Index<json::Accessor>, indices: Option<Index<json::Accessor>>) -> Result<()> {
+    fn reserve(
+        &mut self,
+        positions: Index<json::Accessor>,
+        vertex_bytes: u64,
+        indices: Option<Index<json::Accessor>>,
+        mode: Mode,
+    ) -> Result<()> {
         let vertices = accessor::count(self.file, positions)?;
         let corners = indices.map_or(Ok(vertices), |index| accessor::count(self.file, index))?;
+        let triangles = if mode == Mode::Triangles { corners / 3 } else { corners.saturating_sub(2) };
         self.vertices = self.vertices.saturating_add(vertices);
-        self.triangles = self.triangles.saturating_add(corners / 3);
+        self.triangles = self.triangles.saturating_add(triangles);
         if self.vertices.max(self.triangles) <= MAX_ELEMENTS {
-            return Ok(());
+            return (self.budget)(vertices * vertex_bytes + 12 * triangles);
         }
         Err(Error::new(
             ErrorKind::Unsupported,
@@ -341,11 +359,11 @@ fn triangulate(mode: Mode, indices: &[u32]) -> Result<Vec<[u32; 3]>> {
 }
 
 /// Gives vertices whose normal has no direction the mean normal of the faces around them.
-fn mend_normals(positions: &[Vec3], normals: &mut [Vec3], triangles: &[[u32; 3]]) {
-    let broken: Vec<bool> = normals.iter().map(|n| *n == Vec3::ZERO).collect();
-    if !broken.contains(&true) {
-        return;
+fn mend_normals(positions: &[Vec3], normals: &mut [Vec3], triangles: &[[u32; 3]]) -> Result<()> {
+    if !normals.contains(&Vec3::ZERO) {
+        return Ok(());
     }
+    let broken = try_collect(normals.iter().map(|n| *n == Vec3::ZERO))?;
     for t in triangles {
         let [a, b, c] = t.map(|i| positions[i as usize]);
         for &i in t.iter().filter(|&&i| broken[i as usize]) {
@@ -355,6 +373,7 @@ fn mend_normals(positions: &[Vec3], normals: &mut [Vec3], triangles: &[[u32; 3]]
     for (normal, _) in normals.iter_mut().zip(&broken).filter(|(_, broken)| **broken) {
         *normal = normal.normalize_or(Vec3::Y);
     }
+    Ok(())
 }
 
 fn punctual(light: &Light, transform: DMat4) -> Result<PunctualLight> {

@@ -1,7 +1,9 @@
 //! Materials, textures and images of a file.
 
+use super::Budget;
 use super::container::{File, missing};
 use crate::error::{Error, ErrorKind, Result};
+use crate::image::Image;
 use crate::image::io::{self, Encoding, MAX_PIXELS};
 use crate::scene::{AlphaMode, Material, Texture, TextureRef, Wrap};
 use glam::{Mat3, Vec2, Vec3};
@@ -21,14 +23,15 @@ type Key = (Source, Encoding, [Wrap; 2]);
 /// Reads materials in order and collects the textures they use.
 pub struct Materials<'a> {
     file: &'a File<'a>,
+    budget: Budget<'a>,
     pub textures: Vec<Texture>,
     keys: Vec<Key>,
     pixels: u64,
 }
 
 impl<'a> Materials<'a> {
-    pub fn new(file: &'a File<'a>) -> Self {
-        Self { file, textures: Vec::new(), keys: Vec::new(), pixels: 0 }
+    pub fn new(file: &'a File<'a>, budget: Budget<'a>) -> Self {
+        Self { file, budget, textures: Vec::new(), keys: Vec::new(), pixels: 0 }
     }
 
     /// Factors just outside their range, as some writers leave them, are brought back into it.
@@ -109,21 +112,29 @@ impl<'a> Materials<'a> {
 
         // The same image decoded for another purpose or wrapping is a texture of its own.
         let decoded = match (image.buffer_view, &image.uri) {
-            (Some(view), _) => io::decode(self.file.view(view)?, encoding),
-            (None, Some(uri)) => io::decode(&self.file.resolve(uri)?, encoding),
+            (Some(view), _) => self.decode(self.file.view(view)?, encoding),
+            (None, Some(uri)) => self.file.resolve(uri).and_then(|bytes| self.decode(&bytes, encoding)),
             (None, None) => Err(Error::format("it has neither a buffer view nor a URI")),
         };
         let decoded = decoded.map_err(|e| e.within(format_args!("image {}", json.source.value())))?;
-        self.pixels += decoded.width as u64 * decoded.height as u64;
-        if self.pixels > MAX_PIXELS {
-            let message = format!("the textures have more than {MAX_PIXELS} pixels in all");
-            return Err(Error::new(ErrorKind::Unsupported, message));
-        }
         let name = [&image.name, &json.name, &image.uri].into_iter().flatten().find(|n| !n.starts_with("data:"));
         let name = name.cloned().unwrap_or_else(|| format!("Image {}", json.source.value()));
         self.textures.push(Texture { name, image: decoded, wrap });
         self.keys.push(key);
         Ok(self.textures.len() - 1)
+    }
+
+    /// Decodes an image once its header is known to leave room for it.
+    fn decode(&mut self, bytes: &[u8], encoding: Encoding) -> Result<Image> {
+        let (width, height, channels) = io::probe(bytes)?;
+        let pixels = width as u64 * height as u64;
+        self.pixels += pixels;
+        if self.pixels > MAX_PIXELS {
+            let message = format!("the textures have more than {MAX_PIXELS} pixels in all");
+            return Err(Error::new(ErrorKind::Unsupported, message));
+        }
+        (self.budget)(pixels * (channels * size_of::<f32>()) as u64)?;
+        io::decode(bytes, encoding)
     }
 }
 

@@ -27,11 +27,17 @@ pub use export::export;
 pub use import::import;
 
 use super::Scene;
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::Result;
+use crate::image::io;
 use std::path::Path;
 
+/// Asked for the bytes of each mesh and texture before they are made; an error ends the reading.
+pub type Budget<'a> = &'a dyn Fn(u64) -> Result<()>;
+
+/// Takes what a file needs.
+pub const UNLIMITED: Budget<'static> = &|_| Ok(());
+
 /// Reads a `.glb` or `.gltf` file; outside files it names are looked up in its folder and below.
-pub fn load(path: &Path) -> Result<Scene> {
-    let bytes = std::fs::read(path).map_err(|e| Error::new(ErrorKind::Io, format!("{}: {e}", path.display())))?;
-    import(&bytes, path.parent()).map_err(|e| e.within(path.display()))
+pub fn load(path: &Path, budget: Budget) -> Result<Scene> {
+    import(&io::read_file(path)?, path.parent(), budget).map_err(|e| e.within(path.display()))
 }

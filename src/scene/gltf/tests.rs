@@ -1,11 +1,17 @@
 use super::*;
+use crate::error::{Error, ErrorKind};
 use crate::image::Image;
 use crate::photometry::Luminaire;
 use crate::rng::Rng;
 use crate::scene::{AlphaMode, Camera, Material, Mesh, PunctualLight, Texture, TextureRef, Wrap};
 use glam::{Mat3, Vec2, Vec3};
 use serde_json::{Value, json};
+use std::cell::Cell;
 use std::sync::Arc;
+
+fn import(bytes: &[u8], base: Option<&Path>) -> Result<Scene> {
+    super::import(bytes, base, UNLIMITED)
+}
 
 /// One of everything the format can hold.
 fn scene() -> Scene {
@@ -307,6 +313,30 @@ fn lying_files_are_errors_that_say_why() {
     assert_eq!(import(&bomb, None).unwrap_err().kind, ErrorKind::Unsupported);
     for (bytes, base) in [(&b""[..], None), (b"{}", None), (b"glTF", None), (b"glTF\x02\0\0\0\0\0\0\0", None)] {
         assert!(import(bytes, base).is_err());
+    }
+}
+
+#[test]
+fn a_budget_is_asked_for_all_that_will_be_made() {
+    let glb = export(&scene()).unwrap();
+    let asked = Cell::new(0);
+    let read = |most: u64| {
+        asked.set(0);
+        super::import(&glb, None, &|bytes| {
+            asked.set(asked.get() + bytes);
+            if asked.get() <= most { Ok(()) } else { Err(Error::new(ErrorKind::OutOfMemory, "enough")) }
+        })
+    };
+    let whole = read(u64::MAX).unwrap();
+    let meshes = whole.meshes.iter().map(|m| {
+        let uvs: usize = m.uvs.iter().map(|uvs| size_of_val(&uvs[..])).sum();
+        size_of_val(&m.positions[..]) + size_of_val(&m.normals[..]) + size_of_val(&m.triangles[..]) + uvs
+    });
+    let textures = whole.textures.iter().map(|t| size_of_val(&t.image.data[..]));
+    let needed = meshes.chain(textures).sum::<usize>() as u64;
+    assert_eq!(asked.get(), needed);
+    for most in [0, needed / 2, needed - 1] {
+        assert_eq!(read(most).unwrap_err().kind, ErrorKind::OutOfMemory, "{most} of {needed}");
     }
 }
 
