@@ -15,6 +15,10 @@ pub const MAX_PIXELS: u64 = 1 << 28;
 
 const EXR_MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 
+/// No compression of an OpenEXR file that can be read makes samples more times shorter (deflate: 1032, once PXR24 has left out a
+/// quarter).
+const DENSEST: usize = 1400;
+
 /// How the integers of a file are to be read. Floating-point files are always linear.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Encoding {
@@ -118,7 +122,12 @@ pub(super) fn broken_exr(e: exr::error::Error) -> Error {
 pub(super) fn exr_headers(bytes: &[u8]) -> Result<exr::meta::Headers> {
     let meta = exr::meta::MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(broken_exr)?;
     for header in &meta.headers {
-        check_size(header.layer_size.0 as u64, header.layer_size.1 as u64)?;
+        let (width, height) = (header.layer_size.0, header.layer_size.1);
+        check_size(width as u64, height as u64)?;
+        // Memory is taken for all channels before the first of them is read.
+        if (width * height).saturating_mul(header.channels.bytes_per_pixel) > bytes.len().saturating_mul(DENSEST) {
+            return Err(Error::format("the OpenEXR header promises more than so short a file can hold"));
+        }
     }
     Ok(meta.headers)
 }
@@ -281,6 +290,14 @@ mod tests {
         let mut bomb = png.clone();
         bomb[16..24].copy_from_slice(&[0x7f, 0xff, 0xff, 0xff, 0x7f, 0xff, 0xff, 0xff]);
         assert_eq!(decode(&bomb, Encoding::Srgb).unwrap_err().kind, ErrorKind::Format);
+        // An OpenEXR file both of whose windows claim 16384 pixels a side.
+        let mut bomb = exr.clone();
+        let window = |width: i32, height: i32| [0, 0, width - 1, height - 1].map(i32::to_le_bytes).concat();
+        let places: Vec<usize> = (0..exr.len() - 16).filter(|&at| exr[at..at + 16] == window(19, 13)).collect();
+        assert_eq!(places.len(), 2);
+        places.iter().for_each(|&at| bomb[at..at + 16].copy_from_slice(&window(1 << 14, 1 << 14)));
+        let error = probe(&bomb).unwrap_err();
+        assert!(error.kind == ErrorKind::Format && error.message.contains("promises more"), "{error}");
         assert_eq!(load(Path::new("/nonexistent.png"), Encoding::Srgb).unwrap_err().kind, ErrorKind::Io);
     }
 }
