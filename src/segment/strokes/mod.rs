@@ -7,6 +7,7 @@ pub use image::from_image;
 pub use text::parse;
 
 use crate::error::{Error, Result, check_range};
+use crate::image::no_memory;
 use glam::DVec2;
 
 /// One stroke of the brush: the pixels it covers (`y * width + x`) and what they are examples of.
@@ -36,6 +37,13 @@ impl Stroke {
                     let along = b - a;
                     let t = if along == DVec2::ZERO { 0.0 } else { (p - a).dot(along) / along.length_squared() };
                     if p.distance(a + along * t.clamp(0.0, 1.0)) <= radius {
+                        // Pieces overlap, maybe all of them all over: what is there twice goes before there is more room.
+                        if pixels.len() == pixels.capacity() {
+                            pixels.sort_unstable();
+                            pixels.dedup();
+                            let more = pixels.len().max(64);
+                            pixels.try_reserve(more).map_err(|_| no_memory::<u32>(2 * more))?;
+                        }
                         pixels.push((y * width + x) as u32);
                     }
                 }
@@ -104,6 +112,14 @@ mod tests {
         let line = Stroke::polyline(&[DVec2::new(0.5, 0.5), DVec2::new(4.5, 0.5)], 0.4, false, 5, 4).unwrap();
         assert_eq!(line.pixels, [0, 1, 2, 3, 4]);
         assert!(!line.positive);
+    }
+
+    #[test]
+    fn pieces_that_overlap_take_no_more_room_than_the_image() {
+        let corner = |i: usize| DVec2::new([0.0, 100.0][i % 2], [0.0, 100.0][i / 2 % 2]);
+        let crossed = Stroke::polyline(&(0..200).map(corner).collect::<Vec<_>>(), 200.0, true, 100, 100).unwrap();
+        assert_eq!(crossed.pixels, (0..10_000).collect::<Vec<u32>>());
+        assert!(crossed.pixels.capacity() <= 40_000, "{}", crossed.pixels.capacity());
     }
 
     #[test]
