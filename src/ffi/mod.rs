@@ -79,6 +79,7 @@ pub use demo_photo::*;
 pub use design::*;
 pub use distribution::*;
 pub use emission::*;
+pub use emission_tiles::*;
 pub use false_colour::*;
 pub use features::*;
 pub use geometry::*;

@@ -1,0 +1,151 @@
+"""The functions of include/luxfer.h as a table that decodes bytes into calls, and programs (tests/conformance/script.py) encoded as
+such bytes: both by the same kinds of arguments, so that what one writes the other reads.
+
+    python3 calls.py     prints the table, Rust that src/calls.rs includes
+
+A call is the number of its function in two bytes, and its arguments one after the other; src/calls.rs says how each kind is read.
+"""
+
+from __future__ import annotations
+
+import struct
+import sys
+from dataclasses import dataclass, field
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "conformance"))
+
+import script  # noqa: E402
+
+#: In the header's order; those that give no status need no fuzzing.
+NAMES = [name for name, (result, _) in script.HEADER.functions.items() if result == "luxfer_status"]
+#: Numbers that are not here are enumerations, and as int32_t.
+FORMATS = {"float": "<f", "double": "<d", "uint64_t": "<Q", "size_t": "<Q"}
+#: What only the caller could know is never a lie that may be told: how much memory there is, by the name of its count.
+BOUNDS = {"count": 257, "capacity": 257, "size": script.ROOM + 1, "stride": 256, "num_threads": 4}
+#: Files that calls read and write, in the folder the fuzzer works in.
+PATHS = ["", "no/such/place/a.png", *(f"{name}.{ending}" for name in "ab" for ending in ("png", "exr", "glb", "ldt", "ies", "csv"))]
+PATHS += ["layers.exr", "part0.exr", "part1.exr", "lamps.csv"]
+#: Bytes of an array in a file of calls; the memory behind it repeats them.
+LONGEST = 192
+
+
+def is_record(kind: str) -> bool:
+    """Whether a struct tells its size."""
+    return kind in script.STRUCTS and script.STRUCTS[kind][0].name == "struct_size"
+
+
+def bound(name: str) -> int:
+    return next((limit for end, limit in BOUNDS.items() if name.endswith(end)), 0)
+
+
+def width(kind: str) -> int:
+    return struct.calcsize(FORMATS.get(kind, "<I"))
+
+
+def number(kind: str, value: float) -> bytes:
+    form = FORMATS.get(kind, "<I")
+    return struct.pack(form, float(value) if form in ("<f", "<d") else int(value) % (1 << 8 * width(kind)))
+
+
+@dataclass
+class Program:
+    """What the decoder knows when it comes to an argument: the references to each kind of handle, oldest first."""
+
+    held: dict[str, list[int]] = field(default_factory=dict)
+
+    def encode(self, calls: list[script.Call]) -> bytes:
+        out = b""
+        for function, *arguments in calls:
+            if function in NAMES:
+                out += struct.pack("<H", NAMES.index(function))
+                out += b"".join(self.argument(function, f, a) for f, a in zip(script.FUNCTIONS[function], arguments))
+        return out
+
+    def argument(self, function: str, f: script.generate.Field, given: script.Argument) -> bytes:
+        kind, *rest = given
+        if script.makes(f):
+            self.held.setdefault(f.type, []).append(rest[0])
+            return b""
+        if script.is_handle(f):
+            things = self.held.get(f.type, [])
+            if kind == "null" or rest[0] not in things:
+                return bytes([250])
+            at = things.index(rest[0])
+            if script.is_release(function):
+                things.pop(at)
+            elif function.endswith("_retain"):
+                things.append(rest[0])
+            return bytes([at])
+        if f.type in script.CALLBACKS:
+            return bytes([0 if kind == "null" else 1 if rest[0] in ("go", "write") else 2])
+        if not f.stars:
+            return b"".join(number(f.type, n) for n in (rest[1] if kind == "array" else rest))
+        if f.name == "path":
+            return bytes([255 if kind == "null" else PATHS.index(bytes.fromhex(rest[0]).decode())])
+        if is_record(f.type):
+            return self.record(*rest) if kind == "struct" else bytes([0])
+        if kind == "struct":
+            raise SystemExit(f"{function}: {f.name} has no struct_size")
+        if kind in ("null", "room"):
+            return struct.pack("<H", 0xFFFF if kind == "null" else 0)
+        content = bytes.fromhex(rest[0]) if kind == "bytes" else b"".join(number(rest[0], n) for n in rest[1])[:LONGEST]
+        return struct.pack("<H", len(content)) + content
+
+    def record(self, name: str, fields: dict, base: str) -> bytes:
+        members = {f.name: (i, f) for i, f in enumerate(script.STRUCTS[name])}
+        out = bytes([["null", "raw", "init", "size"].index(base), len(fields)])
+        for key, value in fields.items():
+            at, member = members[key]
+            out += bytes([at]) + self.argument(name, member, value)
+        return out
+
+
+# ---------------------------------------------------------------------------------------------------------------- the table
+
+
+def expression(function: str, f: script.generate.Field) -> str:
+    """How an argument is read."""
+    if script.makes(f):
+        return f'a.made("{f.type}").cast()'
+    if script.is_handle(f):
+        verb = "given_back" if script.is_release(function) else "retained" if function.endswith("_retain") else "handle"
+        return f'a.{verb}("{f.type}").cast()'
+    if f.type in script.CALLBACKS:
+        return f"a.{f.type.removeprefix('luxfer_').removesuffix('_fn')}()"
+    if not f.stars:
+        return "a.patience()" if f.name == "timeout_ms" else f"a.below({bound(f.name)})" if bound(f.name) else "a.number()"
+    if f.type == "char" and f.name != "buffer":
+        return "a.path()" if f.name == "path" else "a.text()"
+    return f"a.record(&{f.type.upper()}).cast()" if is_record(f.type) else "a.memory().cast()"
+
+
+def member(f: script.generate.Field) -> str:
+    """The kind of a struct's member."""
+    if not f.stars:
+        count = 1
+        for n in f.dims:
+            count *= n
+        return f"Member::Number({count * width(f.type)}, {bound(f.name) if not f.dims else 0})"
+    if f.type == "char":
+        return "Member::Text"
+    return f"Member::Record(&{f.type.upper()})" if is_record(f.type) else "Member::Memory"
+
+
+def table() -> str:
+    out = ["use luxfer::ffi::*;"]
+    for name, members in script.STRUCTS.items():
+        if is_record(name):
+            init = f"Some(|p| unsafe {{ {name}_init(p.cast(), size_of::<{name}>()) }})" if f"{name}_init" in NAMES else "None"
+            places = ", ".join(f"(offset_of!({name}, {f.name}), {member(f)})" for f in members)
+            out.append(f"static {name.upper()}: Record = Record {{ size: size_of::<{name}>(), init: {init}, members: &[{places}] }};")
+    out.append("static CALLS: &[(&str, fn(&mut Arguments) -> luxfer_status)] = &[")
+    for name in NAMES:
+        arguments = ", ".join(expression(name, f) for f in script.FUNCTIONS[name])
+        out.append(f'    ("{name}", |a| unsafe {{ {name}({arguments}) }}),')
+    paths = ", ".join(f'c"{path}"' for path in PATHS)
+    return "\n".join([*out, "];", f"static PATHS: &[&CStr] = &[{paths}];"])
+
+
+if __name__ == "__main__":
+    print(table())

@@ -1,0 +1,217 @@
+"""What the corpora grow from: small files of every kind, made here and by the library itself, and a dictionary for each kind.
+
+    python3 seeds.py FOLDER     writes FOLDER/TARGET/* and FOLDER/TARGET.dict
+"""
+
+from __future__ import annotations
+
+import base64
+import json
+import struct
+import sys
+import tempfile
+import zlib
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path[:0] = [str(ROOT / "tests" / part) for part in ("conformance", "python")]
+
+import calls  # noqa: E402
+import files  # noqa: E402
+import onnx_file  # noqa: E402
+import scenarios  # noqa: E402
+
+import luxfer  # noqa: E402
+from luxfer.image import np  # noqa: E402
+
+# ------------------------------------------------------------------------------------------------------------------- images
+
+
+def png(depth: int, colour: int, interlaced: int = 0, size: int = 4) -> bytes:
+    """A picture of a PNG colour type: 0 grey, 2 RGB, 3 palette, 4 grey and alpha, 6 RGB and alpha."""
+
+    def chunk(kind: bytes, content: bytes) -> bytes:
+        return struct.pack(">I", len(content)) + kind + content + struct.pack(">I", zlib.crc32(kind + content))
+
+    channels = {0: 1, 2: 3, 3: 1, 4: 2, 6: 4}[colour]
+    row = bytes(range(-(-size * channels * depth // 8)))
+    # Rows of every filter; interlaced ones are black, and no fewer than there are in seven passes.
+    data = bytes(300) if interlaced else b"".join(bytes([y % 5]) + row for y in range(size))
+    head = chunk(b"IHDR", struct.pack(">IIBBBBB", size, size, depth, colour, 0, 0, interlaced))
+    palette = chunk(b"PLTE", bytes(range(48))) + chunk(b"tRNS", bytes(9)) if colour == 3 else b""
+    return b"\x89PNG\r\n\x1a\n" + head + palette + chunk(b"IDAT", zlib.compress(data)) + chunk(b"IEND", b"")
+
+
+def jpeg(channels: int) -> bytes:
+    """Sixteen pixels square; every block is of one colour, said in two bits."""
+
+    def segment(marker: int, content: bytes) -> bytes:
+        return struct.pack(">BBH", 0xFF, marker, len(content) + 2) + content
+
+    parts = b"".join(bytes([c + 1, 0x11, 0]) for c in range(channels))
+    frame = segment(0xC0, struct.pack(">BHHB", 8, 16, 16, channels) + parts)
+    # One code of one bit each: a difference of 0, and the end of a block.
+    tables = b"".join(segment(0xC4, bytes([which, 1, *[0] * 15, 0])) for which in (0x00, 0x10))
+    scan = bytes([channels]) + b"".join(bytes([c + 1, 0]) for c in range(channels)) + bytes([0, 63, 0])
+    return b"\xff\xd8" + segment(0xDB, bytes([0, *[1] * 64])) + frame + tables + segment(0xDA, scan) + bytes(3 * channels) + b"\xff\xd9"
+
+
+def rasters() -> list[bytes]:
+    kinds = [(1, 0), (8, 0), (16, 0), (8, 2), (16, 2), (2, 3), (8, 3), (8, 4), (16, 4), (8, 6), (16, 6)]
+    head = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 8\n"
+    packed = b"".join(b"\x02\x02\x00\x08" + b"\x88\x70" * 4 for _ in range(2))
+    pngs = [png(depth, colour, interlaced) for depth, colour in kinds for interlaced in (0, 1)]
+    return [*pngs, jpeg(1), jpeg(3), head + packed, head + bytes(range(64))]
+
+
+def saved(thing, ending: str) -> bytes:
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, f"a.{ending}")
+        thing.save(path)
+        return path.read_bytes()
+
+
+def layered(context: luxfer.Context) -> list[bytes]:
+    """OpenEXR files: of one, three and four channels, and of many layers."""
+    plain = [saved(luxfer.Image(context, np.linspace(0, 1, 6 * 4 * n, dtype=np.float32).reshape(4, 6, n)), "exr") for n in (1, 3, 4)]
+    render = luxfer.Render(context, luxfer.Scene.demo(context, "sphere-on-table"), expressions={"direct": "LDE"}, aovs=0x7F)
+    render.run(width=9, height=5, samples=1)
+    with tempfile.TemporaryDirectory() as folder:
+        render.write_exr(path := Path(folder, "a.exr"))
+        return [*plain, path.read_bytes()]
+
+
+# ------------------------------------------------------------------------------------------------------------------- scenes
+
+
+def scene(context: luxfer.Context) -> bytes:
+    """All that a GLB file of ours can hold, once."""
+    out = luxfer.Scene(context)
+    out.add_material(name="Paint", base_color=(0.5, 0.4, 0.3), roughness=0.5, metallic=0.5)
+    out.add_material(name="Lamp", emission=(50, 40, 30), double_sided=1)
+    out.add_material(name="Glass", transmission=0.9, ior=1.4)
+    corners = np.float32([[-1, 0, -1], [1, 0, -1], [1, 0, 1], [-1, 0, 1]])
+    triangles = np.uint32([[0, 2, 1], [0, 3, 2]])
+    for material, height in ((0, 0), (1, 2), (2, 1)):
+        place = corners + np.float32([0, height, 0])
+        out.add_mesh(place, triangles, uvs=corners[:, ::2].copy(), material=material, name=f"Plane {height}")
+    for role in ("base-color", "metallic-roughness", "normal", "emission"):
+        texture = out.add_texture(np.full((2, 2, 3), 0.5, np.float32), wrap="mirror")
+        out.set_material_texture(0, role, texture, transform=(1, 0, 0, 0, 1, 0.5))
+    out.add_camera(position=(0, 1, 4), target=(0, 1, 0))
+    for kind in ("point", "spot", "directional"):
+        out.add_light(kind=kind, position=(0, 1, 0))
+    return out.to_bytes()
+
+
+def as_text(glb: bytes) -> bytes:
+    """A GLB as a .gltf with its buffer inside."""
+    length = struct.unpack_from("<I", glb, 12)[0]
+    tree = json.loads(glb[20 : 20 + length])
+    tree["buffers"][0]["uri"] = "data:application/octet-stream;base64," + base64.b64encode(glb[28 + length :]).decode()
+    return json.dumps(tree, separators=(",", ":")).encode()
+
+
+def words(tree) -> set[str]:
+    """All keys of a JSON tree."""
+    below = tree.values() if isinstance(tree, dict) else tree if isinstance(tree, list) else ()
+    return set(tree if isinstance(tree, dict) else ()).union(*map(words, below))
+
+
+# ------------------------------------------------------------------------------------------------------- luminaires, networks
+
+SHAPE = "1 1000 1 3 2 1 2 0.5 0.5 0\n1 1 50\n0 45 90\n0 180\n100 80 0\n100 90 10\n"
+IES = [
+    f"IESNA:LM-63-2002\n[LUMINAIRE] Lamp\n[MORE] of two\nTILT=NONE\n{SHAPE}",
+    f"IESNA:LM-63-1995\nTILT=INCLUDE\n1\n3\n0 45 90\n1 0.9 0.8\n{SHAPE}",
+    "IESNA91\nTILT=NONE\n1 -1 0.5 2 1 1 1 0 0 0 1 1 50 0 90 0 7 7",
+]
+
+
+def networks() -> list[bytes]:
+    """One file for each operator, and one that is as they are exported."""
+
+    def of(kind: str, *more, opset: int = 13, outputs: int = 1, **attributes) -> bytes:
+        n = onnx_file.Network([1, 3, 8, 8], opset)
+        made = n.add(kind, "input", *(n.constant(values) if values is not None else "" for values in more), outputs=outputs, **attributes)
+        return n.file(made if outputs == 1 else made[0], rank=4)
+
+    real = np.float32
+    singles = "Relu LeakyRelu Elu HardSigmoid Sigmoid Tanh Erf Sqrt Exp Log Neg Abs Reciprocal Floor Ceil Identity Softplus Gelu".split()
+    doubles = "Add Sub Mul Div Pow Max Min Equal Less Greater PRelu".split()
+    kernel = np.ones((3, 3, 3, 3), real)
+    out = [of(kind) for kind in [*singles, "GlobalAveragePool", "Softmax", "Shape", "Transpose", "Flatten"]]
+    out += [of(kind, real([[[[0.5]]]])) for kind in doubles]
+    out += [of("Conv", kernel, real([1, 2, 3]), pads=[1, 1, 1, 1], strides=[2, 2]), of("Conv", kernel[:, :1], group=3, dilations=[2, 2])]
+    out += [of("ConvTranspose", kernel, strides=[2, 2], output_padding=[1, 1]), of("MatMul", np.ones((8, 2), real))]
+    out += [of(kind, kernel_shape=[3, 3], strides=[2, 2], pads=[1, 1, 0, 0]) for kind in ("MaxPool", "AveragePool")]
+    out += [of("BatchNormalization", *[np.ones(3, real)] * 4), of("InstanceNormalization", *[np.ones(3, real)] * 2)]
+    out += [of("LayerNormalization", np.ones(8, real), opset=17), of("ReduceMean", axes=[1], keepdims=0), of("Clip", real(0), real(1))]
+    for mode in ("nearest", "linear", "cubic"):
+        out += [of("Resize", None, real([1, 1, 2, 2]), mode=mode), of("Resize", None, None, [1, 3, 5, 5], mode=mode)]
+    out += [of("Upsample", real([1, 1, 2, 2]), opset=9), of("Pad", [0, 0, 1, 1, 0, 0, 1, 1], mode="reflect"), of("Cast", to=7)]
+    out += [of("Reshape", [0, -1, 4]), of("Squeeze", [0]), of("Unsqueeze", [0]), of("Concat", np.ones((1, 1, 8, 8), real), axis=1)]
+    out += [of("Split", axis=1, outputs=3), of("Slice", [0], [-1], [2], [2]), of("Gather", [0, 2], axis=1), of("Expand", [2, 3, 8, 8])]
+    out += [of("Tile", [1, 1, 2, 2]), of("Transpose", perm=[0, 2, 3, 1]), of("ReduceMax", axes=[2, 3])]
+    n = onnx_file.Network([1, 3, "h", "w"], 11)
+    x = n.add("Relu", n.add("Conv", "input", n.noise(4, 3, 3, 3), n.noise(4), strides=[2, 2], pads=[1, 1, 1, 1]))
+    x = n.add("Add", x, n.add("Mul", x, n.add("Sigmoid", n.add("GlobalAveragePool", x))))
+    x = n.add("Resize", x, n.constant(np.zeros(0, real)), n.constant(real([1, 1, 2, 2])), mode="linear")
+    return [*out, n.file(n.add("Squeeze", n.add("Conv", x, n.noise(1, 4, 1, 1)), axes=[1]))]
+
+
+# --------------------------------------------------------------------------------------------------------------------- texts
+
+#: What a glTF file may say and ours does not.
+MORE = {"sparse", "matrix", "children", "KHR_materials_unlit", "EXT_lights_ies", "byteStride", "normalized"}
+#: 1, infinity and not a number, in 32 and 64 bits.
+NUMBERS = [rf"\x00\x00{end}" for end in (r"\x80\x3f", r"\x80\x7f", r"\xc0\x7f", r"\xf0\x3f", r"\xf0\x7f", r"\xf8\x7f")]
+
+EXPRESSIONS = ["L.*E", "LDE", "L<.D>E", "C<RS>[DG]*L", "L(D|S){1,2}E", "L[^S]+E", "C.*<L.>", "L<RD'Floor'>?E", "(L|O).*E"]
+STROKES = ["plane 2 5 5 9 9\nnot-plane 1.5 40 2 42 20\n", "light 2 5 5\n# a remark\nnot-light 3 1e1 -3 7 7 250 9\n"]
+
+
+def parts(context: luxfer.Context) -> list[bytes]:
+    """Sums of the rendering that the target merges."""
+    render, size = luxfer.Render(context, luxfer.Scene.demo(context, "sphere-on-table")), {"width": 9, "height": 5, "samples": 4}
+    with tempfile.TemporaryDirectory() as folder:
+        paths = [str(Path(folder, name)) for name in "abc"]
+        for path, part in zip(paths, [render.split(1, 1, 1, 0, **size), *(render.split(1, 1, 2, k, **size) for k in range(2))]):
+            render.start_part(path, part, **size).wait()
+        return [Path(path).read_bytes() for path in paths]
+
+
+def seeds() -> dict[str, tuple[list[bytes], list[str]]]:
+    """Files and words for each target."""
+    context = luxfer.Context(num_threads=1)
+    glb = scene(context)
+    tree = json.loads(glb[20 : 20 + struct.unpack_from("<I", glb, 12)[0]])
+    lamp = luxfer.Distribution.load_memory(context, IES[0].encode(), "ies")
+    nets = networks()
+    programs = [calls.Program().encode(program) for program in scenarios.programs().values()]
+    return {
+        "image": (rasters(), ["IHDR", "PLTE", "tRNS", "IDAT", "IEND", "gAMA", "iCCP", "fdAT", "\\xff\\xc4", "\\xff\\xdb", "\\xff\\xdd"]),
+        "exr": (layered(context), ["channels", "compression", "dataWindow", "tiles", "chunkCount", "box2i", "scanlineimage", "tiledesc"]),
+        "gltf": ([glb, as_text(glb)], [f'\\"{word}\\"' for word in sorted(words(tree) | MORE)]),
+        "ies": ([text.encode() for text in IES], ["TILT=NONE", "TILT=INCLUDE", "IESNA:LM-63-1986", "[LUMCAT]"]),
+        "ldt": ([saved(lamp, "ldt")], [" 90", "-1", "1e30"]),
+        "onnx": (nets, ["align_corners", "pytorch_half_pixel", "asymmetric", "auto_pad", "SAME_UPPER", "ceil_mode", "CRD"]),
+        "lpe": ([text.encode() for text in EXPRESSIONS], [s.replace("\u00e9", "\\xc3\\xa9") for s in files.SYMBOLS[0]]),
+        "strokes": ([text.encode() for text in STROKES], ["plane", "not-plane", "light", "not-light", "nan", "1e308"]),
+        "part": (parts(context), ["luxfer.part.", "first_path", "paths", "discarded", "displayWindow"]),
+        "calls": (programs, NUMBERS),
+    }
+
+
+def main() -> None:
+    for target, (contents, dictionary) in seeds().items():
+        folder = Path(sys.argv[1], target)
+        folder.mkdir(parents=True, exist_ok=True)
+        for index, content in enumerate(contents):
+            (folder / f"seed-{index:03}").write_bytes(content)
+        folder.with_suffix(".dict").write_text("".join(f'"{word}"\n' for word in dictionary if word))
+        print(f"{target:8} {len(contents):3} seeds, {max(map(len, contents))} bytes at most")
+
+
+if __name__ == "__main__":
+    main()

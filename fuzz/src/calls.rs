@@ -1,0 +1,260 @@
+//! Bytes as calls to the C ABI, with right handles and wrong ones. Every call must give one of its statuses, and every handle
+//! asked for after success; what address sanitizer sees, and panics, are for libFuzzer.
+
+use crate::check;
+use std::collections::BTreeMap;
+use std::ffi::{CStr, CString, c_char, c_void};
+use std::mem::offset_of;
+use std::time::Duration;
+
+include!(concat!(env!("OUT_DIR"), "/table.rs"));
+
+/// Bytes behind every pointer, zeros or what the input repeats: more than any call that is not a lie needs.
+const ROOM: usize = 1 << 16;
+/// Calls of one input.
+const MOST_CALLS: usize = 100;
+/// Times that work takes longer.
+const SLOWER: u64 = if cfg!(miri) { 200 } else { 1 };
+
+/// A struct that tells its size, and what its members are.
+struct Record {
+    size: usize,
+    init: Option<fn(*mut u8) -> luxfer_status>,
+    members: &'static [(usize, Member)],
+}
+
+enum Member {
+    /// So many bytes, and below what number they have to stay, if not 0.
+    Number(usize, u64),
+    Text,
+    Memory,
+    Record(&'static Record),
+}
+
+/// What is left of the input, and the memory and handles of its calls.
+struct Arguments<'a> {
+    input: &'a [u8],
+    memory: Vec<Box<[u64]>>,
+    texts: Vec<CString>,
+    /// One for each reference, by kind.
+    handles: BTreeMap<&'static str, Vec<*mut u8>>,
+    /// Where the call under way puts its handles, and the references that are its own if it succeeds.
+    places: Vec<(&'static str, *mut u64)>,
+    retained: Option<(&'static str, *mut u8)>,
+    patience: Duration,
+}
+
+/// Calls what the bytes say, and releases everything.
+pub fn calls(input: &[u8]) {
+    let mut a = Arguments {
+        input,
+        memory: Vec::new(),
+        texts: Vec::new(),
+        handles: BTreeMap::new(),
+        places: Vec::new(),
+        retained: None,
+        patience: Duration::from_millis(200 * SLOWER),
+    };
+    for _ in 0..MOST_CALLS {
+        if a.input.len() < 2 {
+            break;
+        }
+        let (name, call) = CALLS[usize::from(a.number::<u16>()) % CALLS.len()];
+        let status = call(&mut a);
+        a.settle(name, check(name, status));
+    }
+    a.release();
+}
+
+impl Arguments<'_> {
+    fn bytes(&mut self, count: usize) -> &[u8] {
+        let (bytes, rest) = self.input.split_at(count.min(self.input.len()));
+        self.input = rest;
+        bytes
+    }
+
+    /// A number of the parameter's type; zeros where the input has ended.
+    fn number<T: Copy>(&mut self) -> T {
+        let mut room = [0u64; 2];
+        let bytes = self.bytes(size_of::<T>());
+        // SAFETY: all parameters that are no pointers are plain numbers of at most 8 bytes.
+        unsafe {
+            std::ptr::copy_nonoverlapping(bytes.as_ptr(), room.as_mut_ptr().cast(), bytes.len());
+            room.as_ptr().cast::<T>().read()
+        }
+    }
+
+    /// A count of what memory there is, or one that no memory can hold.
+    fn below<T: TryFrom<u64>>(&mut self, limit: u64) -> T {
+        let number = if size_of::<T>() == 8 { self.number() } else { u64::from(self.number::<u32>()) };
+        T::try_from(if number >> 63 == 1 { number } else { number % limit }).ok().expect("it fits")
+    }
+
+    /// Milliseconds to wait for a job: few.
+    fn patience(&mut self) -> i32 {
+        let time = Duration::from_millis(SLOWER * u64::from(self.number::<u32>().min(100))).min(self.patience);
+        self.patience -= time;
+        time.as_millis() as i32
+    }
+
+    /// A handle of this kind; or none, or what is none, or one of another kind.
+    fn pick(&mut self, kind: &'static str) -> (Option<usize>, *mut u8) {
+        let byte = self.number::<u8>();
+        match byte {
+            250 => (None, std::ptr::null_mut()),
+            251 => (None, self.room().cast()),
+            252 => (None, self.room().wrapping_byte_add(1).cast()),
+            253.. => (
+                None,
+                self.handles
+                    .iter()
+                    .filter(|(other, _)| **other != kind)
+                    .flat_map(|(_, h)| h)
+                    .next()
+                    .copied()
+                    .unwrap_or_default(),
+            ),
+            _ => match self.handles.get(kind).filter(|handles| !handles.is_empty()) {
+                Some(handles) => (Some(usize::from(byte) % handles.len()), handles[usize::from(byte) % handles.len()]),
+                None => (None, std::ptr::null_mut()),
+            },
+        }
+    }
+
+    fn handle(&mut self, kind: &'static str) -> *mut u8 {
+        self.pick(kind).1
+    }
+
+    fn retained(&mut self, kind: &'static str) -> *mut u8 {
+        let (place, handle) = self.pick(kind);
+        self.retained = place.map(|_| (kind, handle));
+        handle
+    }
+
+    fn given_back(&mut self, kind: &'static str) -> *mut u8 {
+        match self.pick(kind) {
+            (Some(place), _) => self.handles.get_mut(kind).expect("it was picked").remove(place),
+            (None, stranger) => stranger,
+        }
+    }
+
+    fn made(&mut self, kind: &'static str) -> *mut u64 {
+        let place = self.room();
+        self.places.push((kind, place));
+        place
+    }
+
+    /// After a call: whose its handles are.
+    fn settle(&mut self, name: &str, succeeded: bool) {
+        for (kind, place) in std::mem::take(&mut self.places) {
+            // SAFETY: the place is in memory that is kept.
+            let handle = unsafe { *place } as *mut u8;
+            assert_eq!(succeeded, !handle.is_null(), "{name}: its handle and its status");
+            if succeeded {
+                self.handles.entry(kind).or_default().push(handle);
+            }
+        }
+        if let Some((kind, handle)) = self.retained.take().filter(|_| succeeded) {
+            self.handles.entry(kind).or_default().push(handle);
+        }
+    }
+
+    fn room(&mut self) -> *mut u64 {
+        self.memory.push(vec![0; ROOM / 8].into());
+        self.memory.last_mut().expect("just pushed").as_mut_ptr()
+    }
+
+    /// Memory that repeats the bytes of the input; or none.
+    fn memory(&mut self) -> *mut c_void {
+        let length = self.number::<u16>();
+        if length == u16::MAX {
+            return std::ptr::null_mut();
+        }
+        let content = self.bytes(length.into()).to_vec();
+        let room = self.room().cast::<u8>();
+        if !content.is_empty() {
+            // SAFETY: the memory is ours, and so long.
+            let room = unsafe { std::slice::from_raw_parts_mut(room, ROOM) };
+            for piece in room.chunks_mut(content.len()) {
+                piece.copy_from_slice(&content[..piece.len()]);
+            }
+        }
+        room.cast()
+    }
+
+    fn text(&mut self) -> *const c_char {
+        let length = self.number::<u16>();
+        if length == u16::MAX {
+            return std::ptr::null();
+        }
+        let content = self.bytes(length.into()).iter().copied().take_while(|&byte| byte != 0).collect::<Vec<u8>>();
+        self.texts.push(CString::new(content).expect("it ends before the first zero"));
+        self.texts.last().expect("just pushed").as_ptr()
+    }
+
+    fn path(&mut self) -> *const c_char {
+        let byte = self.number::<u8>();
+        if byte == u8::MAX { std::ptr::null() } else { PATHS[usize::from(byte) % PATHS.len()].as_ptr() }
+    }
+
+    fn record(&mut self, record: &'static Record) -> *mut u8 {
+        let base = self.number::<u8>() % 4;
+        if base == 0 {
+            return std::ptr::null_mut();
+        }
+        let place = self.room().cast::<u8>();
+        match (base, record.init) {
+            (1, _) => {}
+            (2, Some(init)) => {
+                init(place);
+            }
+            // SAFETY: the memory is ours and longer than any struct; the first member is its size.
+            _ => unsafe { place.cast::<u32>().write(record.size as u32) },
+        }
+        for _ in 0..self.number::<u8>() % 32 {
+            let (offset, member) = &record.members[usize::from(self.number::<u8>()) % record.members.len()];
+            let value: Vec<u8> = match member {
+                Member::Number(4, limit @ 1..) => self.below::<u32>(*limit).to_ne_bytes().into(),
+                Member::Number(_, limit @ 1..) => self.below::<u64>(*limit).to_ne_bytes().into(),
+                Member::Number(size, 0) => self.bytes(*size).into(),
+                Member::Text => (self.text() as usize).to_ne_bytes().into(),
+                Member::Memory => (self.memory() as usize).to_ne_bytes().into(),
+                Member::Record(inner) => (self.record(inner) as usize).to_ne_bytes().into(),
+            };
+            // SAFETY: members lie within their struct.
+            unsafe { std::ptr::copy_nonoverlapping(value.as_ptr(), place.add(*offset), value.len()) };
+        }
+        place
+    }
+
+    fn progress(&mut self) -> luxfer_progress_fn {
+        extern "C" fn go(_: *mut c_void, _: f64) -> i32 {
+            0
+        }
+        extern "C" fn cancel(_: *mut c_void, _: f64) -> i32 {
+            1
+        }
+        [None, Some(go as _), Some(cancel as _)][usize::from(self.number::<u8>() % 3)]
+    }
+
+    fn write(&mut self) -> luxfer_write_fn {
+        extern "C" fn take(_: *mut c_void, _: *const c_void, _: usize) -> i32 {
+            0
+        }
+        extern "C" fn refuse(_: *mut c_void, _: *const c_void, _: usize) -> i32 {
+            1
+        }
+        [None, Some(take as _), Some(refuse as _)][usize::from(self.number::<u8>() % 3)]
+    }
+
+    /// Gives back all that is left, kind by kind in the table's order; none may be refused.
+    fn release(&mut self) {
+        for (name, call) in CALLS.iter().filter(|(name, _)| name.ends_with("_release")) {
+            let kind = name.strip_suffix("_release").expect("filtered by it");
+            while self.handles.get(kind).is_some_and(|handles| !handles.is_empty()) {
+                self.input = &[0];
+                assert!(check(name, call(self)), "{name} of a live handle");
+            }
+        }
+    }
+}
