@@ -110,15 +110,26 @@ pub fn for_rows_of_three<T: Send>(
 /// that a reduction over them is the same to the bit.
 pub fn map<T: Send>(count: usize, job: Job, work: impl Fn(usize) -> T + Sync) -> Result<Vec<T>> {
     let done = AtomicUsize::new(0);
-    (0..count)
-        .into_par_iter()
-        .map(|i| {
-            job.check()?;
-            let value = work(i);
-            job.report((done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / count as f64);
-            Ok(value)
-        })
-        .collect()
+    let mut places = room(count)?;
+    places.resize_with(count, || None);
+    places.par_iter_mut().enumerate().try_for_each(|(i, place)| {
+        job.check()?;
+        *place = Some(work(i));
+        job.report((done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / count as f64);
+        Ok(())
+    })?;
+    let mut values = room(count)?;
+    values.extend(places.into_iter().flatten());
+    Ok(values)
+}
+
+/// An empty list with room for so many, or an error.
+fn room<T>(count: usize) -> Result<Vec<T>> {
+    let mut list = Vec::new();
+    match list.try_reserve_exact(count) {
+        Ok(()) => Ok(list),
+        Err(_) => Err(Error::new(ErrorKind::OutOfMemory, format!("could not allocate {count} results"))),
+    }
 }
 
 /// Does two things, at the same time where a thread is free.

@@ -234,17 +234,17 @@ impl Working {
             out.iter_mut().zip(pixel).for_each(|(o, p)| *o = p * scale);
         }
         let channel = |c: usize| reduced.data.iter().skip(c).step_by(CHANNELS);
-        let confidence = channel(3).copied().collect();
-        let lit = channel(4).map(|&v| v >= 0.5).collect();
+        let confidence = try_collect(channel(3).copied())?;
+        let lit = try_collect(channel(4).map(|&v| v >= 0.5))?;
 
         // A working pixel is usable if all of it is. If that leaves none, only full size can show what there is.
-        let all = |c: usize| channel(c).map(|&v| v > 1.0 - 1e-4).collect::<Vec<bool>>();
-        let usable = all(5);
+        let all = |c: usize| try_collect(channel(c).map(|&v| v > 1.0 - 1e-4));
+        let usable = all(5)?;
         if !usable.contains(&true) && side < longest {
             return Self::new(sources, longest, job);
         }
-        let shown_lit = channel(7).map(|&v| v >= 0.5).collect();
-        Ok(Self { width, height, pitch, colour, confidence, lit, usable, shown: all(6), shown_lit })
+        let (shown, shown_lit) = (all(6)?, try_collect(channel(7).map(|&v| v >= 0.5))?);
+        Ok(Self { width, height, pitch, colour, confidence, lit, usable, shown, shown_lit })
     }
 
     /// The index of a pixel, if there is one.

@@ -5,6 +5,7 @@ use super::RoomView;
 use super::strokes;
 use crate::error::Result;
 use crate::geometry::perspective::{HORIZONTAL_A, HORIZONTAL_B, VERTICAL};
+use crate::image::try_collect;
 use crate::job::Job;
 use crate::simd::widest;
 use glam::{DMat3, DVec2, DVec3};
@@ -74,14 +75,13 @@ impl Evidence {
         let ray = |p: DVec2| to_room * room.perspective.ray(p);
         // One very long segment must not outvote the rest.
         let longest = 0.25 * DVec2::new(width as f64, height as f64).length();
-        let mut heard: Vec<(f64, usize, [DVec3; 3])> = (room.segments.iter())
-            .filter_map(|(segment, axis)| {
+        let mut heard: Vec<(f64, usize, [DVec3; 3])> =
+            try_collect(room.segments.iter().filter_map(|(segment, axis)| {
                 let axis = axis.filter(|&a| a < 3)?;
                 let rays = POINTS.map(|t| ray(segment.a.lerp(segment.b, t)));
                 let length = segment.length();
                 (length > 0.0 && rays.iter().all(|r| r.is_finite())).then_some((length, axis, rays))
-            })
-            .collect();
+            }))?;
         heard.sort_by(|a, b| b.0.total_cmp(&a.0));
         heard.truncate(MAX_SEGMENTS);
         let total: f64 = heard.iter().map(|(length, ..)| length.min(longest)).sum();

@@ -10,6 +10,7 @@ use super::layout::{Face, Layout, faces, facing_axes};
 use super::score::Evidence;
 use crate::error::{Error, Result};
 use crate::exec;
+use crate::image::try_collect;
 use crate::job::Job;
 use crate::simd::widest;
 use glam::{DMat3, DVec2, DVec3};
@@ -166,7 +167,7 @@ impl Tables {
             };
             (0..rights).map(of_right).collect()
         })?;
-        let mut found = found.concat();
+        let mut found = try_collect(found.into_iter().flatten())?;
         found.sort_by(|a, b| b.1.total_cmp(&a.1));
         Ok(found)
     }

@@ -36,12 +36,18 @@ pub fn try_collect<T>(items: impl IntoIterator<Item = T>) -> Result<Vec<T>> {
     let items = items.into_iter();
     let mut data = try_with_capacity(items.size_hint().0)?;
     for item in items {
-        if data.len() == data.capacity() {
-            data.try_reserve(1).map_err(|_| no_memory::<T>(2 * data.len()))?;
-        }
-        data.push(item);
+        try_push(&mut data, item)?;
     }
     Ok(data)
+}
+
+/// Appends an item, or gives an error.
+pub fn try_push<T>(data: &mut Vec<T>, item: T) -> Result<()> {
+    if data.len() == data.capacity() {
+        data.try_reserve(1).map_err(|_| no_memory::<T>(2 * data.len()))?;
+    }
+    data.push(item);
+    Ok(())
 }
 
 /// The error where there is no room for so many items.

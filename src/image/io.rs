@@ -34,7 +34,11 @@ pub fn load(path: &Path, encoding: Encoding) -> Result<Image> {
 
 /// Reads a whole file.
 pub fn read_file(path: &Path) -> Result<Vec<u8>> {
-    std::fs::read(path).map_err(|e| Error::new(ErrorKind::Io, format!("{}: {e}", path.display())))
+    std::fs::read(path).map_err(|e| {
+        let is_memory = e.kind() == std::io::ErrorKind::OutOfMemory;
+        let kind = if is_memory { ErrorKind::OutOfMemory } else { ErrorKind::Io };
+        Error::new(kind, format!("{}: {e}", path.display()))
+    })
 }
 
 /// Reads an image file held in memory.

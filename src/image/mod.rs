@@ -15,5 +15,5 @@ pub mod pyramid;
 pub mod view;
 
 pub(crate) use buffer::no_memory;
-pub use buffer::{Image, MAX_SIDE, try_collect, try_vec, try_with_capacity};
+pub use buffer::{Image, MAX_SIDE, try_collect, try_push, try_vec, try_with_capacity};
 pub use planes::{deinterleave, deinterleave_of, interleave};

@@ -2,10 +2,10 @@
 
 use super::field::pack;
 use crate::error::Result;
-use crate::image::try_vec;
+use crate::image::{try_collect, try_vec, try_with_capacity};
 
 /// A set of patches of one image.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Domain {
     /// Patches along x and y.
     pub width: usize,
@@ -41,9 +41,16 @@ impl Domain {
                 }
             }
         }
-        let mut domain = Self { width: w, height: h, member, list: Vec::new(), count: 0 };
+        // Members are only ever removed: there is room for those of any time.
+        let list = try_with_capacity(member.iter().filter(|m| **m).count())?;
+        let mut domain = Self { width: w, height: h, member, list, count: 0 };
         domain.compact();
         Ok(domain)
+    }
+
+    pub fn try_clone(&self) -> Result<Self> {
+        let (member, list) = (try_collect(self.member.iter().copied())?, try_collect(self.list.iter().copied())?);
+        Ok(Self { member, list, ..*self })
     }
 
     pub fn len(&self) -> usize {
@@ -84,11 +91,11 @@ impl Domain {
     }
 
     /// The domain with the members for which `keep` holds.
-    pub fn filtered(&self, keep: impl Fn(usize) -> bool) -> Self {
-        let mut out = self.clone();
+    pub fn filtered(&self, keep: impl Fn(usize) -> bool) -> Result<Self> {
+        let mut out = self.try_clone()?;
         out.member.iter_mut().enumerate().for_each(|(i, m)| *m = *m && keep(i));
         out.compact();
-        out
+        Ok(out)
     }
 }
 

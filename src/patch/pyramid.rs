@@ -1,7 +1,7 @@
 //! Resolution levels, each half of the next.
 
 use crate::error::Result;
-use crate::image::{Image, pyramid};
+use crate::image::{Image, pyramid, try_collect};
 use crate::job::Job;
 
 /// Side of an image `level` halvings down; never below 1.
@@ -20,16 +20,13 @@ pub fn halve(image: &Image, job: Job) -> Result<Image> {
 }
 
 /// Half the mask: set where all the pixels under it are, or where one is if `any`.
-pub fn halve_mask(mask: &[bool], width: usize, height: usize, any: bool) -> Vec<bool> {
+pub fn halve_mask(mask: &[bool], width: usize, height: usize, any: bool) -> Result<Vec<bool>> {
     let (w, h) = (level_size(width, 1), level_size(height, 1));
     let span = |i: usize, n: usize, of: usize| i * of / n..((i + 1) * of).div_ceil(n);
-    (0..w * h)
-        .map(|i| {
-            let mut below =
-                span(i / w, h, height).flat_map(|y| span(i % w, w, width).map(move |x| mask[y * width + x]));
-            if any { below.any(|m| m) } else { below.all(|m| m) }
-        })
-        .collect()
+    try_collect((0..w * h).map(|i| {
+        let mut below = span(i / w, h, height).flat_map(|y| span(i % w, w, width).map(move |x| mask[y * width + x]));
+        if any { below.any(|m| m) } else { below.all(|m| m) }
+    }))
 }
 
 #[cfg(test)]
@@ -48,7 +45,7 @@ mod tests {
     #[test]
     fn masks_shrink_by_all_or_any() {
         let mask = [true, true, false, true, true, true, false, false, false];
-        assert_eq!(halve_mask(&mask, 3, 3, false), [false]);
-        assert_eq!(halve_mask(&mask, 3, 3, true), [true]);
+        assert_eq!(halve_mask(&mask, 3, 3, false).unwrap(), [false]);
+        assert_eq!(halve_mask(&mask, 3, 3, true).unwrap(), [true]);
     }
 }

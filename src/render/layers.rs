@@ -13,7 +13,7 @@ use super::tape::Told;
 use super::world::{Pane, World};
 use crate::error::{Error, Result};
 use crate::exec;
-use crate::image::{Image, colour, try_vec};
+use crate::image::{Image, colour, try_collect, try_vec, try_with_capacity};
 use crate::job::Job;
 use crate::scene::Camera;
 use glam::{DVec3, Vec3};
@@ -103,9 +103,12 @@ impl<'a> Layers<'a> {
         let table = Table::new(world.scene(), &expressions, outputs.emitter_as)?;
         let surfaces = 1 + outputs.aovs.iter().map(|a| a.kept()).sum::<usize>();
         let width = 3 * expressions.len() + if outputs.aovs.is_empty() { 0 } else { surfaces };
-        let tiles = (0..tiles).map(|_| Ok(Mutex::new(try_vec(width * tile_pixels, 0.0)?))).collect::<Result<_>>()?;
+        let mut kept = try_with_capacity(tiles)?;
+        for _ in 0..tiles {
+            kept.push(Mutex::new(try_vec(width * tile_pixels, 0.0)?));
+        }
         let (eye, forward) = (world.from_scene(camera.position), camera.forward.normalize_or_zero());
-        Ok(Some(Self { world, outputs, eye, forward, table, width, tiles }))
+        Ok(Some(Self { world, outputs, eye, forward, table, width, tiles: kept }))
     }
 
     /// What is kept of a tile.
@@ -174,8 +177,8 @@ impl<'a> Layers<'a> {
 
     /// The images so far; `places` has for each pixel its tile, its number there, and its samples.
     pub fn images(&self, beauty: &Image, places: &[(u32, u32, u32)], job: Job) -> Result<Vec<Layer>> {
-        let guards: Vec<_> = self.tiles.iter().map(|t| t.lock().unwrap_or_else(PoisonError::into_inner)).collect();
-        let tiles: Vec<&[f32]> = guards.iter().map(|guard| guard.as_slice()).collect();
+        let guards = try_collect(self.tiles.iter().map(|t| t.lock().unwrap_or_else(PoisonError::into_inner)))?;
+        let tiles = try_collect(guards.iter().map(|guard| guard.as_slice()))?;
         let sums =
             |&(tile, pixel, _): &(u32, u32, u32)| &tiles[tile as usize][pixel as usize * self.width..][..self.width];
         let row = |y: usize| places[y * beauty.width..][..beauty.width].iter();

@@ -2,7 +2,7 @@
 
 use super::{Input, Params, Stroke};
 use crate::error::{Error, Result};
-use crate::image::try_vec;
+use crate::image::{try_collect, try_vec};
 use crate::rng;
 
 /// Where a sample is from: what cross-validation holds out together.
@@ -61,16 +61,13 @@ pub fn draw(input: &Input, channels: &[usize], params: &Params) -> Result<Sample
     }
     // Each stroke's own, each pixel once, with the hash that it is drawn by.
     let mut own = |(s, stroke): (usize, &Stroke)| {
-        let mut own = Vec::new();
-        for &p in &stroke.pixels {
-            if let Some(slot) = owner.get_mut(p as usize).filter(|slot| **slot & NONE == s as u32) {
-                *slot = NONE;
-                own.push((rng::hash(params.seed, &[u64::from(p)]), p));
-            }
-        }
-        own
+        try_collect(stroke.pixels.iter().filter_map(|&p| {
+            let slot = owner.get_mut(p as usize).filter(|slot| **slot & NONE == s as u32)?;
+            *slot = NONE;
+            Some((rng::hash(params.seed, &[u64::from(p)]), p))
+        }))
     };
-    let mut owned: Vec<Vec<(u64, u32)>> = input.strokes.iter().enumerate().map(&mut own).collect();
+    let mut owned = input.strokes.iter().enumerate().map(&mut own).collect::<Result<Vec<Vec<(u64, u32)>>>>()?;
 
     let mut samples = Samples {
         values: Vec::new(),

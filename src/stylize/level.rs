@@ -5,7 +5,7 @@ use super::{Input, Mode, Params, check_side, pca};
 use crate::error::{Error, Result};
 use crate::exec;
 use crate::image::colour::linear_to_srgb;
-use crate::image::{Image, try_vec};
+use crate::image::{Image, try_collect, try_vec};
 use crate::job::Job;
 use crate::patch::{Domain, Features, Kernel, Quantiser, Search, halve, halve_mask};
 
@@ -45,15 +45,16 @@ impl Problem {
         let mut target_mask = mask("target_mask", input.target_mask, first.target)?;
 
         // Exemplar pixels that are no numbers are masked out.
-        let mut broken: Vec<bool> =
-            (style.data.chunks_exact(style.channels)).map(|p| p.iter().any(|v| !v.is_finite())).collect();
+        let pixels = style.data.chunks_exact(style.channels);
+        let mut broken = try_collect(pixels.map(|p| p.iter().any(|v| !v.is_finite())))?;
         encode(&mut style, job)?;
         let mut known =
             input.known.map(|known| encode_known(known, first.target, artwork.channels, job)).transpose()?;
         if half {
-            (broken, style) = (halve_mask(&broken, style.width, style.height, true), halve(&style, job)?);
-            source_mask = halve_source_mask(&source_mask, artwork);
-            target_mask = target_mask.map(|m| halve_mask(&m, first.target.width, first.target.height, true));
+            (broken, style) = (halve_mask(&broken, style.width, style.height, true)?, halve(&style, job)?);
+            source_mask = halve_source_mask(&source_mask, artwork)?;
+            let (width, height) = (first.target.width, first.target.height);
+            target_mask = target_mask.map(|m| halve_mask(&m, width, height, true)).transpose()?;
             known = known.map(|k| halve(&k, job)).transpose()?;
         }
         broken.iter_mut().zip(&guides.broken_source).for_each(|(a, b)| *a |= b);
@@ -109,8 +110,10 @@ impl Problem {
         Ok(Self {
             patch: self.patch,
             style: halve(&self.style, job)?,
-            source_mask: halve_source_mask(&self.source_mask, source),
-            target_mask: self.target_mask.as_ref().map(|m| halve_mask(m, target.width, target.height, true)),
+            source_mask: halve_source_mask(&self.source_mask, source)?,
+            target_mask: (self.target_mask.as_ref())
+                .map(|m| halve_mask(m, target.width, target.height, true))
+                .transpose()?,
             known: self.known.as_ref().map(|k| halve(k, job)).transpose()?,
             guides: Channels {
                 source: halve(source, job)?,
@@ -126,10 +129,10 @@ impl Problem {
 
 /// Half the mask of pixels that may be used, an image of the size of `of`: all four under a pixel must be, but a region
 /// thinner than two pixels must not vanish.
-fn halve_source_mask(mask: &Option<Vec<bool>>, of: &Image) -> Option<Vec<bool>> {
-    let mask = mask.as_ref()?;
-    let inside = halve_mask(mask, of.width, of.height, false);
-    Some(if inside.contains(&true) { inside } else { halve_mask(mask, of.width, of.height, true) })
+fn halve_source_mask(mask: &Option<Vec<bool>>, of: &Image) -> Result<Option<Vec<bool>>> {
+    let Some(mask) = mask else { return Ok(None) };
+    let inside = halve_mask(mask, of.width, of.height, false)?;
+    Ok(Some(if inside.contains(&true) { inside } else { halve_mask(mask, of.width, of.height, true)? }))
 }
 
 /// Reads a mask of the size of `of`.
@@ -231,7 +234,7 @@ impl<'a> Level<'a> {
             }
         })?;
         let touched = Domain::new(width, picture.height, self.problem.patch, Some(&differs), true)?;
-        Ok(touched.filtered(|i| self.wanted.contains_index(i)))
+        touched.filtered(|i| self.wanted.contains_index(i))
     }
 
     /// Takes over the colour of one pixel.

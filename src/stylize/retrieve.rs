@@ -18,6 +18,7 @@ use super::level::Level;
 use super::{Mode, Params};
 use crate::error::Result;
 use crate::exec;
+use crate::image::try_collect;
 use crate::job::Job;
 use crate::patch::{Domain, Field, NONE, pack, unpack};
 
@@ -50,7 +51,7 @@ pub(super) fn retrieve(
     let nearest = Nearest::new(level, params, job.part(0.0, 0.02))?;
     let search = level.forward();
     search.rescore(field, job.part(0.02, 0.05), |i| changed.contains_index(i))?;
-    let mut free = level.wanted.clone();
+    let mut free = level.wanted.try_clone()?;
     let mut reverse = field.invert(&level.allowed)?;
     let mut matched = Field::new(field.width, field.height)?;
     for i in (0..kept.len()).filter(|&i| kept[i]) {
@@ -65,7 +66,7 @@ pub(super) fn retrieve(
     while passes.len() < params.passes && ((wanted - free.len()) as f64) < enough * wanted as f64 {
         let done = passes.len() as f64 / params.passes as f64;
         let job = job.part(0.05 + 0.75 * done, 0.05 + 0.75 * (done + 1.0 / params.passes as f64));
-        let lost: Vec<bool> = reverse.error.iter().map(|&e| e == u32::MAX).collect();
+        let lost = try_collect(reverse.error.iter().map(|&e| e == u32::MAX))?;
         let index = 2000 * round + passes.len() as u64;
         nearest.reverse(&mut reverse, &free, index, job, |i| lost[i] && level.allowed.contains_index(i))?;
         let (knee, gained) = accept(&mut matched, &mut free, &mut reverse, params.mode, job)?;
@@ -94,12 +95,10 @@ pub(super) fn retrieve(
 /// number given.
 fn accept(matched: &mut Field, free: &mut Domain, reverse: &mut Field, mode: Mode, job: Job) -> Result<(f64, usize)> {
     // Sort by error, then by position.
-    let mut order: Vec<u64> = (reverse.error.iter().enumerate())
-        .filter(|(_, e)| **e != u32::MAX)
-        .map(|(i, &e)| u64::from(e) << 32 | i as u64)
-        .collect();
+    let found = reverse.error.iter().enumerate().filter(|(_, e)| **e != u32::MAX);
+    let mut order = try_collect(found.map(|(i, &e)| u64::from(e) << 32 | i as u64))?;
     exec::sort(&mut order, job)?;
-    let errors: Vec<u32> = order.iter().map(|o| (o >> 32) as u32).collect();
+    let errors = try_collect(order.iter().map(|o| (o >> 32) as u32))?;
     let budget = budget(&errors);
     let total = if mode == Mode::Uniform { f64::INFINITY } else { budget.total };
 

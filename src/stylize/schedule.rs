@@ -107,11 +107,11 @@ pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Pu
             // looks for matches where the budget gave them.
             let polishes = params.mode == Mode::Budget && l == 0 && k >= params.finest_iterations;
             let anew = k == 0 || polishes && k == params.finest_iterations;
-            let changed = if anew { level.wanted.clone() } else { level.changed_by(&picture, part(0.0, 0.01))? };
+            let changed = if anew { level.wanted.try_clone()? } else { level.changed_by(&picture, part(0.0, 0.01))? };
             level.set_picture(&picture, part(0.0, 0.01))?;
             match params.mode {
                 Mode::Budget if polishes => {
-                    let changed = changed.filtered(|i| kept.get(i) != Some(&true));
+                    let changed = changed.filtered(|i| kept.get(i) != Some(&true))?;
                     nearest(&level, &mut current, &changed, params, k, part(0.0, 0.9))?;
                 }
                 Mode::Budget | Mode::Uniform => {

@@ -86,7 +86,7 @@ impl Study {
             &self.pending
         } else {
             self.problem.style = halve(&self.encoded, job.part(0.0, 0.1))?;
-            halved = halve_mask(&self.pending, artwork.width, artwork.height, true);
+            halved = halve_mask(&self.pending, artwork.width, artwork.height, true)?;
             &halved
         };
         let target = Target { field: &mut self.field, picture: &mut self.picture, old: &mut self.old };

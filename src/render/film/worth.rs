@@ -8,6 +8,7 @@ use super::grid::AREA;
 use super::pixel::Pixel;
 use crate::error::Result;
 use crate::exec;
+use crate::image::try_collect;
 use crate::job::Job;
 use glam::{DVec3, Vec3};
 
@@ -20,8 +21,7 @@ const MOST: f64 = 50.0;
 pub fn level(pixels: &[Pixel], job: Job) -> Result<Option<DVec3>> {
     let tile = |i: usize| &pixels[i * AREA..(i + 1) * AREA];
     let means = exec::map(pixels.len() / AREA, job, |i| mean(tile(i)).map(|(mean, _)| mean))?;
-    let means: Vec<DVec3> = means.into_iter().flatten().collect();
-    Ok(median(&means))
+    Ok(median(&try_collect(means.into_iter().flatten())?))
 }
 
 /// The median of each channel; none of nothing.

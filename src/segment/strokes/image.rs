@@ -2,7 +2,7 @@
 
 use super::{Kind, Stroke, StrokeSet};
 use crate::error::{Error, Result};
-use crate::image::{Image, colour};
+use crate::image::{Image, colour, try_collect, try_push, try_vec};
 
 const COLOURS: [(Kind, [f32; 3]); 4] = [
     (Kind::Plane, [0.0, 1.0, 0.0]),
@@ -33,11 +33,11 @@ pub fn from_image(image: &Image) -> Result<StrokeSet> {
             |c: &[f32; 3]| (0..3).all(|i| (colour::linear_to_srgb(pixel[i].clamp(0.0, 1.0)) - c[i]).abs() <= TOLERANCE);
         COLOURS.iter().find(|(_, c)| matches(c)).map(|(kind, _)| *kind)
     };
-    let kinds: Vec<Option<Kind>> = image.data.chunks_exact(image.channels).map(kind_of).collect();
+    let kinds = try_collect(image.data.chunks_exact(image.channels).map(kind_of))?;
 
     // Connected components, over all eight neighbours.
     let (width, height) = (image.width, image.height);
-    let mut is_taken = vec![false; kinds.len()];
+    let mut is_taken = try_vec(kinds.len(), false)?;
     let mut set = StrokeSet::default();
     for start in 0..kinds.len() {
         let Some(kind) = kinds[start].filter(|_| !is_taken[start]) else { continue };
@@ -52,7 +52,7 @@ pub fn from_image(image: &Image) -> Result<StrokeSet> {
                     let n = ny * width + nx;
                     if !is_taken[n] && kinds[n] == Some(kind) {
                         is_taken[n] = true;
-                        pixels.push(n as u32);
+                        try_push(&mut pixels, n as u32)?;
                     }
                 }
             }
