@@ -23,14 +23,12 @@ void *__libc_memalign(std::size_t, std::size_t);
 
 namespace {
 
-// Smaller ones do not follow from the size of the pictures here. The tree over a scene, which others build, is not counted either.
-constexpr std::size_t LARGE = 400 << 10;
-
-// How many large allocations there have been, and which of them is to fail.
+// Bytes from which on an allocation is counted, how many there have been, and which of them is to fail.
+std::atomic<std::size_t> least{SIZE_MAX};
 std::atomic<long> large{0}, failing{-1};
 
 bool is_denied(std::size_t size) {
-    return size >= LARGE && large.fetch_add(1) == failing.load();
+    return size >= least.load() && large.fetch_add(1) == failing.load();
 }
 
 } // namespace
@@ -87,9 +85,11 @@ std::uint64_t hash(const Image &image) {
     return out;
 }
 
-// Lets each of a use's large allocations fail; at most `most` of them, evenly chosen.
-void starve(const char *name, const Use &use, long most) {
+// Lets each of a use's allocations of so many KiB and more fail; at most `most` of them, evenly chosen. Smaller ones do not follow from the
+// size of the pictures here, or are those of others: of the codecs, and of the tree over a scene.
+void starve(const char *name, std::size_t kib, const Use &use, long most) {
     const std::uint64_t truth = use();
+    least = kib << 10;
     large = 0;
     CHECK(use() == truth);
     const long count = large;
@@ -110,8 +110,9 @@ void starve(const char *name, const Use &use, long most) {
         }
         failing = -1;
     }
+    least = SIZE_MAX;
     CHECK(use() == truth);
-    std::printf("%-10s %4ld large allocations, %ld of %ld failures reported\n", name, count, refused, tries);
+    std::printf("%-10s %4ld allocations of %zu KiB and more, %ld of %ld failures reported\n", name, count, kib, refused, tries);
     std::fflush(stdout);
 }
 
@@ -121,7 +122,7 @@ int main() {
     const Context context = Context::create();
     static std::vector<float> samples(512 * 512 * 3, 0.25f);
 
-    starve("image", [&] {
+    starve("image", 400, [&] {
         const Image image = Image::create(context, {samples, 512, 512, 3});
         const double half[] = {2, 0, 0, 0, 2, 0, 0, 0, 1};
         image.save("memory.png");
@@ -138,7 +139,7 @@ int main() {
 
     const auto rectify = luxfer::Rectify::create(context);
     const auto features = luxfer::Features::create(context);
-    starve("features", [&] {
+    starve("features", 256, [&] {
         rectify.set_photo(photo);
         rectify.start().wait();
         features.set_photo(photo);
@@ -149,7 +150,7 @@ int main() {
 
     const auto plane = luxfer::Segment::create(context), lights = luxfer::Segment::create(context);
     const auto emission = luxfer::Emission::create(context);
-    starve("texture", [&] {
+    starve("texture", 192, [&] {
         plane.set_features(features.image(LUXFER_FEATURES_CHANNELS));
         plane.clear_strokes();
         plane.add_strokes(strokes, LUXFER_PHASE_PLANE);
@@ -177,13 +178,16 @@ int main() {
     render.set_scene(Scene::demo(context, LUXFER_DEMO_TARGET_ROOM));
     render.add_expression("direct", "LDE");
     render.set_aovs(LUXFER_AOV_ALPHA | LUXFER_AOV_NORMAL);
-    starve("render", [&] {
+    starve("render", 16, [&] {
         luxfer::RenderParams small;
         small.width = 400;
         small.height = 300;
         small.samples = 2;
         small.preview = 1;
         render.start(small).wait();
+        return hash(render.image());
+    }, 60);
+    starve("layers", 400, [&] {
         render.write_exr("memory.exr");
         return hash(render.image());
     }, 60);
@@ -191,7 +195,7 @@ int main() {
     const auto guides = luxfer::Guides::create(context);
     guides.set_scene(Scene::demo(context, LUXFER_DEMO_SPHERE_ON_TABLE));
     const auto stylize = luxfer::Stylize::create(context);
-    starve("stylize", [&] {
+    starve("stylize", 16, [&] {
         luxfer::GuidesParams small;
         small.width = 400;
         small.height = 280;
