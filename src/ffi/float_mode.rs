@@ -29,7 +29,7 @@ impl Drop for FloatMode {
     }
 }
 
-#[cfg(target_arch = "x86_64")]
+#[cfg(all(target_arch = "x86_64", not(miri)))]
 mod register {
     use std::arch::asm;
 
@@ -54,7 +54,7 @@ mod register {
     }
 }
 
-#[cfg(target_arch = "aarch64")]
+#[cfg(all(target_arch = "aarch64", not(miri)))]
 mod register {
     use std::arch::asm;
 
@@ -77,8 +77,8 @@ mod register {
     }
 }
 
-/// Elsewhere the mode is the host's to keep.
-#[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+/// Elsewhere the mode is the host's to keep; Miri knows no registers.
+#[cfg(any(miri, not(any(target_arch = "x86_64", target_arch = "aarch64"))))]
 mod register {
     pub type Mode = u32;
     pub const DEFAULT: Mode = 0;

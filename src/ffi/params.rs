@@ -144,6 +144,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(miri, ignore = "takes minutes where every step is interpreted")]
     fn only_sizes_of_some_version_are_taken() {
         for size in 0..2 * LARGEST {
             let mut bytes = memory(size as u32);

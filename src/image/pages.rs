@@ -9,7 +9,7 @@ pub(crate) const HUGE: usize = 2 << 20;
 
 /// Asks for huge pages wherever whole ones lie inside a part of a buffer; a wish, and on Linux only.
 pub(crate) fn prefer_huge<T>(room: &[MaybeUninit<T>]) {
-    #[cfg(target_os = "linux")]
+    #[cfg(all(target_os = "linux", not(miri)))]
     {
         let within = room.as_ptr_range();
         let start = (within.start as usize).next_multiple_of(HUGE);
@@ -20,7 +20,7 @@ pub(crate) fn prefer_huge<T>(room: &[MaybeUninit<T>]) {
             unsafe { libc::madvise(start as *mut libc::c_void, end - start, libc::MADV_HUGEPAGE) };
         }
     }
-    #[cfg(not(target_os = "linux"))]
+    #[cfg(not(all(target_os = "linux", not(miri))))]
     let _ = room;
 }
 
