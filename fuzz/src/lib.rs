@@ -14,20 +14,6 @@ use std::os::fd::AsRawFd;
 use std::ptr::{null, null_mut};
 use std::sync::LazyLock;
 
-/// What there is to fuzz, by the names of the targets.
-pub const TARGETS: &[(&str, fn(&[u8]))] = &[
-    ("image", image),
-    ("exr", image),
-    ("gltf", scene),
-    ("ies", |data| distribution(data, LUXFER_DISTRIBUTION_IES)),
-    ("ldt", |data| distribution(data, LUXFER_DISTRIBUTION_LDT)),
-    ("onnx", network),
-    ("lpe", expression),
-    ("strokes", strokes),
-    ("part", part),
-    ("calls", calls),
-];
-
 /// For pixels, meshes and textures of an input, in MiB; tests/fuzz.sh allows single allocations of twice that.
 const BUDGET: u64 = 64;
 
