@@ -94,6 +94,11 @@ impl Autocorrelation {
         })
     }
 
+    /// The number of pixels that are compared at a shift.
+    pub fn overlap(&self, x: isize, y: isize) -> f32 {
+        self.index(x, y).map_or(0.0, |i| self.overlap[i])
+    }
+
     /// The correlation at a shift, in [-1, 1]; `None` where fewer than `least` pixels overlap.
     pub fn at(&self, x: isize, y: isize, least: f32) -> Option<f32> {
         self.index(x, y).filter(|&i| self.overlap[i] >= least).map(|i| self.value[i])

@@ -16,6 +16,8 @@ use glam::{DMat2, DVec2};
 
 /// How far below the best a period's correlation may lie: lower ones match lamps of unequal kind.
 const RELATIVE_CORRELATION: f32 = 0.9;
+/// Standard errors by which the best may be the best by chance, as one of the many shifts that compare few lamps.
+const CHANCE: f32 = 2.0;
 /// Correlation at all shifts along an axis from which the pattern does not change along it.
 const UNCHANGING: f32 = 0.95;
 /// Share of the valid pixels that must overlap for a correlation to count.
@@ -103,6 +105,21 @@ impl Continuation {
     }
 }
 
+/// A shift at which lights fall onto lights.
+struct Repeat {
+    shift: DVec2,
+    /// The correlation there, and the number of pixels that are compared.
+    value: f32,
+    overlap: f32,
+}
+
+impl Repeat {
+    /// The correlation less what chance may have added to it, where so many lights are compared.
+    fn surely(&self, lights: f32) -> f32 {
+        self.value - CHANCE * (1.0 - self.value.powi(2)) / (lights - 1.0).max(1.0).sqrt()
+    }
+}
+
 /// Finds how the lights of the exemplar repeat, and how well: the lower correlation of its periods, 0 if there are none.
 /// From the correlation `least_regularity` on a shift may be a period; at 1 nothing repeats.
 pub fn find(exemplar: &Exemplar, least_regularity: f32, job: Job) -> Result<(Continuation, f64)> {
@@ -134,11 +151,12 @@ pub fn find(exemplar: &Exemplar, least_regularity: f32, job: Job) -> Result<(Con
     let mut periods: Vec<(DVec2, f64)> = unchanging.iter().map(|&axis| (axis, 1.0)).collect();
     let mut repeats = peaks(&correlation, width, height, least, least_regularity, unchanging.first().copied());
     sharpen(&mut repeats);
-    repeats.iter_mut().for_each(|(shift, _)| *shift *= to_unwarped);
-    let best = repeats.iter().map(|r| r.1).fold(0.0, f32::max);
-    repeats.retain(|r| r.1 >= least_regularity.max(RELATIVE_CORRELATION * best));
-    repeats.sort_by(|a, b| a.0.length_squared().total_cmp(&b.0.length_squared()));
-    for (shift, value) in repeats {
+    repeats.iter_mut().for_each(|r| r.shift *= to_unwarped);
+    let lights = exemplar.components.list.len() as f32 / valid.iter().filter(|&&v| v).count() as f32;
+    let best = repeats.iter().map(|r| r.surely(lights * r.overlap)).fold(0.0, f32::max);
+    repeats.retain(|r| r.value >= least_regularity.max(RELATIVE_CORRELATION * best));
+    repeats.sort_by(|a, b| a.shift.length_squared().total_cmp(&b.shift.length_squared()));
+    for Repeat { shift, value, .. } in repeats {
         let parallel = |p: &(DVec2, f64)| p.0.normalize().perp_dot(shift.normalize()).abs() < 0.3;
         if periods.len() < 2 && !periods.iter().any(parallel) && keeps_kinds(exemplar, shift) {
             periods.push((shift, f64::from(value)));
@@ -256,7 +274,7 @@ fn peaks(
     least: f32,
     least_value: f32,
     unchanging: Option<DVec2>,
-) -> Vec<(DVec2, f32)> {
+) -> Vec<Repeat> {
     let (w, h) = (width as isize, height as isize);
     let mut found = Vec::new();
     for y in 0..h {
@@ -294,7 +312,8 @@ fn peaks(
                 let (right, rise_x) = vertex(at(-1, 0), at(1, 0));
                 let (down, rise_y) = vertex(at(0, -1), at(0, 1));
                 let shift = DVec2::new(x as f64 + f64::from(right), y as f64 + f64::from(down));
-                found.push((shift, (value + rise_x + rise_y).min(1.0)));
+                let value = (value + rise_x + rise_y).min(1.0);
+                found.push(Repeat { shift, value, overlap: correlation.overlap(x, y) });
             }
         }
     }
@@ -302,9 +321,9 @@ fn peaks(
 }
 
 /// Measures every shift again by the farthest peak that is a multiple of it: an error there counts by its fraction only.
-fn sharpen(peaks: &mut [(DVec2, f32)]) {
-    let all: Vec<DVec2> = peaks.iter().map(|p| p.0).collect();
-    for (shift, _) in peaks {
+fn sharpen(peaks: &mut [Repeat]) {
+    let all: Vec<DVec2> = peaks.iter().map(|p| p.shift).collect();
+    for Repeat { shift, .. } in peaks {
         for times in 2.. {
             let expected = *shift * f64::from(times);
             let nearest =
