@@ -54,12 +54,14 @@ pub struct Working {
     pub colour: Image,
     /// Confidence that a pixel is light.
     pub confidence: Vec<f32>,
-    /// Whether half of a pixel is light.
+    /// Share of a pixel that is light, and whether half of it is.
+    pub coverage: Vec<f32>,
     pub lit: Vec<bool>,
     /// May be used: shown, and not part of a lamp that the border cuts off while whole ones are there to take its place.
     pub usable: Vec<bool>,
-    /// Shown, cut lamps and all, and whether half of it is light: what the pattern is read from.
+    /// Shown, cut lamps and all, the share that is light, and whether half of it is: what the pattern is read from.
     pub shown: Vec<bool>,
+    pub shown_coverage: Vec<f32>,
     pub shown_lit: Vec<bool>,
 }
 
@@ -235,6 +237,7 @@ impl Working {
         }
         let channel = |c: usize| reduced.data.iter().skip(c).step_by(CHANNELS);
         let confidence = try_collect(channel(3).copied())?;
+        let coverage = try_collect(channel(4).copied())?;
         let lit = try_collect(channel(4).map(|&v| v >= 0.5))?;
 
         // A working pixel is usable if all of it is. If that leaves none, only full size can show what there is.
@@ -243,8 +246,9 @@ impl Working {
         if !usable.contains(&true) && side < longest {
             return Self::new(sources, longest, job);
         }
-        let (shown, shown_lit) = (all(6)?, try_collect(channel(7).map(|&v| v >= 0.5))?);
-        Ok(Self { width, height, pitch, colour, confidence, lit, usable, shown, shown_lit })
+        let (shown, shown_coverage) = (all(6)?, try_collect(channel(7).copied())?);
+        let shown_lit = try_collect(channel(7).map(|&v| v >= 0.5))?;
+        Ok(Self { width, height, pitch, colour, confidence, coverage, lit, usable, shown, shown_coverage, shown_lit })
     }
 
     /// The index of a pixel, if there is one.
@@ -272,21 +276,27 @@ pub struct AreaSums {
 
 impl AreaSums {
     pub fn new(mask: impl Fn(usize) -> bool, width: usize, height: usize) -> Result<Self> {
+        Self::of(|i| u32::from(mask(i)), width, height)
+    }
+
+    /// The same of whole numbers. Sums wrap, which does not matter where those of the rectangles asked for stay below 2³².
+    pub fn of(value: impl Fn(usize) -> u32, width: usize, height: usize) -> Result<Self> {
         let stride = width + 1;
         let mut sums = try_vec(stride * (height + 1), 0u32)?;
         for y in 0..height {
-            let mut row = 0;
+            let mut row = 0u32;
             for x in 0..width {
-                row += u32::from(mask(y * width + x));
-                sums[(y + 1) * stride + x + 1] = sums[y * stride + x + 1] + row;
+                row = row.wrapping_add(value(y * width + x));
+                sums[(y + 1) * stride + x + 1] = sums[y * stride + x + 1].wrapping_add(row);
             }
         }
         Ok(Self { width: stride, sums })
     }
 
-    /// The number of set pixels in `[x, x + w) × [y, y + h)`.
+    /// The number of set pixels, or the sum of the numbers, in `[x, x + w) × [y, y + h)`.
     pub fn count(&self, x: usize, y: usize, w: usize, h: usize) -> usize {
         let at = |x: usize, y: usize| self.sums[y * self.width + x];
-        (at(x + w, y + h) + at(x, y) - at(x + w, y) - at(x, y + h)) as usize
+        let rows = |x: usize| at(x, y + h).wrapping_sub(at(x, y));
+        rows(x + w).wrapping_sub(rows(x)) as usize
     }
 }

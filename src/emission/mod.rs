@@ -7,7 +7,7 @@
 //! 2. [`period`]: the lattice the lamps lie on, from the autocorrelation of the mask ([`correlation`]), and its [`places`] that the
 //!    border cuts.
 //! 3. [`metadata`]: confidence and signed x and y distance to the nearest light.
-//! 4. [`patches`]: quilting over colour and metadata with minimum-error [`seam`]s, held to the lattice.
+//! 4. [`patches`]: quilting over colour and metadata with minimum-error [`seam`]s, held to the lattice, the light in [`balance`].
 //! 5. [`lamps`]: every lamp that patches show becomes one piece again; no seam cuts it.
 //! 6. [`recover`]: full detail from the photo. 7. [`luminaires`]: the lamps as a list, by [`kinds`]. 8. [`statistics`]: how far the
 //!    texture's are from the exemplar's, and how far by [`sampling`] alone; and by [`pairs`] of lamps.
@@ -21,6 +21,7 @@
 //! Not modelled: lamps that are a mixture of two exemplars', a pattern that bends from one plane into another, and nets of crossing
 //! lines in textures that repeat, whose edges may be off by the stretch of a few cells.
 
+mod balance;
 mod blend;
 mod cells;
 mod centre;
@@ -29,6 +30,7 @@ mod components;
 mod correlation;
 mod exemplar;
 mod ground;
+mod guide;
 mod kinds;
 mod lamp_list;
 mod lamps;

@@ -5,22 +5,26 @@
 //! filled by further patches of the same block. On a lattice only shifts by lattice vectors are tried: whatever is chosen,
 //! the lamps stay in phase, and errors do not add up from patch to patch because every shift is measured from the origin.
 
-use super::exemplar::{AreaSums, Working};
+use super::balance::Balance;
+use super::exemplar::AreaSums;
+use super::guide::{Feature, Guide, squares};
 use super::layout::{Layout, NONE, Shift};
 use super::period::Continuation;
 use super::seam;
 use crate::error::Result;
 use crate::exec;
-use crate::image::{Image, try_vec};
+use crate::image::try_vec;
 use crate::job::Job;
 use crate::rng::{self, Rng};
-use glam::{DMat2, DVec2, Vec3, Vec4};
+use glam::{DMat2, DVec2, Vec4};
 use std::collections::BTreeMap;
 
 /// Most candidates per patch where a lattice allows more.
 const LATTICE_CANDIDATES: usize = 128;
 /// Patches within this factor of the best (0.1 in the original), or this close to it, are equally good.
 const TOLERANCE: (f32, f32) = (1.1, 1e-6);
+/// Parts of a pixel in which its light is counted.
+const LIGHT_STEPS: f32 = 255.0;
 /// Patches that cover at least this share of what the best would cover compete by their error.
 const ENOUGH_COVERAGE: f64 = 0.95;
 /// Added to the cost of a seam on a lamp: more than any path around it.
@@ -30,60 +34,6 @@ const FINALISTS: usize = 16;
 const ROW_STEP: usize = 4;
 /// Pixels compared by one thread before another is worth waking.
 const TASK: usize = 1 << 16;
-
-/// What is compared of a pixel, colour and metadata: scaled by the roots of their weights, so that squares add up as they are.
-type Feature = [Vec4; 2];
-
-/// Colour and metadata of the exemplar, their weights, and how many patches are compared by them.
-pub struct Guide<'a> {
-    pub working: &'a Working,
-    pub metadata: &'a Image,
-    pub metadata_weight: f32,
-    /// Per patch where any shift is allowed.
-    pub candidates: usize,
-}
-
-impl Guide<'_> {
-    fn features(&self) -> Vec<Feature> {
-        let (colour, metadata) = self.scales();
-        let pixels = self.working.colour.data.chunks_exact(3).zip(self.metadata.data.chunks_exact(3));
-        pixels
-            .map(|(c, m)| [Vec3::from_slice(c).extend(0.0) * colour, Vec3::from_slice(m).extend(0.0) * metadata])
-            .collect()
-    }
-
-    /// Of colours and of metadata.
-    fn scales(&self) -> (f32, f32) {
-        ((1.0f32 / 3.0).sqrt(), self.metadata_weight.sqrt())
-    }
-
-    /// After which difference each channel of the metadata is the same again. Distances wrap: one cap to the left of a lamp is as far
-    /// as one cap to its right.
-    fn turns(&self) -> Vec4 {
-        let turn = 2.0 * self.scales().1;
-        Vec4::new(f32::INFINITY, turn, turn, f32::INFINITY)
-    }
-}
-
-/// Sum over two rows of pixels of the squared differences of their channels; metadata come again after `turns`.
-fn squares(a: &[Feature], b: &[Feature], turns: Vec4) -> f32 {
-    let add = |[colour, metadata]: [Vec4; 2], a: &Feature, b: &Feature| {
-        let (off, apart) = (a[0] - b[0], (a[1] - b[1]).abs());
-        let apart = apart.min(turns - apart);
-        [colour + off * off, metadata + apart * apart]
-    };
-    // Two pixels at once, for chains of additions that run side by side.
-    let (mut even, mut odd) = ([Vec4::ZERO; 2], [Vec4::ZERO; 2]);
-    let (a, b) = (a.chunks_exact(2), b.chunks_exact(2));
-    if let ([a], [b]) = (a.remainder(), b.remainder()) {
-        even = add(even, a, b);
-    }
-    for (a, b) in a.zip(b) {
-        even = add(even, &a[0], &b[0]);
-        odd = add(odd, &a[1], &b[1]);
-    }
-    ((even[0] + odd[0]) + (even[1] + odd[1])).element_sum()
-}
 
 #[derive(Clone, Copy)]
 struct Rect {
@@ -115,11 +65,13 @@ fn count(runs: &[Run]) -> usize {
     runs.iter().map(|r| r.length).sum()
 }
 
-/// A shift, how many empty pixels of a block it fills, and its mean squared difference from the known ones.
+/// A shift, how many empty pixels of a block it fills, by how many pixels of light more than their share, and its mean squared
+/// difference from the known ones, with what that light counts for.
 #[derive(Clone, Copy)]
 struct Scored {
     shift: Shift,
     fills: usize,
+    excess: f64,
     error: f32,
 }
 
@@ -141,10 +93,12 @@ struct Quilt<'a> {
     bounds: [usize; 4],
     admissible: Vec<u32>,
     usable: AreaSums,
-    lit: AreaSums,
-    /// Share of what the exemplar shows that is light, and by how many pixels the result so far has more light than that.
+    light: AreaSums,
+    /// Share of what the exemplar shows that is light.
     lit_share: f64,
-    excess: f64,
+    balance: Balance,
+    /// Difference in error that says nothing.
+    slack: f32,
     seed: u64,
 }
 
@@ -178,7 +132,14 @@ pub fn place(
         }
     }
 
-    let count = |mask: &[bool]| mask.iter().filter(|m| **m).count() as f64;
+    let overlap = [w / 3, h / 3];
+    let shown = working.shown_coverage.iter().zip(&working.shown).filter(|(_, shown)| **shown);
+    let (lit, all) = shown.fold((0.0, 0usize), |(lit, all), (&light, _)| (lit + f64::from(light), all + 1));
+    // Lattice shifts are rounded to whole pixels, which alone makes both distances differ by the root of a sixth of one.
+    let slack = match continuation.lattice() {
+        Some(_) => (f64::from(guide.metadata_weight) / (3.0 * guide.cap.powi(2))) as f32,
+        None => 0.0,
+    };
     let mut quilt = Quilt {
         guide,
         features: guide.features(),
@@ -193,18 +154,20 @@ pub fn place(
         bounds,
         admissible,
         usable,
-        lit: AreaSums::new(|i| working.lit[i], working.width, working.height)?,
-        lit_share: count(&working.shown_lit) / count(&working.shown).max(1.0),
-        excess: 0.0,
+        light: AreaSums::of(|i| (working.coverage[i] * LIGHT_STEPS).round() as u32, working.width, working.height)?,
+        lit_share: lit / all.max(1) as f64,
+        balance: Balance::new(width.div_ceil(w - overlap[0]), guide.lamp, continuation.lattice().is_some())?,
+        slack: slack.max(TOLERANCE.1),
         seed,
     };
-    let overlap = [w / 3, h / 3];
     for y in (0..height).step_by(h - overlap[1]) {
         quilt.close(y.saturating_sub(1));
+        quilt.balance.begin_row();
         for x in (0..width).step_by(w - overlap[0]) {
             job.check()?;
             let rect = Rect { x, y, w: w.min(width - x), h: h.min(height - y) };
             quilt.fill(&rect, overlap, job.part(0.0, 0.0))?;
+            quilt.balance.pass_on();
         }
         job.report((y + 1) as f64 / height as f64);
     }
@@ -241,7 +204,7 @@ impl Quilt<'_> {
             if !self.admissible.is_empty() {
                 chosen = self.improve(&block, chosen, job)?;
             }
-            self.excess += self.excess_of(&block, &chosen.shift);
+            self.balance.add(chosen.excess);
             self.paste(&block, chosen.shift, first.then_some(overlap));
             first = false;
         }
@@ -402,11 +365,16 @@ impl Quilt<'_> {
         let least = least.unwrap_or((ENOUGH_COVERAGE * most as f64).ceil() as usize).max(1);
         let mut covering: Vec<usize> = (0..shifts.len()).filter(|&n| fills[n].0 >= least).collect();
         let filled = count(&block.filled);
+        let mut excess = vec![0.0; shifts.len()];
+        let of_covering = self.excess(block, covering.iter().map(|&n| shifts[n]));
+        covering.iter().zip(of_covering).for_each(|(&n, e)| excess[n] = e);
+        let penalty = |n: usize| (self.balance.penalty(excess[n]) / filled.max(1) as f64) as f32;
         if covering.len() > FINALISTS && block.rect.h >= 4 * ROW_STEP {
             let is_sampled = |run: &&Run| (run.y - block.rect.y) % ROW_STEP == ROW_STEP / 2;
             let rows: Vec<Run> = block.filled.iter().filter(is_sampled).copied().collect();
             let compared = count(&rows);
-            let error = |&n: &usize| (self.error(&rows, (&shifts[n], fills[n].1), compared, f32::INFINITY), n);
+            let error =
+                |&n: &usize| (penalty(n) + self.error(&rows, (&shifts[n], fills[n].1), compared, f32::INFINITY), n);
             let mut ranked: Vec<(f32, usize)> = covering.iter().map(error).collect();
             ranked.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             // What nothing known tells apart all stays.
@@ -417,9 +385,13 @@ impl Quilt<'_> {
         let scored = exec::map(covering.len().div_ceil(some), job, |task| {
             let mut limit = limit;
             let shifts = covering[task * some..].iter().take(some).map(|&n| {
-                let error = self.error(&block.filled, (&shifts[n], fills[n].1), filled, equally_good(limit));
+                let left = self.equally_good(limit) - penalty(n);
+                let error = match left >= 0.0 {
+                    true => penalty(n) + self.error(&block.filled, (&shifts[n], fills[n].1), filled, left),
+                    false => f32::INFINITY,
+                };
                 limit = limit.min(error);
-                Scored { shift: shifts[n], fills: fills[n].0, error }
+                Scored { shift: shifts[n], fills: fills[n].0, excess: excess[n], error }
             });
             shifts.collect::<Vec<_>>()
         })?;
@@ -459,20 +431,27 @@ impl Quilt<'_> {
         if compared > 0 { (sum / compared as f64) as f32 } else { 0.0 }
     }
 
-    /// How many pixels of light more than its share a shift brings into the empty pixels of a block.
-    fn excess_of(&self, block: &Block, shift: &Shift) -> f64 {
-        let parts = block.empty.iter().filter_map(|run| self.shown(run, shift));
-        parts
-            .map(|(_, length, [x, y])| {
-                let count = |sums: &AreaSums| sums.count(x, y, length, 1) as f64;
-                count(&self.lit) - self.lit_share * count(&self.usable)
+    /// By how many pixels of light more than their share each of some shifts fills the empty pixels of a block. On a lattice their share
+    /// is what all of them show on average, since its lamps are always at the same places of a block; elsewhere that of the exemplar.
+    fn excess(&self, block: &Block, shifts: impl Iterator<Item = Shift>) -> Vec<f64> {
+        let light_of = |shift: Shift| {
+            let parts = block.empty.iter().filter_map(|run| self.shown(run, &shift));
+            parts.fold([0, 0], |[light, all], (_, length, [x, y])| {
+                [light + self.light.count(x, y, length, 1), all + self.usable.count(x, y, length, 1)]
             })
-            .sum()
+        };
+        let lights: Vec<[f64; 2]> =
+            shifts.map(light_of).map(|[light, all]| [light as f64 / f64::from(LIGHT_STEPS), all as f64]).collect();
+        let sum = |k: usize| lights.iter().map(|l| l[k]).sum::<f64>();
+        let share = match self.continuation.lattice() {
+            Some(_) => sum(0) / sum(1).max(1.0),
+            None => self.lit_share,
+        };
+        lights.into_iter().map(|[light, all]| light - share * all).collect()
     }
 
-    /// Draws two of the shifts that are as good as the best, and takes that which leaves the result nearer to its share of light: parts
-    /// of the exemplar that fit more often than others would else decide how much there is. A row of lamps begins as the exemplar does, and goes on with it as far
-    /// as it goes.
+    /// Draws one of the shifts that are as good as the best. A row of lamps begins as the exemplar does, and goes on with it as
+    /// far as it goes.
     fn choose(&self, block: &Block, scored: &[Scored]) -> Option<Scored> {
         let rect = &block.rect;
         if matches!(self.continuation, Continuation::Row(_)) && self.layout.shifts.is_empty() {
@@ -480,7 +459,7 @@ impl Quilt<'_> {
             return scored.iter().min_by(|a, b| length(a).total_cmp(&length(b))).copied();
         }
         let least = scored.iter().map(|s| s.error).fold(f32::INFINITY, f32::min);
-        let equal: Vec<_> = scored.iter().filter(|s| s.error <= equally_good(least)).collect();
+        let equal: Vec<_> = scored.iter().filter(|s| s.error <= self.equally_good(least)).collect();
         if matches!(self.continuation, Continuation::Row(_)) {
             let around = self.neighbours(rect);
             if let Some(same) = equal.iter().find(|s| around.contains(&s.shift)) {
@@ -488,9 +467,12 @@ impl Quilt<'_> {
             }
         }
         let mut rng = Rng::new(self.seed, &[rect.x as u64, rect.y as u64, 1]);
-        let drawn = [(); 2].map(|()| equal.get(rng.below(equal.len().max(1))));
-        let left = |s: &&&Scored| (self.excess + self.excess_of(block, &s.shift)).abs();
-        drawn.iter().flatten().min_by(|a, b| left(a).total_cmp(&left(b))).map(|s| ***s)
+        equal.get(rng.below(equal.len().max(1))).map(|s| **s)
+    }
+
+    /// The largest error that is as good as another.
+    fn equally_good(&self, error: f32) -> f32 {
+        error * TOLERANCE.0 + self.slack
     }
 
     /// Moves a free patch to the best place in its neighbourhood, by ever smaller steps.
@@ -552,9 +534,14 @@ impl Quilt<'_> {
         for (i, &old) in known.iter().enumerate() {
             let (x, y) = (i % rect.w, i / rect.w);
             let beyond = overlap.is_some() && x >= from_column[y] && y >= from_row[x];
-            if (old == NONE || beyond) && source(x, y).is_some() {
-                self.open[(rect.y + y - self.first) * self.layout.width + rect.x + x] = label;
+            if old != NONE && !beyond {
+                continue;
             }
+            let Some(new) = source(x, y) else { continue };
+            if old != NONE {
+                self.balance.add(f64::from(working.coverage[new] - working.coverage[old as usize]));
+            }
+            self.open[(rect.y + y - self.first) * self.layout.width + rect.x + x] = label;
         }
     }
 }
@@ -564,11 +551,6 @@ impl Block {
         let runs = if run.source == NONE as usize { &mut self.empty } else { &mut self.filled };
         runs.push(run);
     }
-}
-
-/// The largest error that is as good as another.
-fn equally_good(error: f32) -> f32 {
-    error * TOLERANCE.0 + TOLERANCE.1
 }
 
 fn free_shift(working: [i32; 2], pitch: DVec2) -> Shift {

@@ -10,10 +10,11 @@ use super::centre;
 use super::clipping::Clipping;
 use super::components::Components;
 use super::exemplar::Exemplar;
+use super::guide::Guide;
 use super::lamps::{self, Instance, Rules};
 use super::layout::Layout;
 use super::measure::Reading;
-use super::patches::{self, Guide};
+use super::patches;
 use super::period::{self, Continuation};
 use super::places;
 use super::recover::{self, Bands, Lights, Source};
@@ -290,7 +291,10 @@ impl Layer {
             Some(corner) => window::copy(corner, canvas, working.pitch),
             None => {
                 let Params { metadata_weight, candidates, .. } = *params;
-                let guide = Guide { working, metadata: &metadata, metadata_weight, candidates };
+                let lamps = &exemplar.components.list;
+                let lit = lamps.iter().map(|lamp| lamp.area).sum::<usize>() as f64;
+                let lamp = lit / lamps.len() as f64 / working.pitch.element_product();
+                let guide = Guide { working, metadata: &metadata, metadata_weight, cap, lamp, candidates };
                 // One row is made, and repeated beside itself: that is all that the exemplar tells.
                 let row = match continuation {
                     Continuation::Row([_, across]) => {
