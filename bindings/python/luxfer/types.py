@@ -1785,7 +1785,7 @@ class StylizeParams(TypedDict, total=False):
     """How many times as much the guides weigh on all levels but the finest, in [0, 1000]; default 4; 1 is the
     paper's. More follows the guides more closely, in smaller pieces."""
     coarse_iterations: int
-    """Rounds on each level coarser than the one before the finest, in [1, 100]; default 12; 6 is the
+    """Rounds on each level coarser than the one before the finest, in [1, 100]; default 24; 6 is the
     paper's."""
 
 
