@@ -1813,6 +1813,12 @@ typedef struct luxfer_emission_params {
      * two in its middle, so that the border cuts as few lamps as it can. Default 0.
      */
     uint32_t centred;
+    /**
+     * Patches that are compared for each block, at most, where none is held to a lattice, in [1, 65536]; default 192.
+     */
+    uint32_t candidates;
+    /** Must be 0. */
+    uint32_t reserved;
 } luxfer_emission_params;
 
 /** An image of the emission: a LUXFER_EMISSION_ value. */

@@ -48,7 +48,7 @@ const ARROWS: &[(&str, &[&str])] = &[
         ],
     ),
     // What chooses their settings.
-    ("plan", &["error", "job", "scene", "render", "relight", "transfer"]),
+    ("plan", &["error", "job", "scene", "render", "relight", "transfer", "stylize"]),
 ];
 
 /// Files that may contain `unsafe` beside `ffi`: SIMD kernels, chosen at run time, and the memory they work on.

@@ -337,6 +337,15 @@ fn odd_sizes_give_finite_results() {
     let result = point.run(&Params { width: 50, height: 50, working_side: 16, ..Params::default() }).unwrap();
     assert!(result.mask.data.iter().all(|&m| m == 1.0));
 
+    // All light.
+    let all = Design::new(60, 50, |_, _| true);
+    for params in
+        [Params { width: 150, height: 130, ..Params::default() }, Params { least_regularity: 1.0, ..Params::default() }]
+    {
+        let result = all.run(&params).unwrap();
+        assert!(result.mask.data.iter().all(|&m| m == 1.0) && result.texture.count_non_finite() == 0);
+    }
+
     // A patch larger than the exemplar.
     let params = Params { width: 400, height: 300, block: 5000, ..Params::default() };
     let result = exemplar.run(&params).unwrap();

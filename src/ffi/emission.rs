@@ -77,16 +77,20 @@ pub struct luxfer_emission_params {
     /// With 1 a lattice lies evenly between the sides of the texture, shifted by offset from there: a lamp or the middle between
     /// two in its middle, so that the border cuts as few lamps as it can. Default 0.
     pub centred: u32,
+    /// Patches that are compared for each block, at most, where none is held to a lattice, in [1, 65536]; default 192.
+    pub candidates: u32,
+    /// Must be 0.
+    pub reserved: u32,
 }
 
 // SAFETY: plain numbers.
 unsafe impl Versioned for luxfer_emission_params {
     const NAME: &'static str = "luxfer_emission_params";
-    const SIZES: &'static [usize] = &[80];
+    const SIZES: &'static [usize] = &[88];
     fn defaults() -> Self {
         let d = emission::Params::default();
         Self {
-            struct_size: 80,
+            struct_size: 88,
             width: d.width as u32,
             height: d.height as u32,
             block: d.block as u32,
@@ -101,12 +105,17 @@ unsafe impl Versioned for luxfer_emission_params {
             even_lamps: u32::from(d.even_lamps),
             tileable: u32::from(d.tileable),
             centred: u32::from(d.centred),
+            candidates: d.candidates as u32,
+            reserved: 0,
         }
     }
 }
 
 impl luxfer_emission_params {
     pub(super) fn params(&self) -> Result<emission::Params> {
+        if self.reserved != 0 {
+            return Err(Error::argument(format!("emission.reserved is {}; it must be 0", self.reserved)));
+        }
         Ok(emission::Params {
             width: self.width as usize,
             height: self.height as usize,
@@ -121,8 +130,8 @@ impl luxfer_emission_params {
             tileable: params::flag(self.tileable, "tileable")?,
             centred: params::flag(self.centred, "centred")?,
             clip_level: self.clip_level,
+            candidates: self.candidates as usize,
             seed: self.seed,
-            ..emission::Params::default()
         })
     }
 }

@@ -640,6 +640,8 @@ class luxfer_emission_params(Structure):
         ("even_lamps", c_uint32),
         ("tileable", c_uint32),
         ("centred", c_uint32),
+        ("candidates", c_uint32),
+        ("reserved", c_uint32),
     ]
 
 

@@ -1124,6 +1124,9 @@ class EmissionParams(TypedDict, total=False):
     centred: int
     """With 1 a lattice lies evenly between the sides of the texture, shifted by offset from there: a lamp or
     the middle between two in its middle, so that the border cuts as few lamps as it can. Default 0."""
+    candidates: int
+    """Patches that are compared for each block, at most, where none is held to a lattice, in [1, 65536];
+    default 192."""
 
 
 @dataclass(frozen=True)
