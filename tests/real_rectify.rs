@@ -95,7 +95,7 @@ fn distortion_is_told_of_lenses_that_have_some() {
         measured(&name, &photo).unwrap_or(0.0)
     });
     let barrels = york.iter().filter(|share| **share < -2.0).count();
-    assert!(barrels >= 5 && york.iter().all(|share| *share < 1.0), "{york:.1?}");
+    assert!(barrels >= 4 && york.iter().all(|share| *share < 1.0), "{york:.1?}");
 }
 
 #[test]

@@ -38,9 +38,9 @@ const RAGGED: f64 = 0.25;
 const LIMIT: f64 = 4.685;
 /// Segments of one real line: both sides of a frame, its pieces.
 const TWINS: f64 = 2.0;
-/// What lenses are off from the model: views cut out of panoramas, which have no distortion but their stitching's, show about as
-/// much beside the error that their lines tell.
-const MODEL: f64 = 0.006;
+/// What lenses are off from the model: views cut out of panoramas, which have no distortion but their stitching's, show as much,
+/// root mean square, where their lines agree on it (`tests/real_rectify.rs`).
+const MODEL: f64 = 0.009;
 
 /// What the straight lines of a photo say of its lens, whose axis meets the picture in `centre`; nothing where they are few.
 pub fn measure(gradients: &Gradients, segments: &[Segment], centre: DVec2) -> Option<Distortion> {
@@ -238,7 +238,7 @@ mod tests {
                 let found = measured(&photo(k, size, seed)).unwrap();
                 println!("k {k}: {found:?}");
                 assert!((found.corner - k).abs() < 0.002, "k {k}: {found:?}");
-                assert!(found.error < 0.007, "k {k}: {found:?}");
+                assert!(found.error < 0.01, "k {k}: {found:?}");
             }
         }
     }
