@@ -426,8 +426,10 @@ typedef struct luxfer_surface {
     float size[2];
     /** Area of the triangles in m². */
     float area;
-    /** 0. */
-    uint32_t reserved;
+    /**
+     * Area of what was named besides and slopes from this plane by 5 to 75 degrees, in m²: as of a vault, which gets no light.
+     */
+    float bent;
 } luxfer_surface;
 
 /** Creates an empty scene. The caller releases *scene. Any thread. */
@@ -1303,6 +1305,14 @@ typedef struct luxfer_rectify_report {
     double distortion;
     /** Its standard deviation; NaN where it is. */
     double distortion_error;
+    /**
+     * For each axis how far the angle between the two others is from a right one, in radians, by the lines of these two alone:
+     * walls that meet at other angles, pixels that are not square and a principal point elsewhere show here. The axes are made
+     * orthogonal all the same. NaN where an axis has no lines.
+     */
+    double squareness[3];
+    /** Standard deviation of each; NaN where it is. */
+    double squareness_errors[3];
 } luxfer_rectify_report;
 
 /** Regions of like gradient direction, with sub-pixel end points. */

@@ -336,7 +336,7 @@ layouts! {
     luxfer_image_view: struct_size channels sample colour_space width height flags reserved pixel_stride row_stride
         byte_size data;
     luxfer_scene_counts: struct_size meshes materials textures lights cameras triangles;
-    luxfer_surface: struct_size triangles origin u_axis v_axis normal size area reserved;
+    luxfer_surface: struct_size triangles origin u_axis v_axis normal size area bent;
     luxfer_material_params: struct_size double_sided name base_color metallic roughness emission transmission ior
         alpha alpha_mode alpha_cutoff normal_scale;
     luxfer_mesh_params: struct_size material name vertex_count positions position_stride normals normal_stride uvs
@@ -357,7 +357,7 @@ layouts! {
         max_magnification seed;
     luxfer_rectify_report: struct_size segments vanishing_points vanishing_errors vanishing_support focal_source
         focal principal axes is_unwarped reserved to_photo corners corner_errors pixel_size aspect_confidence
-        distortion distortion_error;
+        distortion distortion_error squareness squareness_errors;
     luxfer_emission_params: struct_size width height block scale working_side metadata_weight seed least_regularity
         whole_lamps offset clip_level even_lamps tileable centred candidates reserved;
     luxfer_emission_report: struct_size luminaires error regularity exemplar_lamps sampling_error;

@@ -98,6 +98,33 @@ fn distortion_is_told_of_lenses_that_have_some() {
     assert!(barrels >= 4 && york.iter().all(|share| *share < 1.0), "{york:.1?}");
 }
 
+/// Rooms at right angles are told to be, within what is stated, whether the focal length is known or not.
+#[test]
+fn rooms_of_photos_stand_at_right_angles() {
+    for knows_focal in [true, false] {
+        let mut shares = Vec::new();
+        for l in labelled_photos() {
+            let focal = knows_focal.then_some(l.intrinsics.x_axis.x);
+            let view =
+                rectify::find_view(&l.photo, &Params { focal, ..Params::default() }, Monitor::default().job()).unwrap();
+            println!("{:22} {:.3?}", l.name, view.squareness.map(|s| s.map(|s| (s.angle, s.error))));
+            shares.extend(view.squareness.into_iter().flatten().map(|s| (s.angle / s.error).abs()));
+        }
+        if shares.is_empty() {
+            return;
+        }
+        shares.sort_by(f64::total_cmp);
+        let at = |p: f64| shares[(p * shares.len() as f64) as usize];
+        println!(
+            "focal length known {knows_focal}: angle / stated error: half below {:.2}, 68 % below {:.2}, 90 % below {:.2}",
+            at(0.5),
+            at(0.68),
+            at(0.9)
+        );
+        assert!(at(0.5) < 1.1 && at(0.9) < 2.5);
+    }
+}
+
 #[test]
 fn vanishing_points_of_labelled_segments_meet_the_published_protocol() {
     for (name, least) in [("yud_dev", 0.885), ("nyu_dev", 0.76)] {

@@ -200,9 +200,15 @@ pub struct luxfer_rectify_report {
     pub distortion: f64,
     /// Its standard deviation; NaN where it is.
     pub distortion_error: f64,
+    /// For each axis how far the angle between the two others is from a right one, in radians, by the lines of these two alone:
+    /// walls that meet at other angles, pixels that are not square and a principal point elsewhere show here. The axes are made
+    /// orthogonal all the same. NaN where an axis has no lines.
+    pub squareness: [f64; 3],
+    /// Standard deviation of each; NaN where it is.
+    pub squareness_errors: [f64; 3],
 }
 
-const REPORT_SIZE: usize = 8 + 72 + 24 + 16 + 24 + 72 + 8 + 72 + 64 + 32 + 32;
+const REPORT_SIZE: usize = 8 + 72 + 24 + 16 + 24 + 72 + 8 + 72 + 64 + 32 + 32 + 48;
 
 // SAFETY: plain numbers.
 unsafe impl Versioned for luxfer_rectify_report {
@@ -228,6 +234,8 @@ unsafe impl Versioned for luxfer_rectify_report {
             aspect_confidence: 0.0,
             distortion: f64::NAN,
             distortion_error: f64::NAN,
+            squareness: [f64::NAN; 3],
+            squareness_errors: [f64::NAN; 3],
         }
     }
 }
@@ -251,6 +259,8 @@ impl luxfer_rectify_report {
             axes: camera.axes.to_cols_array_2d(),
             distortion: view.distortion.map_or(f64::NAN, |d| d.corner),
             distortion_error: view.distortion.map_or(f64::NAN, |d| d.error),
+            squareness: view.squareness.map(|s| s.map_or(f64::NAN, |s| s.angle)),
+            squareness_errors: view.squareness.map(|s| s.map_or(f64::NAN, |s| s.error)),
             ..Self::defaults()
         };
         let Some(unwarped) = unwarped else { return report };

@@ -80,8 +80,8 @@ pub struct luxfer_surface {
     pub size: [f32; 2],
     /// Area of the triangles in m².
     pub area: f32,
-    /// 0.
-    pub reserved: u32,
+    /// Area of what was named besides and slopes from this plane by 5 to 75 degrees, in m²: as of a vault, which gets no light.
+    pub bent: f32,
 }
 
 // SAFETY: plain numbers.
@@ -98,7 +98,7 @@ unsafe impl Versioned for luxfer_surface {
             normal: [0.0; 3],
             size: [0.0; 2],
             area: 0.0,
-            reserved: 0,
+            bent: 0.0,
         }
     }
 }
@@ -398,6 +398,7 @@ pub unsafe extern "C" fn luxfer_scene_find_surface(
             normal: surface.normal.to_array(),
             size: surface.size.to_array(),
             area: surface.area,
+            bent: surface.bent,
             ..luxfer_surface::defaults()
         });
         Ok(())

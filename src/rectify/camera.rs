@@ -1,6 +1,7 @@
 //! The camera from its vanishing points: focal length, principal point and orthonormal room axes.
 
-use super::sphere::round_covariance;
+use super::sphere::{Refined, round_covariance};
+use super::squareness::{self, Squareness};
 use super::vanishing::Vanishing;
 use super::{Params, VanishingPoint};
 use crate::geometry::linear::symmetric_eigen;
@@ -19,6 +20,7 @@ pub const FREE_ERROR: f64 = 0.5;
 pub struct Oriented {
     pub perspective: Perspective,
     pub vanishing_points: [VanishingPoint; 3],
+    pub squareness: [Option<Squareness>; 3],
     /// For each point of the input the axis it became, if any.
     pub axis_of: Vec<Option<usize>>,
 }
@@ -71,8 +73,14 @@ pub fn orient(found: &Vanishing, width: usize, height: usize, params: &Params) -
             }
         }
     });
+    let as_axis = |r: &Refined, axis: usize| {
+        let turned = if r.direction.dot(axes.col(axis)) < 0.0 { -r.direction } else { r.direction };
+        Refined { direction: turned, ..*r }
+    };
+    let free = [0, 1, 2].map(|axis| named[axis].map(|k| as_axis(&found.free[k], axis)));
+    let squareness = squareness::measure(&free, found.focal, params.focal.is_some(), width);
     let axis_of = (0..found.points.len()).map(|k| named.iter().position(|&n| n == Some(k))).collect();
-    Oriented { perspective, vanishing_points, axis_of }
+    Oriented { perspective, vanishing_points, squareness, axis_of }
 }
 
 /// The focal length that is expected of a photo of the given width.

@@ -20,8 +20,8 @@
 //! few, and noisy for their length, those of directions are up to an eighth too small (the mean square of true over stated
 //! ones is 1.3 with 14 lines an axis and a pixel of noise, 1.0 to 1.15 with more lines or less noise).
 //!
-//! Not modelled: lens distortion, which is measured however ([`View::distortion`]), pixels that are not square, rooms whose walls are not at right angles (their directions
-//! are found, but the axes are made orthogonal).
+//! Not modelled: lens distortion, which is measured however ([`View::distortion`]); pixels that are not square and rooms whose
+//! walls are not at right angles, whose axes are made orthogonal; how far they are from it is measured ([`View::squareness`]).
 
 mod biweight;
 mod camera;
@@ -39,6 +39,7 @@ mod quad;
 mod resample;
 pub mod segments;
 mod sphere;
+mod squareness;
 mod successive;
 mod taps;
 #[cfg(test)]
@@ -48,6 +49,7 @@ pub mod vanishing;
 
 pub use distortion::Distortion;
 pub use resample::warp;
+pub use squareness::Squareness;
 pub use unwarp::unwarp;
 
 use crate::error::{Error, Result, check_range};
@@ -163,6 +165,9 @@ pub struct View {
     /// One for each column of `perspective.axes`.
     pub vanishing_points: [VanishingPoint; 3],
     pub perspective: Perspective,
+    /// For each axis how far the angle between the two others is from a right one, by the lines of these two alone; absent where
+    /// one of them has no lines.
+    pub squareness: [Option<Squareness>; 3],
     /// How far the lens bends straight lines; absent where a photo has too few of them, or was not seen itself.
     pub distortion: Option<Distortion>,
 }
@@ -241,6 +246,7 @@ pub fn view_from_segments(
         segments: segments.iter().copied().zip(found.members.iter().map(axis)).collect(),
         vanishing_points: oriented.vanishing_points,
         perspective: oriented.perspective,
+        squareness: oriented.squareness,
         distortion: None,
     })
 }

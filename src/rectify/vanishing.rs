@@ -26,8 +26,17 @@ pub struct Vanishing {
     pub points: Vec<VanishingPoint>,
     /// For each segment the point it runs to.
     pub members: Vec<Option<usize>>,
+    /// The direction of each as its own lines have it, without the right angles, in a camera of the focal length below.
+    pub(super) free: Vec<Refined>,
     /// Focal length in pixels under which the points are most nearly orthogonal; a weak guess from one finite point.
     pub focal: f64,
+}
+
+/// A direction with the right angles that the others lead one to expect, and without.
+#[derive(Clone, Copy)]
+struct Found {
+    expected: Refined,
+    free: Refined,
 }
 
 /// Finds at most `count` vanishing points of segments in an image of the given size. Segments without length or with
@@ -49,7 +58,7 @@ pub fn from_segments(
 
     let given = params.focal.map(|f| f / frame.scale);
     let mut focal = given.unwrap_or(manhattan::USUAL_FOCAL);
-    let mut found: Vec<Refined> = Vec::new();
+    let mut found: Vec<Found> = Vec::new();
     match params.search {
         Search::Manhattan => {
             if let Some(triplet) = manhattan::search(&lines, given, params.seed, job.part(0.0, 0.8))? {
@@ -59,12 +68,12 @@ pub fn from_segments(
             }
             // Directions beside the three, from the lines that run along none of them.
             while found.len() < count && !found.is_empty() {
-                let points: Vec<DVec3> = found.iter().map(|r| project(r.direction, focal)).collect();
+                let points: Vec<DVec3> = found.iter().map(|r| project(r.expected.direction, focal)).collect();
                 let rest: Vec<Evidence> =
                     lines.iter().filter(|e| points.iter().all(|&p| e.agreement(p) == 0.0)).copied().collect();
                 let Some(start) = manhattan::strongest(&rest, focal, params.seed, job.part(0.8, 0.9))? else { break };
                 let Some(point) = refine(&rest, start, focal).filter(|r| r.error() < WORST_ERROR) else { break };
-                found.push(point);
+                found.push(Found { expected: point, free: point });
             }
         }
         Search::Successive => {
@@ -73,13 +82,14 @@ pub fn from_segments(
                 let direction = unproject(frame.from_pixels(p), focal);
                 let covariance = refine(&lines, direction, focal)
                     .map_or_else(|| round_covariance(direction, WORST_ERROR), |r| r.covariance);
-                Refined { direction, covariance }
+                let point = Refined { direction, covariance };
+                Found { expected: point, free: point }
             }));
         }
     }
 
     // Assign every segment to the point it agrees with best, and count.
-    let points: Vec<DVec3> = found.iter().map(|r| project(r.direction, focal)).collect();
+    let points: Vec<DVec3> = found.iter().map(|r| project(r.expected.direction, focal)).collect();
     let mut members = vec![None; segments.len()];
     let mut support = vec![(0usize, 0.0f64); points.len()];
     for (index, e) in &evidence {
@@ -109,18 +119,19 @@ pub fn from_segments(
         .map(|&k| VanishingPoint {
             point: frame.to_pixels(points[k]),
             support: support[k].0,
-            error: found[k].error(),
-            covariance: found[k].covariance,
+            error: found[k].expected.error(),
+            covariance: found[k].expected.covariance,
         })
         .collect();
+    let free = order.iter().map(|&k| found[k].free).collect();
     job.report(1.0);
-    Ok(Vanishing { points, members, focal: focal * frame.scale })
+    Ok(Vanishing { points, members, free, focal: focal * frame.scale })
 }
 
 /// Refines each direction on the lines that run along it more nearly than along the others, then once more with the
 /// right angles that the others, as their own lines have them, lead one to expect: those help where a direction has few
 /// lines. Directions that no two lines fix, or that drift into another, are dropped.
-fn refine_freely(lines: &[Evidence], axes: &[DVec3], focal: f64) -> Vec<Refined> {
+fn refine_freely(lines: &[Evidence], axes: &[DVec3], focal: f64) -> Vec<Found> {
     let mut current: Vec<Refined> =
         axes.iter().map(|&direction| Refined { direction, covariance: DMat3::ZERO }).collect();
     for _ in 0..3 {
@@ -128,7 +139,7 @@ fn refine_freely(lines: &[Evidence], axes: &[DVec3], focal: f64) -> Vec<Refined>
         current = current.iter().zip(&groups).filter_map(|(r, group)| refine(group, r.direction, focal)).collect();
     }
     let groups = nearest(lines, &current, focal);
-    let squared: Vec<Refined> = (0..current.len())
+    let squared: Vec<Found> = (0..current.len())
         .map(|i| {
             let from = current[i];
             let expected: Vec<RightAngle> = (0..current.len())
@@ -139,14 +150,15 @@ fn refine_freely(lines: &[Evidence], axes: &[DVec3], focal: f64) -> Vec<Refined>
                     RightAngle { to, variance: SQUARENESS * SQUARENESS + error * error + by_focal * by_focal }
                 })
                 .collect();
-            refine_near(&groups[i], from.direction, focal, &expected).unwrap_or(from)
+            Found { expected: refine_near(&groups[i], from.direction, focal, &expected).unwrap_or(from), free: from }
         })
         .collect();
-    let mut kept: Vec<Refined> = Vec::new();
-    for r in squared {
-        let apart = kept.iter().all(|k| k.direction.dot(r.direction).abs() < 0.9);
+    let mut kept: Vec<Found> = Vec::new();
+    for found in squared {
+        let r = &found.expected;
+        let apart = kept.iter().all(|k| k.expected.direction.dot(r.direction).abs() < 0.9);
         if apart && r.error() < WORST_ERROR {
-            kept.push(r);
+            kept.push(found);
         }
     }
     kept

@@ -119,7 +119,16 @@ mod tests {
 
     fn surface(size: Vec2) -> Surface {
         let (u_axis, v_axis, normal) = (Vec3::X, Vec3::Z, Vec3::NEG_Y);
-        Surface { triangles: vec![], origin: Vec3::ZERO, u_axis, v_axis, normal, size, area: size.x * size.y }
+        Surface {
+            triangles: vec![],
+            origin: Vec3::ZERO,
+            u_axis,
+            v_axis,
+            normal,
+            size,
+            area: size.x * size.y,
+            bent: 0.0,
+        }
     }
 
     #[test]

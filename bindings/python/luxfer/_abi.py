@@ -347,7 +347,7 @@ class luxfer_surface(Structure):
         ("normal", c_float * 3),
         ("size", c_float * 2),
         ("area", c_float),
-        ("reserved", c_uint32),
+        ("bent", c_float),
     ]
     result = types.Surface
 
@@ -564,6 +564,8 @@ class luxfer_rectify_report(Structure):
         ("aspect_confidence", c_double),
         ("distortion", c_double),
         ("distortion_error", c_double),
+        ("squareness", c_double * 3),
+        ("squareness_errors", c_double * 3),
     ]
     enumerations: dict[str, type] = {"focal_source": types.FocalSource}
     result = types.RectifyReport

@@ -748,6 +748,9 @@ class Surface:
     """Lengths of the sides along u and v, in metres."""
     area: float
     """Area of the triangles in m²."""
+    bent: float
+    """Area of what was named besides and slopes from this plane by 5 to 75 degrees, in m²: as of a vault, which
+    gets no light."""
 
 
 class MaterialParams(TypedDict, total=False):
@@ -1023,6 +1026,12 @@ class RectifyReport:
     and not undone. NaN where the photo has too few lines to tell."""
     distortion_error: float
     """Its standard deviation; NaN where it is."""
+    squareness: tuple[float, float, float]
+    """For each axis how far the angle between the two others is from a right one, in radians, by the lines of
+    these two alone: walls that meet at other angles, pixels that are not square and a principal point elsewhere
+    show here. The axes are made orthogonal all the same. NaN where an axis has no lines."""
+    squareness_errors: tuple[float, float, float]
+    """Standard deviation of each; NaN where it is."""
 
 
 class FeaturesParams(TypedDict, total=False):

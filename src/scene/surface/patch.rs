@@ -17,6 +17,9 @@ const DIRECTIONS: usize = 32;
 const PLANES: usize = 16;
 const LEAST_AREA: f64 = 0.05;
 
+/// Cosines of 75 and of 5 degrees: between them a triangle is neither a plane's nor an edge's.
+const BENT: [f64; 2] = [0.258_819_045, 0.996_194_698];
+
 /// Triangles that lie in one plane.
 pub struct Patch {
     pub triangles: Vec<(usize, usize)>,
@@ -85,6 +88,15 @@ pub fn planes(scene: &Scene, triangles: &[(usize, usize)]) -> Result<Vec<Patch>>
     patches.retain(|p| p.area >= LEAST_AREA * largest);
     patches.truncate(PLANES);
     Ok(patches)
+}
+
+/// Area of the triangles that slope from a plane, on either side.
+pub fn bent(scene: &Scene, triangles: &[(usize, usize)], normal: DVec3) -> f64 {
+    let slopes = |f: &Facet| {
+        let cosine = f.area_vector.dot(normal).abs() / f.area;
+        BENT[0] < cosine && cosine < BENT[1]
+    };
+    triangles.iter().filter_map(|&id| facet(scene, id)).filter(slopes).map(|f| f.area).sum()
 }
 
 fn facet(scene: &Scene, id: (usize, usize)) -> Option<Facet> {

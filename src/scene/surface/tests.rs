@@ -162,6 +162,10 @@ fn one_plane_of_many_small_triangles_is_one_patch() {
     let surface = find(&scene, "Vault").unwrap();
     assert!((surface.normal - Vec3::NEG_Y).length() < 1e-3);
     assert!((surface.size.y - 4.0).abs() < 1e-3 && surface.size.x >= 3.0 && surface.size.x <= 3.6, "{}", surface.size);
+    // Of each flank six strips, which slope by 0.075, 0.225, ...; the first by 4.3 degrees.
+    let strip = |k: i32| 4.0 * 0.25 * f64::hypot(1.0, 0.075 * f64::from(2 * k + 1));
+    let flanks: f64 = 2.0 * (1..6).map(strip).sum::<f64>();
+    assert!((f64::from(surface.bent) - flanks).abs() < 1e-3, "{} of {flanks}", surface.bent);
 }
 
 #[test]
@@ -169,6 +173,7 @@ fn placing_splits_the_patch_off_and_lays_the_texture_over_it() {
     let mut scene = shell();
     scene.meshes.push(Mesh { material: 1, ..slab("Lid", Vec3::new(0., 3., 0.), Vec3::new(6., 3.2, 4.)) });
     let surface = find(&scene, "Lid").unwrap();
+    assert_eq!(surface.bent, 0.0);
     let image = Image::from_fn(3, 2, |x, y| [x as f32, y as f32, 1.0]).unwrap();
     let placed = place(&mut scene, &surface, image, Vec3::new(5.0, 6.0, 7.0)).unwrap();
     assert_eq!(scene.validate(), Ok(()));
