@@ -3,7 +3,7 @@
 use super::{Clock, Expected, Goal};
 use crate::error::Result;
 use crate::job::Job;
-use crate::stylize::{self, Input, Mode, Params, Trial};
+use crate::stylize::{Input, Mode, Params, Probe};
 
 /// A stylisation as it is to be.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,15 +17,22 @@ pub struct Stylisation {
 /// Plans a stylisation: of `params` all is kept but the numbers of iterations and sweeps. `input.previous` does not count.
 ///
 /// # Errors
-/// A goal or a setting out of range; those of [`stylize::run`].
+/// A goal or a setting out of range; those of [`crate::stylize::run`].
 pub fn stylisation(input: &Input, params: &Params, goal: Goal, clock: Clock, job: Job) -> Result<Stylisation> {
     goal.check()?;
     let (ladder, usual) = ladder(params);
-    let trials = stylize::probe(input, &ladder, usual, clock, job)?;
-    let expected = trials.iter().map(|t: &Trial| Expected { seconds: t.seconds, error: t.energy.sqrt() });
-    let rungs: Vec<_> = ladder.into_iter().zip(expected).collect();
-    let (params, expected) = &rungs[chosen(&rungs.iter().map(|r| r.1).collect::<Vec<_>>(), goal)];
-    Ok(Stylisation { params: params.clone(), expected: *expected })
+    let mut probe = Probe::new(input, &ladder, usual, clock, job.part(0.0, 0.6))?;
+    // What is chosen is tried at a higher resolution, and if it then no longer serves best, what does.
+    loop {
+        let expected = (0..ladder.len()).map(|i| probe.trial(i));
+        let rungs: Vec<_> = expected.map(|t| Expected { seconds: t.seconds, error: t.energy.sqrt() }).collect();
+        let best = chosen(&rungs, goal);
+        if probe.is_refined(best) {
+            job.report(1.0);
+            return Ok(Stylisation { params: ladder[best].clone(), expected: rungs[best] });
+        }
+        probe.refine(best, job.part(0.6, 1.0))?;
+    }
 }
 
 /// Settings from quick to careful, from the front of the knobs' curves in `benches/stylit.rs`, and which of them the presets are

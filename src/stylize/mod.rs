@@ -68,7 +68,7 @@ mod tests;
 
 pub use budget::{Budget, Hyperbola, budget};
 pub use guides::{Guide, MAX_CHANNELS, Range};
-pub use probe::{Trial, probe};
+pub use probe::{Probe, Trial};
 pub use report::{LevelReport, Report, Usage};
 pub use retrieve::Pass;
 pub use study::Study;

@@ -21,68 +21,129 @@ pub struct Trial {
     pub energy: f64,
 }
 
-/// What stylisations with each of `ladder`, all of the same [`Params::preview`], should take and leave, `input.previous` aside.
-/// The one at `usual` is tried at three resolutions, the highest of 32 to 128 thousand pixels, the others at the middle one.
-///
-/// Work grows with the number of pixels. Energy falls with their size, since paint and guides differ less between neighbours:
-/// from one resolution to the next by a power that falls itself, as between those tried. How many times as much
-/// one setting takes and leaves as another hardly depends on the resolution.
-///
-/// # Errors
-/// As those of [`super::run`].
-pub fn probe(
-    input: &Input,
-    ladder: &[Params],
+/// By which power of the number of pixels the time of one grows at most: patches settle more slowly where there are more.
+const MOST_GROWTH: f64 = 0.12;
+
+/// Trials of settings on one input.
+pub struct Probe<'a> {
+    input: Input<'a>,
+    ladder: &'a [Params],
     usual: usize,
-    clock: &(dyn Fn() -> Duration + Sync),
-    job: Job,
-) -> Result<Vec<Trial>> {
-    ladder.iter().try_for_each(Params::check)?;
-    let input = Input { previous: None, motion: None, ..*input };
-    let seconds_since = |start: Duration| clock().saturating_sub(start).as_secs_f64();
+    clock: &'a (dyn Fn() -> Duration + Sync),
+    /// The problem, and its halves down to the lowest resolution that is tried.
+    problems: Vec<Problem>,
+    preparing: f64,
+    /// At the nearest resolution: the usual settings, and others once they are [`Self::refine`]d.
+    near: Vec<Option<Trial>>,
+    /// At the next one.
+    middle: Vec<Trial>,
+    /// Energy that the usual settings should leave.
+    energy: f64,
+}
 
-    // The problem, and all of its halves that are to be tried or lead there.
-    let start = clock();
-    let mut problems = vec![Problem::new(&input, &ladder[usual], job.part(0.0, 0.05))?];
-    let preparing = seconds_since(start);
-    let pixels = |image: &Image| image.width * image.height;
-    let is_near = |problem: &Problem| pixels(&problem.style).min(pixels(&problem.guides.target)) <= NEAR;
-    while let Some(last) = problems.last()
-        && problems.iter().filter(|p| is_near(p)).count() < RESOLUTIONS
-        && last.shortest_side() >= 4 * last.patch
-    {
-        problems.push(last.halve(job.part(0.05, 0.05))?);
-    }
-    let lowest = problems.len() - 1;
-    let nearest = problems.iter().position(is_near).unwrap_or(lowest);
-    let [middle, far] = [nearest + 1, nearest + 2].map(|i| i.min(lowest));
+impl<'a> Probe<'a> {
+    /// Tries each of `ladder`, all of the same [`Params::preview`], `input.previous` aside. The one at `usual` is tried at three
+    /// resolutions, the highest of 32 to 128 thousand pixels, the others at the middle one.
+    ///
+    /// # Errors
+    /// As those of [`super::run`].
+    pub fn new(
+        input: &Input<'a>,
+        ladder: &'a [Params],
+        usual: usize,
+        clock: &'a (dyn Fn() -> Duration + Sync),
+        job: Job,
+    ) -> Result<Self> {
+        ladder.iter().try_for_each(Params::check)?;
+        let input = Input { previous: None, motion: None, ..*input };
 
-    let run = |at: usize, params: &Params, job: Job| -> Result<Trial> {
+        // The problem, and all of its halves that are to be tried or lead there.
         let start = clock();
-        let report = schedule::run(&problems[at], &input, params, &|_| (), job)?.report;
-        let energy = report.levels.last().and_then(|l| l.energy.last()).copied().unwrap_or(0.0);
-        Ok(Trial { seconds: seconds_since(start), energy })
-    };
-    let far = run(far, &ladder[usual], job.part(0.05, 0.1))?;
-    let near = run(nearest, &ladder[usual], job.part(0.1, 0.5))?;
-    let mut others = Vec::new();
-    for (i, params) in ladder.iter().enumerate() {
-        let share = |i: usize| 0.5 + 0.5 * i as f64 / ladder.len() as f64;
-        others.push(run(middle, params, job.part(share(i), share(i + 1)))?);
+        let mut problems = vec![Problem::new(&input, &ladder[usual], job.part(0.0, 0.05))?];
+        let preparing = clock().saturating_sub(start).as_secs_f64();
+        while let Some(last) = problems.last()
+            && problems.iter().filter(|p| is_near(p)).count() < RESOLUTIONS
+            && last.shortest_side() >= 4 * last.patch
+        {
+            problems.push(last.halve(job.part(0.05, 0.05))?);
+        }
+
+        let (near, middle) = (vec![None; ladder.len()], Vec::new());
+        let mut probe = Self { input, ladder, usual, clock, problems, preparing, near, middle, energy: 0.0 };
+        let [nearest, middle, far] = probe.tried();
+        let far = probe.run(far, usual, job.part(0.05, 0.1))?;
+        let near = probe.run(nearest, usual, job.part(0.1, 0.5))?;
+        for i in 0..ladder.len() {
+            let share = |i: usize| 0.5 + 0.5 * i as f64 / ladder.len() as f64;
+            let trial = probe.run(middle, i, job.part(share(i), share(i + 1)))?;
+            probe.middle.push(trial);
+        }
+        probe.energy = continued([far.energy, probe.middle[usual].energy, near.energy], nearest);
+        probe.near[usual] = Some(near);
+        job.report(1.0);
+        Ok(probe)
     }
 
-    // What the usual settings should come to, and the others beside them.
-    let [all, tried] = [0, nearest].map(|at| pixels(&problems[at].guides.target) as f64);
-    let times = all / tried;
-    let energies = [far.energy, others[usual].energy, near.energy];
-    let whole = Trial { seconds: near.seconds * times, energy: continued(energies, nearest) };
-    let of = |value: f64, usual: f64| if usual > 0.0 { value / usual } else { 1.0 };
-    let trial = |other: &Trial| Trial {
-        seconds: preparing + whole.seconds * of(other.seconds, others[usual].seconds),
-        energy: whole.energy * of(other.energy, others[usual].energy),
-    };
-    job.report(1.0);
-    Ok(others.iter().map(trial).collect())
+    /// Which of the resolutions are tried, from the nearest to the one asked for.
+    fn tried(&self) -> [usize; RESOLUTIONS] {
+        let lowest = self.problems.len() - 1;
+        let nearest = self.problems.iter().position(is_near).unwrap_or(lowest);
+        [nearest, nearest + 1, nearest + 2].map(|i| i.min(lowest))
+    }
+
+    fn run(&self, at: usize, settings: usize, job: Job) -> Result<Trial> {
+        let start = (self.clock)();
+        let report = schedule::run(&self.problems[at], &self.input, &self.ladder[settings], &|_| (), job)?.report;
+        let energy = report.levels.last().and_then(|l| l.energy.last()).copied().unwrap_or(0.0);
+        Ok(Trial { seconds: (self.clock)().saturating_sub(start).as_secs_f64(), energy })
+    }
+
+    /// Tries settings at the nearest resolution too, if they have not been.
+    ///
+    /// # Errors
+    /// As those of [`super::run`].
+    pub fn refine(&mut self, settings: usize, job: Job) -> Result<()> {
+        if self.near[settings].is_none() {
+            self.near[settings] = Some(self.run(self.tried()[0], settings, job)?);
+        }
+        Ok(())
+    }
+
+    /// Whether settings have been tried at the nearest resolution.
+    pub fn is_refined(&self, settings: usize) -> bool {
+        self.near[settings].is_some()
+    }
+
+    /// What settings should take and leave at the full resolution.
+    ///
+    /// Work grows with the number of pixels, and with settings that settle slowly by a little more: by the power by which it grew between the two
+    /// resolutions that they were tried at. Energy falls with the size of pixels, since paint and guides differ less between
+    /// neighbours: from one resolution to the next by a power that falls itself, as between those tried. How many times as much one
+    /// setting leaves as another hardly depends on the resolution.
+    pub fn trial(&self, settings: usize) -> Trial {
+        let [all, tried, middle] =
+            [0, self.tried()[0], self.tried()[1]].map(|at| pixels(&self.problems[at].guides.target) as f64);
+        let of = |value: f64, usual: f64| if usual > 0.0 { value / usual } else { 1.0 };
+        // Settings that were tried at the middle resolution only take as many times as much there as the usual ones.
+        let usual = self.near[self.usual].unwrap_or_default();
+        let [here, its_usual] = [settings, self.usual].map(|i| self.middle[i]);
+        let near = self.near[settings].unwrap_or(Trial {
+            seconds: usual.seconds * of(here.seconds, its_usual.seconds),
+            energy: usual.energy * of(here.energy, its_usual.energy),
+        });
+        let more = of(tried, middle).ln();
+        let growth = if more > 0.0 { of(near.seconds, here.seconds).ln() / more - 1.0 } else { 0.0 };
+        let seconds = near.seconds * of(all, tried).powf(1.0 + growth.clamp(0.0, MOST_GROWTH));
+        Trial { seconds: self.preparing + seconds, energy: self.energy * of(near.energy, usual.energy) }
+    }
+}
+
+fn pixels(image: &Image) -> usize {
+    image.width * image.height
+}
+
+fn is_near(problem: &Problem) -> bool {
+    pixels(&problem.style).min(pixels(&problem.guides.target)) <= NEAR
 }
 
 /// The energy so many resolutions above the last of three: from each to the next its logarithm changes as many times as much
