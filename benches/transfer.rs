@@ -1,42 +1,40 @@
-//! The whole transfer, from a photo to a lit picture: how long it takes, and what memory.
+//! The whole transfer, from a photo to a lit picture: how long it takes, what memory, and how its error falls with time.
 //!
-//! What `make demo` makes, but for its files: the photo of an office, and the picture of a room in its light, 640 x 360. Once as it is to
-//! be looked at in the end, and once as a preview: two paths for each pixel, filtered, and the strength to 5 %.
+//! `cargo bench --bench transfer -- demonstration` or `-- curves` makes one of them alone.
 
+#[path = "transfer/curves.rs"]
+mod curves;
 mod harness;
 
+use harness::scenes::{office_photo, transfer_input};
 use harness::{Clock, figure, forget_peak_memory, median, peak_memory, time};
 use luxfer::demo::{self, photo};
 use luxfer::exec::Pool;
 use luxfer::image::Image;
 use luxfer::job::Monitor;
-use luxfer::transfer::{Input, Params, Stage, Transfer};
+use luxfer::transfer::{Params, Stage, Transfer};
 use std::sync::Arc;
 
 const ROUNDS: usize = 5;
 
 fn main() {
-    Pool::new(2).expect("two threads").run(demonstration);
-}
-
-/// The demonstration's office, whole.
-fn photograph([width, height]: [usize; 2], samples: u32) -> Image {
-    let room = demo::exemplar_room().expect("a room");
-    let camera = room.scene.cameras[room.camera].clone();
-    let params = photo::Params { width, height, samples, ..photo::Params::default() };
-    photo::photograph(Arc::new(room.scene), &camera, &params, Monitor::default().job()).expect("a photo").0
+    let asked: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with('-')).collect();
+    let wants = |what: &str| asked.is_empty() || asked.iter().any(|a| a == what);
+    Pool::new(2).expect("two threads").run(|| {
+        if wants("demonstration") {
+            demonstration();
+        }
+        if wants("curves") {
+            curves::draw();
+        }
+    });
 }
 
 /// A transfer from a photo of the office to the demonstration's room.
 fn transfer(photo: Image, params: Params) -> Transfer {
-    let room = demo::exemplar_room().expect("a room");
-    let input = Input {
-        strokes: demo::strokes(&room, photo.width, photo.height).expect("strokes"),
-        photo: Some(Arc::new(photo)),
-        scene: Some(Arc::new(demo::target_room().expect("a room"))),
-        surface: "Ceiling".into(),
-        ..Input::default()
-    };
+    let office = demo::exemplar_room().expect("a room");
+    let strokes = demo::strokes(&office, photo.width, photo.height).expect("strokes");
+    let input = transfer_input(Arc::new(photo), strokes, Arc::new(demo::target_room().expect("a room")));
     Transfer { input, params, ..Transfer::default() }
 }
 
@@ -44,6 +42,8 @@ fn run(transfer: &mut Transfer, from: Stage, to: Stage) {
     transfer.run(from, to, Monitor::default().job(), |_| ()).expect("a transfer");
 }
 
+/// What `make demo` makes, but for its files: the photo of an office, and the picture of a room in its light, 640 x 360. Once as
+/// it is to be looked at in the end, and once as a preview: two paths for each pixel, filtered, and the strength to 5 %.
 fn demonstration() {
     let final_quality = |params: &mut Params| {
         (params.render.width, params.render.height, params.render.samples) = (640, 360, 12);
@@ -57,15 +57,11 @@ fn demonstration() {
     let seconds = |set: &dyn Fn(&mut Params)| {
         let mut params = Params::default();
         set(&mut params);
-        let of_round = |_| {
-            let size = photo::Params::default();
-            let whole = || {
-                let mut transfer = transfer(photograph([size.width, size.height], size.samples), params.clone());
-                run(&mut transfer, Stage::View, Stage::Render);
-            };
-            time(Clock::Wall, whole).0
+        let whole = || {
+            let mut transfer = transfer(office_photo(&photo::Params::default()), params.clone());
+            run(&mut transfer, Stage::View, Stage::Render);
         };
-        median(&(0..ROUNDS).map(of_round).collect::<Vec<_>>())
+        median(&(0..ROUNDS).map(|_| time(Clock::Wall, whole).0).collect::<Vec<_>>())
     };
     figure("transfer.demo.seconds", seconds(&final_quality), "s");
     figure("peak.transfer_demo.mb", peak_memory().unwrap_or(0) as f64 / 1e6, "MB");

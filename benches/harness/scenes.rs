@@ -5,9 +5,14 @@
 
 use glam::{Mat4, Vec2, Vec3};
 use luxfer::demo;
+use luxfer::image::Image;
+use luxfer::job::Monitor;
 use luxfer::scene::{Camera, Material, Mesh, Scene, gltf};
+use luxfer::segment::StrokeSet;
+use luxfer::transfer::Input;
 use serde_json::Value;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// A scene to measure on.
 pub struct Setting {
@@ -100,6 +105,18 @@ pub fn demo_office() -> Result<Setting, Absent> {
 
 /// The Cornell box, 0 to 555 units; 38 triangles. Its lamp is raised to the ceiling: renderers differ in whether it shines
 /// from its back too, and that light came out of the gap.
+/// A photo of the library's own office, whole.
+pub fn office_photo(params: &demo::photo::Params) -> Image {
+    let room = demo::exemplar_room().expect("a room");
+    let camera = room.scene.cameras[room.camera].clone();
+    demo::photo::photograph(Arc::new(room.scene), &camera, params, Monitor::default().job()).expect("a photo").0
+}
+
+/// What a transfer from a photo onto the ceiling of a scene starts from.
+pub fn transfer_input(photo: Arc<Image>, strokes: StrokeSet, scene: Arc<Scene>) -> Input {
+    Input { photo: Some(photo), strokes, scene: Some(scene), surface: "Ceiling".into(), ..Input::default() }
+}
+
 pub fn cornell() -> Result<Setting, Absent> {
     let mut scene = wavefront::load(&data("scenes/cbox/cbox.obj")?)?;
     for mesh in &mut scene.meshes {

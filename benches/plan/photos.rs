@@ -1,6 +1,6 @@
 //! Photos with strokes.
 
-use super::harness::scenes::{Absent, data};
+use super::harness::scenes::{Absent, data, office_photo};
 use luxfer::demo;
 use luxfer::image::io::{self, Encoding};
 use luxfer::image::{Image, pyramid};
@@ -20,10 +20,7 @@ pub struct Photo {
 pub fn office(sizes: &[[usize; 2]]) -> Vec<Photo> {
     let monitor = Monitor::default();
     let room = demo::exemplar_room().expect("a room");
-    let camera = room.scene.cameras[room.camera].clone();
-    let params = demo::photo::Params { width: 900, height: 600, samples: 6, seed: 5 };
-    let scene = Arc::new(room.scene.clone());
-    let (photo, _) = demo::photo::photograph(scene, &camera, &params, monitor.job()).expect("a photo");
+    let photo = office_photo(&demo::photo::Params { width: 900, height: 600, samples: 6, seed: 5 });
     let of = |&[width, height]: &[usize; 2]| Photo {
         name: format!("office {width}"),
         image: Arc::new(pyramid::resize(&photo, width, height, monitor.job()).expect("a photo")),

@@ -9,7 +9,7 @@ use luxfer::image::Image;
 use luxfer::job::Monitor;
 use luxfer::plan::{self, Goal};
 use luxfer::scene::Scene;
-use luxfer::transfer::{Input, Params, Results, Stage, Transfer};
+use luxfer::transfer::{Params, Results, Stage, Transfer};
 use std::sync::Arc;
 
 /// Half-widths of intervals over standard errors.
@@ -83,13 +83,7 @@ fn outcome(
     table: &mut Table,
 ) -> Result<(), String> {
     let monitor = Monitor::default();
-    let input = Input {
-        photo: Some(photo.image.clone()),
-        strokes: photo.strokes.clone(),
-        scene: Some(scene.clone()),
-        surface: "Ceiling".into(),
-        ..Input::default()
-    };
+    let input = scenes::transfer_input(photo.image.clone(), photo.strokes.clone(), scene.clone());
     let mut transfer = Transfer { input, params: Params::default(), ..Transfer::default() };
     (transfer.params.render.width, transfer.params.render.height) = (width, width * 9 / 16);
     transfer.run(Stage::View, Stage::Emission, monitor.job(), |_| ()).map_err(|e| e.to_string())?;

@@ -1,0 +1,139 @@
+//! How the error of a whole transfer falls with its time.
+//!
+//! The error is the picture's, root mean square relative to its mean, against a transfer with a hundred times as many paths as the
+//! defaults, a finer texture and a strength ten times as exact. Each curve varies one thing and leaves the others at
+//! their defaults, so where it levels off what is left is of the others; the last is of what a plan chooses for a time, with the time
+//! that planning takes. Times are of the whole transfer, also where stages were not run again since nothing changed for them.
+//!
+//! Beside the picture: its mean light, which tells the error of the solution from lamps that lie elsewhere, as they do if a smaller
+//! photo shows them less well.
+
+use super::harness::plot::Plot;
+use super::harness::scenes::office_photo;
+use super::harness::{Clock, Table, median, time};
+use super::{run, transfer};
+use luxfer::demo::photo;
+use luxfer::image::{Image, pyramid};
+use luxfer::job::Monitor;
+use luxfer::plan::{self, Goal};
+use luxfer::transfer::{Params, Stage, Transfer};
+use std::fmt::Display;
+
+const PHOTO: [usize; 2] = [900, 600];
+const PICTURE: [usize; 2] = [160, 90];
+const ROUNDS: u64 = 3;
+
+pub fn draw() {
+    let photo =
+        office_photo(&photo::Params { width: PHOTO[0], height: PHOTO[1], samples: 16, ..photo::Params::default() });
+    let (seconds, truth) = time(Clock::Wall, || {
+        let mut fine = defaults();
+        fine.max_texels *= 2;
+        fine.relight.target_error *= 0.1;
+        fine.render.samples *= 100;
+        (fine.relight.seed, fine.render.seed) = (1001, 1002);
+        let mut transfer = transfer(photo.clone(), fine);
+        run(&mut transfer, Stage::View, Stage::Render);
+        picture(&transfer)
+    });
+    println!("# the reference took {seconds:.1} s");
+
+    // The stages before the light, once for all curves that leave them as they are.
+    let mut lit = transfer(photo.clone(), defaults());
+    let (before, ()) = time(Clock::Wall, || run(&mut lit, Stage::View, Stage::Emission));
+
+    let mut study = Study {
+        truth,
+        table: Table::new(["what varies", "at", "seconds", "error %", "mean light off %"]),
+        plot: Plot::new("A whole transfer, 160 x 90", "seconds", "error of the picture"),
+    };
+    let whole = |photo: &Image, params: Params, seed: u64| {
+        let mut transfer = transfer(photo.clone(), seeded(params, seed));
+        let (seconds, ()) = time(Clock::Wall, || run(&mut transfer, Stage::View, Stage::Render));
+        (seconds, picture(&transfer))
+    };
+    study.vary("width of the photo, px", &[150, 225, 300, 450, 600, 900], |&width, seed| {
+        let height = width * PHOTO[1] / PHOTO[0];
+        let reduced = pyramid::resize(&photo, width, height, Monitor::default().job()).expect("a photo");
+        whole(&reduced, defaults(), seed)
+    });
+    study.vary("texels", &[64, 128, 256, 512, 1024, 2048], |&texels, seed| {
+        whole(&photo, Params { max_texels: texels, ..defaults() }, seed)
+    });
+    let light = |set: &dyn Fn(&mut Params), seed: u64| {
+        let mut transfer = lit.clone();
+        transfer.params = seeded(defaults(), seed);
+        set(&mut transfer.params);
+        let (seconds, ()) = time(Clock::Wall, || run(&mut transfer, Stage::Relight, Stage::Render));
+        (before + seconds, picture(&transfer))
+    };
+    study.vary("error of the strength, %", &[20.0, 5.0, 2.0, 1.0, 0.3], |&error, seed| {
+        light(&|params| params.relight.target_error = 0.01 * error, seed)
+    });
+    study.vary("paths of a pixel", &[1, 4, 16, 64, 256], |&samples, seed| {
+        light(&|params| params.render.samples = samples, seed)
+    });
+    study.vary("a plan for the light, s", &[0.25, 0.5, 1.0, 2.0, 4.0], |&budget, seed| {
+        let mut transfer = lit.clone();
+        transfer.params = seeded(defaults(), seed);
+        let (seconds, ()) = time(Clock::Wall, || {
+            let plan = plan::lighting(&transfer, Goal::Seconds(budget), &plan::wall(), Monitor::default().job());
+            let plan = plan.expect("a plan");
+            (transfer.params.relight, transfer.params.render) = (plan.relight, plan.render);
+            run(&mut transfer, Stage::Relight, Stage::Render);
+        });
+        (before + seconds, picture(&transfer))
+    });
+    study.table.print("a whole transfer against one of a hundred times as many paths, 2 threads");
+    study.plot.write("transfer").expect("out/bench can be written to");
+}
+
+/// The library's defaults, for a small picture.
+fn defaults() -> Params {
+    let mut params = Params::default();
+    (params.render.width, params.render.height) = (PICTURE[0], PICTURE[1]);
+    params
+}
+
+fn seeded(mut params: Params, seed: u64) -> Params {
+    (params.relight.seed, params.render.seed) = (11 + seed, 21 + seed);
+    params
+}
+
+struct Study {
+    truth: Image,
+    table: Table,
+    plot: Plot,
+}
+
+impl Study {
+    /// A curve over some values, each the median of seconds and pictures by different seeds.
+    fn vary<T: Display>(&mut self, name: &str, values: &[T], make: impl Fn(&T, u64) -> (f64, Image)) {
+        let points = values.iter().map(|value| {
+            let runs: Vec<_> = (0..ROUNDS).map(|seed| make(value, seed)).collect();
+            let of = |f: &dyn Fn(&(f64, Image)) -> f64| median(&runs.iter().map(f).collect::<Vec<_>>());
+            let seconds = of(&|r| r.0);
+            let error = of(&|r| error(&r.1, &self.truth));
+            let light = of(&|r| (mean(&r.1) / mean(&self.truth) - 1.0).abs());
+            let cells = [format!("{seconds:.3}"), format!("{:.2}", 100.0 * error), format!("{:.2}", 100.0 * light)];
+            self.table.row([name.to_string(), value.to_string()].into_iter().chain(cells));
+            [seconds, error]
+        });
+        let points: Vec<_> = points.collect();
+        self.plot.add(name, points);
+    }
+}
+
+fn picture(transfer: &Transfer) -> Image {
+    transfer.results.film.as_ref().expect("a film").beauty.clone()
+}
+
+fn mean(image: &Image) -> f64 {
+    image.data.iter().map(|&v| f64::from(v)).sum::<f64>() / image.data.len() as f64
+}
+
+/// Root mean square of the difference, relative to the mean of the truth.
+fn error(found: &Image, truth: &Image) -> f64 {
+    let squares = found.data.iter().zip(&truth.data).map(|(a, b)| f64::from(a - b).powi(2)).sum::<f64>();
+    (squares / truth.data.len() as f64).sqrt() / mean(truth)
+}
