@@ -2,8 +2,8 @@
 
 On a page `{{ settings luxfer_x_params }}` and `{{ fields luxfer_x_report }}` are the fields of a struct with their comments,
 `{{ limits stage }}` is what the source of a stage says it leaves out, `{{ figure name }}` is a figure of `make bench`,
-`{{ figures prefix ... }}` a table of them, `{{ plot name }}` a plot that it has drawn, and `{{ front name }}` the settings of a plot of error
-against time that no other beats in both. `{{ screenshot name what it shows }}` is a picture by docs/screenshots.py. Names of the C interface
+`{{ figures prefix ... }}` a table of them, `{{ plot name }}` a plot that it has drawn, `{{ table name bench }}` a table, and `{{ front name }}` the settings of a plot of error
+against time that no other beats in both. `{{ test name }}` is the name of a test, which there must be. `{{ screenshot name what it shows }}` is a picture by docs/screenshots.py. Names of the C interface
 in code spans become links; one that does not exist is an error.
 """
 
@@ -33,6 +33,9 @@ OPTIONS = re.findall(
     r"\bLUXFER_\w+",
     "".join((ROOT / f).read_text() for f in ("CMakeLists.txt", "bindings/cpp/luxfer/result.hpp", "bindings/python/luxfer/_library.py")),
 )
+
+#: What tests are looked up in.
+SOURCES = [file.read_text() for folder in ("src", "tests") for file in sorted((ROOT / folder).rglob("*.rs"))]
 
 header = reference.Header()
 python = reference.python_pages()
@@ -102,6 +105,12 @@ def value(kind: str, words: list[str], path: str, files) -> str:
         if files.get_file_from_path(f"screenshots/{name}.png") is None:
             return "*(`make docs` takes the picture that belongs here, where there are Blender and Xvfb.)*"
         return f"![{' '.join(caption)}]({reference.relative(f'screenshots/{name}.png', path)})"
+    if kind == "test":
+        if not any(f"fn {words[0]}(" in source for source in SOURCES):
+            raise PluginError(f"{path}: there is no test {words[0]}")
+        return f"`{words[0]}`"
+    if kind == "table":
+        return table(*words)
     if kind == "plot":
         name, bench = words
         if files.get_file_from_path(f"plots/{name}.svg") is None:
@@ -129,6 +138,15 @@ def front(name: str, path: str) -> str:
                 best = y
                 table += f"| {x:.3g} | {y:.3g} | {series} |\n"
     return table
+
+
+def table(name: str, bench: str) -> str:
+    """A table that a bench has written."""
+    if not (BENCH / f"{name}.csv").exists():
+        return f"*(`make bench ONLY={bench}` prints the table that belongs here.)*"
+    with open(BENCH / f"{name}.csv", newline="") as file:
+        head, *rows = csv.reader(file)
+    return "".join(f"| {' | '.join(row)} |\n" for row in (head, ["---"] * len(head), *rows))
 
 
 def limits(stage: str, path: str) -> str:

@@ -131,3 +131,20 @@ fn what_is_no_sheet_is_an_error_that_says_so() {
         assert_eq!(print(&picture(), &bad, job.job()).unwrap_err().kind, ErrorKind::InvalidArgument, "{bad:?}");
     }
 }
+
+/// Paper that arches by four pixels of the sheet from its middle to its sides.
+#[test]
+fn a_curled_sheet_shows_in_the_residual() {
+    let params = params();
+    let sheet = print(&picture(), &params, Monitor::default().job()).unwrap();
+    let (width, height) = (sheet.width, sheet.height);
+    let curled = Image::from_fn(width, height, |x, y| {
+        let from_middle = 2.0 * (x as f64 + 0.5) / width as f64 - 1.0;
+        let row = (y as f64 + 4.0 * from_middle * from_middle).clamp(0.0, height as f64 - 1.0);
+        let (above, below) = (row as usize, (row as usize + 1).min(height - 1));
+        sheet.rgb(x, above).lerp(sheet.rgb(x, below), row.fract() as f32).to_array()
+    })
+    .unwrap();
+    let [flat, curled] = [&sheet, &curled].map(|s| align(s, 160, 120, &params, Monitor::default().job()).unwrap());
+    assert!(curled.residual > 10.0 * flat.residual && curled.residual > 0.5, "{} {}", flat.residual, curled.residual);
+}

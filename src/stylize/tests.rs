@@ -131,6 +131,27 @@ fn a_highlight_larger_than_the_exemplars_is_filled_with_highlight() {
     assert!(wrong(Mode::Uniform) > 600, "{}", wrong(Mode::Uniform));
 }
 
+/// Light that the exemplar does not have is painted with something else, and the map of guide errors shows where.
+#[test]
+fn light_that_the_exemplar_lacks_shows_in_the_guide_error() {
+    let a = scene(72, 60, 36.0, 30.0, 20.0);
+    let new_light = |x: usize, y: usize| (44..60).contains(&x) && (8..24).contains(&y);
+    let b = Image::from_fn(72, 60, |x, y| {
+        let known = a.pixel(x, y);
+        if new_light(x, y) { [0.1, 1.0, 0.0] } else { [known[0], known[1], known[2]] }
+    })
+    .unwrap();
+    let art = artwork(&a);
+    let error = stylise(&input(&art, &[guide(&a, &b)]), &Params::default()).unwrap().report.guide_error;
+    let mean = |is_new: bool| {
+        let near = |i: usize| (40..64).contains(&(i % 72)) && (4..28).contains(&(i / 72));
+        let of = (0..72 * 60).filter(|&i| if is_new { new_light(i % 72, i / 72) } else { !near(i) });
+        let values: Vec<f32> = of.map(|i| error.data[i]).collect();
+        values.iter().sum::<f32>() / values.len() as f32
+    };
+    assert!(mean(true) > 20.0 * mean(false) && mean(true) > 0.05, "{} {}", mean(true), mean(false));
+}
+
 #[test]
 fn energy_per_iteration_falls_for_nearest_patches() {
     let (a, b) = (scene(80, 64, 40.0, 30.0, 22.0), scene(80, 64, 30.0, 34.0, 18.0));

@@ -63,3 +63,23 @@ fn a_period_longer_than_the_exemplar_is_its_extent() {
     assert!(result.luminaires.iter().all(|l| l.area == 600.0));
     assert!(repeats(&exemplar, &result));
 }
+
+/// Rows that fan out, as on a plane that bends away, lie on no lattice: what was found to be regular tells the two apart.
+#[test]
+fn a_pattern_that_bends_is_no_lattice() {
+    let straight = Design::new(420, 320, |x, y| x.rem_euclid(30.0) < 10.0 && y.rem_euclid(30.0) < 10.0);
+    let bent = Design::new(420, 320, |x, y| {
+        let turned = DVec2::from_angle(0.0035 * x).rotate(DVec2::new(0.0, y));
+        (x + turned.x).rem_euclid(30.0) < 10.0 && turned.y.rem_euclid(30.0) < 10.0
+    });
+    let [straight, bent] =
+        [straight, bent].map(|d| d.run(&Params { width: 500, height: 400, ..Params::default() }).unwrap());
+    println!("{} {}, {} {}", straight.regularity, straight.error, bent.regularity, bent.error);
+    assert!(
+        straight.regularity > 0.8 && bent.regularity < 0.7 * straight.regularity,
+        "{} {}",
+        straight.regularity,
+        bent.regularity
+    );
+    assert!(bent.error > 2.0 * straight.error, "{} {}", straight.error, bent.error);
+}
