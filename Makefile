@@ -22,7 +22,7 @@ BENCHES  := $(patsubst benches/%.rs,%,$(wildcard benches/*.rs))
 ONLY     ?= $(BENCHES)
 GUIDE    := $(filter-out lighting_transfer stylize,$(patsubst examples_c/%.c,%,$(wildcard examples_c/*.c)))
 
-TRADE    := segment vp warp emission relight render error_control stylit
+TRADE    := segment vp warp emission relight render error_control stylit transfer
 
 .PHONY: all lib demo test bench trade blender docs peers setup clean
 

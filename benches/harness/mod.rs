@@ -113,6 +113,16 @@ impl Table {
         self.rows.push(cells.into_iter().map(|s| s.to_string()).collect());
     }
 
+    /// Writes `out/bench/<name>.csv`.
+    pub fn write(&self, name: &str) -> std::io::Result<()> {
+        let folder = std::path::PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("out/bench");
+        std::fs::create_dir_all(&folder)?;
+        let quoted =
+            |row: &Vec<String>| row.iter().map(|cell| format!("\"{}\"", cell.replace('"', "\"\""))).collect::<Vec<_>>();
+        let lines: Vec<String> = self.rows.iter().map(|row| quoted(row).join(",") + "\n").collect();
+        std::fs::write(folder.join(name).with_extension("csv"), lines.concat())
+    }
+
     pub fn print(&self, title: &str) {
         let columns = self.rows.iter().map(Vec::len).max().unwrap_or(0);
         let len = |column: usize| self.rows.iter().filter_map(|r| r.get(column)).map(|c| c.chars().count()).max();

@@ -29,7 +29,7 @@ mod vote;
 pub use domain::Domain;
 pub use features::{Features, Quantiser};
 pub use field::{Field, NONE, pack, unpack};
-pub use kernel::Kernel;
+pub use kernel::{Kernel, Patch};
 pub use pyramid::{halve, halve_mask, level_count, level_size};
 pub use search::{Search, Sweep};
 pub use table::{Means, Table};

@@ -1,0 +1,95 @@
+//! Rays against triangles: a bumpy sheet, at the origin and far from it, as the scene's own coordinates have it.
+
+use super::real::{Real, cross, dot, minus};
+use super::{Study, Way};
+use luxfer::rng::Rng;
+use std::hint::black_box;
+
+const SIDE: usize = 24;
+const RAYS: usize = 512;
+
+/// Corners of the triangles, and origins and directions of the rays.
+struct Setting {
+    triangles: Vec<[[f64; 3]; 3]>,
+    rays: Vec<[[f64; 3]; 2]>,
+}
+
+/// Distances along the rays (Möller and Trumbore 1997); infinite where nothing is hit.
+fn distances<R: Real>(triangles: &[[[R; 3]; 3]], rays: &[[[R; 3]; 2]]) -> Vec<R> {
+    let nearest = |&[origin, direction]: &[[R; 3]; 2]| {
+        let mut nearest = R::of(f64::INFINITY);
+        for &[a, b, c] in triangles {
+            let (e, f) = (minus(b, a), minus(c, a));
+            let p = cross(direction, f);
+            let inverse = R::of(1.0) / dot(e, p);
+            let s = minus(origin, a);
+            let u = dot(s, p) * inverse;
+            let q = cross(s, e);
+            let v = dot(direction, q) * inverse;
+            let t = dot(f, q) * inverse;
+            if u >= R::ZERO && v >= R::ZERO && u + v <= R::of(1.0) && t > R::ZERO && t < nearest {
+                nearest = t;
+            }
+        }
+        nearest
+    };
+    rays.iter().map(nearest).collect()
+}
+
+fn setting(offset: f64) -> Setting {
+    // What a file in f32 can say.
+    let place = |x: usize, y: usize| {
+        let height = 0.3 * (0.7 * x as f64).sin() * (0.9 * y as f64).cos();
+        [x as f64 * 0.25, y as f64 * 0.25, height].map(|v| f64::from((v + offset) as f32))
+    };
+    let cells = (0..SIDE * SIDE).map(|i| (i % SIDE, i / SIDE));
+    let triangles = cells.flat_map(|(x, y)| {
+        let [a, b, c, d] = [place(x, y), place(x + 1, y), place(x + 1, y + 1), place(x, y + 1)];
+        [[a, b, c], [a, c, d]]
+    });
+    let mut rng = Rng::new(2, &[]);
+    let mut within = |low: f64, high: f64| low + (high - low) * rng.next_f64();
+    let extent = SIDE as f64 * 0.25;
+    let rays = (0..RAYS).map(|_| {
+        let origin = [within(0.0, extent), within(0.0, extent), 3.0].map(|v| f64::from((v + offset) as f32));
+        let [x, y] = [within(-0.4, 0.4), within(-0.4, 0.4)];
+        let length = (x * x + y * y + 1.0).sqrt();
+        [origin, [x, y, -1.0].map(|v| f64::from((v / length) as f32))]
+    });
+    Setting { triangles: triangles.collect(), rays: rays.collect() }
+}
+
+pub fn measure(study: &mut Study) {
+    for (name, offset) in [("at the origin", 0.0), ("1 km off", 1000.0)] {
+        let Setting { triangles, rays } = setting(offset);
+        let few = |v: [f64; 3]| v.map(|c| c as f32);
+        let (narrow_triangles, narrow_rays): (Vec<_>, Vec<_>) =
+            (triangles.iter().map(|t| t.map(few)).collect(), rays.iter().map(|r| r.map(few)).collect());
+        let (found, truth) = (distances(&narrow_triangles, &narrow_rays), distances(&triangles, &rays));
+        let both = found.iter().zip(&truth).filter(|(f, t)| f.is_finite() && t.is_finite());
+        let error = both.map(|(&f, t)| (f64::from(f) - t).abs()).fold(0.0, f64::max);
+        study.add(
+            &format!("rendering: rays in a room {name}"),
+            "metres along the ray, of those that hit in both",
+            0,
+            &mut [
+                Way {
+                    name: "f32",
+                    bytes: 36,
+                    error,
+                    work: &mut || {
+                        black_box(distances(&narrow_triangles, &narrow_rays));
+                    },
+                },
+                Way {
+                    name: "f64",
+                    bytes: 72,
+                    error: 0.0,
+                    work: &mut || {
+                        black_box(distances(&triangles, &rays));
+                    },
+                },
+            ],
+        );
+    }
+}
