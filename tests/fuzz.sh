@@ -28,9 +28,10 @@ cd "$build/work"
 failed=
 for target in $targets; do
   # Objects are limited to 64 MiB (fuzz/src/lib.rs). A single allocation may be twice that, all of them together four times: the
-  # library's, and what the sanitizer adds. A network may take 1 GiB for its values (src/network/run.rs), and as much for a node.
+  # library's, and what the sanitizer adds. A network may take 1 GiB for its values (src/network/run.rs), and as much for a node,
+  # which it takes seconds to fill.
   rss=768 single=128 time=10
-  [ "$target" != onnx ] || { rss=3072; single=1024; }
+  [ "$target" != onnx ] || { rss=3072; single=1024; time=30; }
   limits=
   # A hundred calls, which may ask for pictures of any size: such allocations fail, as on a machine without memory.
   [ "$target" != calls ] || { time=60; limits=":allocator_may_return_null=1:max_allocation_size_mb=$single"; }
