@@ -1,6 +1,6 @@
 //! Logistic regression with quadratic terms, by Newton's method, on two classes that nearly part.
 
-use super::real::{Real, dot};
+use super::real::Real;
 use super::{Study, Way};
 use luxfer::rng::Rng;
 use std::hint::black_box;
@@ -16,7 +16,7 @@ type Row<R> = [R; TERMS];
 /// Probabilities of the samples by the weights that Newton's method comes to.
 fn fit<R: Real>(rows: &[Row<R>], positive: &[bool]) -> Vec<R> {
     let one = R::of(1.0);
-    let probability = |w: &Row<R>, row: &Row<R>| one / (one + (-dot(*w, *row)).exp());
+    let probability = |w: &Row<R>, row: &Row<R>| one / (one + (-dot(w, row)).exp());
     let scale = R::of(1.0 / rows.len() as f64);
     let mut w = [R::ZERO; TERMS];
     for _ in 0..STEPS {
@@ -37,6 +37,10 @@ fn fit<R: Real>(rows: &[Row<R>], positive: &[bool]) -> Vec<R> {
         (0..TERMS).for_each(|i| w[i] -= step[i]);
     }
     rows.iter().map(|row| probability(&w, row)).collect()
+}
+
+fn dot<R: Real>(a: &Row<R>, b: &Row<R>) -> R {
+    a.iter().zip(b).map(|(&a, &b)| a * b).sum()
 }
 
 /// By Cholesky's decomposition; nothing where rounding has made the matrix indefinite.

@@ -8,30 +8,48 @@ use std::hint::black_box;
 const SIDE: usize = 24;
 const RAYS: usize = 512;
 
+/// Triangles that are met side by side, as the library's nodes and leaves are.
+const LANES: usize = 8;
+
 /// Corners of the triangles, and origins and directions of the rays.
 struct Setting {
     triangles: Vec<[[f64; 3]; 3]>,
     rays: Vec<[[f64; 3]; 2]>,
 }
 
+/// Corner, coordinate, triangle.
+type Block<R> = [[[R; LANES]; 3]; 3];
+
+fn blocks<R: Real>(triangles: &[[[f64; 3]; 3]]) -> Vec<Block<R>> {
+    let block = |few: &[[[f64; 3]; 3]]| -> Block<R> {
+        let value = |corner: usize, axis: usize, lane: usize| R::of(few[lane % few.len()][corner][axis]);
+        std::array::from_fn(|corner| std::array::from_fn(|axis| std::array::from_fn(|lane| value(corner, axis, lane))))
+    };
+    triangles.chunks(LANES).map(block).collect()
+}
+
 /// Distances along the rays (Möller and Trumbore 1997); infinite where nothing is hit.
-fn distances<R: Real>(triangles: &[[[R; 3]; 3]], rays: &[[[R; 3]; 2]]) -> Vec<R> {
+fn distances<R: Real>(blocks: &[Block<R>], rays: &[[[R; 3]; 2]]) -> Vec<R> {
+    let (zero, one, infinite) = (R::ZERO, R::of(1.0), R::of(f64::INFINITY));
     let nearest = |&[origin, direction]: &[[R; 3]; 2]| {
-        let mut nearest = R::of(f64::INFINITY);
-        for &[a, b, c] in triangles {
-            let (e, f) = (minus(b, a), minus(c, a));
-            let p = cross(direction, f);
-            let inverse = R::of(1.0) / dot(e, p);
-            let s = minus(origin, a);
-            let u = dot(s, p) * inverse;
-            let q = cross(s, e);
-            let v = dot(direction, q) * inverse;
-            let t = dot(f, q) * inverse;
-            if u >= R::ZERO && v >= R::ZERO && u + v <= R::of(1.0) && t > R::ZERO && t < nearest {
-                nearest = t;
+        let mut nearest = [infinite; LANES];
+        for [a, b, c] in blocks {
+            for lane in 0..LANES {
+                let corner = |p: &[[R; LANES]; 3]| [p[0][lane], p[1][lane], p[2][lane]];
+                let (a, b, c) = (corner(a), corner(b), corner(c));
+                let (e, f) = (minus(b, a), minus(c, a));
+                let p = cross(direction, f);
+                let inverse = one / dot(e, p);
+                let s = minus(origin, a);
+                let u = dot(s, p) * inverse;
+                let q = cross(s, e);
+                let v = dot(direction, q) * inverse;
+                let t = dot(f, q) * inverse;
+                let is_hit = (u >= zero) & (v >= zero) & (u + v <= one) & (t > zero) & (t < nearest[lane]);
+                nearest[lane] = if is_hit { t } else { nearest[lane] };
             }
         }
-        nearest
+        nearest.into_iter().fold(infinite, |a, b| if b < a { b } else { a })
     };
     rays.iter().map(nearest).collect()
 }
@@ -62,10 +80,9 @@ fn setting(offset: f64) -> Setting {
 pub fn measure(study: &mut Study) {
     for (name, offset) in [("at the origin", 0.0), ("1 km off", 1000.0)] {
         let Setting { triangles, rays } = setting(offset);
-        let few = |v: [f64; 3]| v.map(|c| c as f32);
-        let (narrow_triangles, narrow_rays): (Vec<_>, Vec<_>) =
-            (triangles.iter().map(|t| t.map(few)).collect(), rays.iter().map(|r| r.map(few)).collect());
-        let (found, truth) = (distances(&narrow_triangles, &narrow_rays), distances(&triangles, &rays));
+        let (narrow, wide) = (blocks::<f32>(&triangles), blocks::<f64>(&triangles));
+        let narrow_rays: Vec<_> = rays.iter().map(|ray| ray.map(|v| v.map(|c| c as f32))).collect();
+        let (found, truth) = (distances(&narrow, &narrow_rays), distances(&wide, &rays));
         let both = found.iter().zip(&truth).filter(|(f, t)| f.is_finite() && t.is_finite());
         let error = both.map(|(&f, t)| (f64::from(f) - t).abs()).fold(0.0, f64::max);
         study.add(
@@ -78,7 +95,7 @@ pub fn measure(study: &mut Study) {
                     bytes: 36,
                     error,
                     work: &mut || {
-                        black_box(distances(&narrow_triangles, &narrow_rays));
+                        black_box(distances(&narrow, &narrow_rays));
                     },
                 },
                 Way {
@@ -86,7 +103,7 @@ pub fn measure(study: &mut Study) {
                     bytes: 72,
                     error: 0.0,
                     work: &mut || {
-                        black_box(distances(&triangles, &rays));
+                        black_box(distances(&wide, &rays));
                     },
                 },
             ],

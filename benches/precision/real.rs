@@ -45,14 +45,14 @@ macro_rules! real {
 real!(f32);
 real!(f64);
 
-pub fn dot<R: Real, const N: usize>(a: [R; N], b: [R; N]) -> R {
-    a.into_iter().zip(b).map(|(x, y)| x * y).sum()
+pub fn dot<R: Real>(a: [R; 3], b: [R; 3]) -> R {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 pub fn cross<R: Real>(a: [R; 3], b: [R; 3]) -> [R; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-pub fn minus<R: Real, const N: usize>(a: [R; N], b: [R; N]) -> [R; N] {
-    std::array::from_fn(|i| a[i] - b[i])
+pub fn minus<R: Real>(a: [R; 3], b: [R; 3]) -> [R; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }

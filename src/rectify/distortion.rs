@@ -153,33 +153,35 @@ fn parabola(points: &[DVec2]) -> Option<(f64, f64)> {
     (noise < RAGGED * RAGGED && variance > 0.0 && variance.is_finite()).then_some((bend, variance))
 }
 
-/// The k that most lines agree on: an M-estimate from their weighted median, with the error that their disagreement tells.
+/// Rounds of the M-estimate: what agrees with what has been found finds it anew.
+const ROUNDS: usize = 20;
+
+/// The k that most lines agree on: an M-estimate from their weighted median.
 fn combine(said: &[Said]) -> Option<Distortion> {
     if said.len() < FEWEST {
         return None;
     }
-    let mut corner = weighted_median(said.iter().map(|s| (s.corner, s.weight.sqrt())).collect());
-    let spread = |corner: f64| {
-        let off = said.iter().map(|s| ((s.corner - corner).abs() * s.weight.sqrt(), 1.0)).collect();
-        (1.4826 * weighted_median(off)).max(1.0)
-    };
-    let mut result = None;
-    for _ in 0..20 {
-        let limit = LIMIT * spread(corner);
-        let (mut weights, mut sum, mut squares, mut lines) = (0.0, 0.0, 0.0, 0);
-        for s in said {
-            let off = s.given(corner) - corner;
-            let residual = off * s.weight.sqrt() / limit;
-            let agreement = (1.0 - residual * residual).max(0.0).powi(2);
-            weights += agreement * s.weight;
-            sum += agreement * s.weight * s.given(corner);
-            squares += (agreement * s.weight * off).powi(2).max(agreement.powi(2) * s.weight);
-            lines += usize::from(agreement > 0.0);
-        }
-        corner = sum / weights;
-        result = Some(Distortion { corner, error: ((TWINS * squares).sqrt() / weights).hypot(MODEL), lines });
+    let median = weighted_median(said.iter().map(|s| (s.corner, s.weight.sqrt())).collect());
+    let start = Distortion { corner: median, error: f64::INFINITY, lines: 0 };
+    let found = (0..ROUNDS).fold(start, |found, _| agreed(said, found.corner));
+    (found.lines >= FEWEST && found.corner.is_finite() && found.error.is_finite()).then_some(found)
+}
+
+/// The mean of the lines that agree with a k about as well as most do, with the error that their disagreement tells.
+fn agreed(said: &[Said], corner: f64) -> Distortion {
+    let off = said.iter().map(|s| ((s.corner - corner).abs() * s.weight.sqrt(), 1.0)).collect();
+    let limit = LIMIT * (1.4826 * weighted_median(off)).max(1.0);
+    let (mut weights, mut sum, mut squares, mut lines) = (0.0, 0.0, 0.0, 0);
+    for s in said {
+        let off = s.given(corner) - corner;
+        let residual = off * s.weight.sqrt() / limit;
+        let agreement = (1.0 - residual * residual).max(0.0).powi(2);
+        weights += agreement * s.weight;
+        sum += agreement * s.weight * s.given(corner);
+        squares += (agreement * s.weight * off).powi(2).max(agreement.powi(2) * s.weight);
+        lines += usize::from(agreement > 0.0);
     }
-    result.filter(|r| r.lines >= FEWEST && r.corner.is_finite() && r.error.is_finite())
+    Distortion { corner: sum / weights, error: ((TWINS * squares).sqrt() / weights).hypot(MODEL), lines }
 }
 
 fn weighted_median(mut values: Vec<(f64, f64)>) -> f64 {
