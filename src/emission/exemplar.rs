@@ -120,6 +120,16 @@ impl Exemplar {
         Statistics::of(&Pattern { width: *width, height: *height, components, whole, periods, colour })
     }
 
+    /// How much of an unwarped pixel is light, as far as `light`, the confidence, tells: of components, and of what fades beside
+    /// them. Nothing beyond the last pixel is.
+    pub fn coverage(&self, light: &Image, pixel: usize) -> f32 {
+        let is_light = self.components.labels.get(pixel).is_some_and(|label| *label != 0);
+        match self.shown.get(pixel) {
+            Some(true) if is_light || light.data[pixel] < LIT => light.data[pixel].clamp(0.0, 1.0),
+            _ => 0.0,
+        }
+    }
+
     /// The lamps that are whole.
     pub fn lamps(&self) -> impl Iterator<Item = &Component> {
         self.components.list.iter().zip(&self.whole).filter(|(_, whole)| **whole).map(|(c, _)| c)

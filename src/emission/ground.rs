@@ -1,7 +1,6 @@
 //! Where a texture may show light: surfaces are seldom whole rectangles, and ducts and sprinklers are in the way of lamps.
 
-use super::Emission;
-use super::luminaires;
+use super::{Emission, Luminaire, luminaires};
 use crate::error::{Error, Result};
 use crate::job::Job;
 
@@ -41,7 +40,21 @@ impl Emission {
                 found.list.len()
             )));
         }
-        self.luminaires = luminaires::find(&self.texture, &left, job)?;
+        // Lamps that stay whole are what they were; of the others the mask tells what is left, to the texel.
+        let mask = &self.mask;
+        let mut lamps = luminaires::find(&self.texture, &left, &|i| mask.data[i], job)?;
+        for (label, (lamp, component)) in (1..).zip(lamps.iter_mut().zip(&left.list)) {
+            let row = component.min[1] * mask.width;
+            let first = (row + component.min[0]..=row + component.max[0]).find(|&i| left.labels[i] == label);
+            let before = first.map_or(0, |i| found.labels[i] as usize - 1);
+            let was = self.luminaires.get(before).filter(|_| found.list[before] == *component);
+            if let Some(was) = was {
+                let Luminaire { colour, flux_share, .. } = *lamp;
+                *lamp = Luminaire { colour, flux_share, ..was.clone() };
+            }
+        }
+        luminaires::tell_kinds(&mut lamps, &self.texture);
+        self.luminaires = lamps;
         Ok(())
     }
 }

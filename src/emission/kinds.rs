@@ -111,7 +111,8 @@ mod tests {
         let on = |x: usize, y: usize| f32::from(is_lit(DVec2::new(x as f64, y as f64) + 0.5));
         let mask = Image::from_fn(width, height, |x, y| [on(x, y)]).unwrap();
         let texture = Image::from_fn(width, height, |x, y| [on(x, y); 3]).unwrap();
-        luminaires::find(&texture, &luminaires::components(&mask).unwrap(), Monitor::default().job()).unwrap()
+        let found = luminaires::components(&mask).unwrap();
+        luminaires::find(&texture, &found, &|i| mask.data[i], Monitor::default().job()).unwrap()
     }
 
     #[test]

@@ -37,7 +37,9 @@ impl LampList {
         let mut list = Self { shapes: Vec::new(), shown: Vec::new(), others: Vec::new(), flux: 0.0 };
         for (layer, (input, _)) in plan.layers.iter().zip(exemplars(input, 1.0, styles)) {
             let colours = recover::mean_colours(layer, input, job)?;
-            let mut shapes = luminaires::find(&input.unwarped.to_rgb()?, &layer.exemplar.components, job)?;
+            let Layer { exemplar, .. } = layer;
+            let coverage = |pixel: usize| exemplar.coverage(input.light, pixel);
+            let mut shapes = luminaires::find(&input.unwarped.to_rgb()?, &exemplar.components, &coverage, job)?;
             shapes.iter_mut().zip(colours).for_each(|(shape, colour)| shape.colour = colour);
             list.shapes.push(shapes);
         }

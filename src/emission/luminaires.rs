@@ -1,6 +1,7 @@
 //! The lamps of the texture as a list: what lighting software wants besides pixels.
 
 use super::components::{self, Component, Components};
+use super::outline::Ring;
 use super::{Luminaire, kinds};
 use crate::error::Result;
 use crate::image::Image;
@@ -8,8 +9,8 @@ use crate::image::colour::luminance;
 use crate::job::Job;
 use glam::{DVec2, DVec3, Vec3};
 
-/// Largest distance in texels between an outline and the corners of its texels: a staircase becomes one line.
-const OUTLINE_TOLERANCE: f64 = 1.0;
+/// Steps to the texels around one.
+const AROUND: [[isize; 2]; 8] = [[-1, -1], [0, -1], [1, -1], [-1, 0], [1, 0], [-1, 1], [0, 1], [1, 1]];
 
 /// How long a piece of light may be, in texels, to be a crumb of that area.
 pub fn reach(crumb: f64) -> usize {
@@ -63,71 +64,133 @@ pub fn take_out(texture: &mut Image, mask: &mut Image, found: &Components, goes:
     }
 }
 
-/// The connected components of a mask.
+/// The connected components of a mask, or of what is at least half light.
 pub fn components(mask: &Image) -> Result<Components> {
-    components::find(mask.width, mask.height, |i| mask.data[i] > 0.5)
+    components::find(mask.width, mask.height, |i| mask.data[i] >= 0.5)
 }
 
+/// How much of each texel is light: of lamps from 0.5 on, of others less.
+pub type Coverage<'a> = &'a dyn Fn(usize) -> f32;
+
 /// One luminaire for each connected component of the lights, in the order of their first texel.
-pub fn find(texture: &Image, found: &Components, job: Job) -> Result<Vec<Luminaire>> {
-    let (width, height) = (texture.width, texture.height);
+pub fn find(texture: &Image, found: &Components, coverage: Coverage, job: Job) -> Result<Vec<Luminaire>> {
     let total = texture.data.chunks_exact(3).map(|p| f64::from(luminance(Vec3::from_slice(p)))).sum::<f64>();
-    let lamps: Result<Vec<Luminaire>> = found
-        .list
-        .iter()
-        .enumerate()
-        .map(|(k, lamp)| {
+    let lights = Lights { width: texture.width, height: texture.height, labels: &found.labels, coverage };
+    let lamps: Result<Vec<Luminaire>> = (1..)
+        .zip(&found.list)
+        .map(|(label, lamp)| {
             job.check()?;
-            let is_in = |x: isize, y: isize| {
-                let inside = x >= 0 && y >= 0 && x < width as isize && y < height as isize;
-                inside && found.labels[y as usize * width + x as usize] == k as u32 + 1
-            };
-            Ok(measure(lamp, texture, total, &is_in))
+            Ok(measure(label, lamp, texture, total, &lights))
         })
         .collect();
-    let (mut lamps, size) = (lamps?, DVec2::new(width as f64, height as f64));
+    let mut lamps = lamps?;
+    tell_kinds(&mut lamps, texture);
+    Ok(lamps)
+}
+
+/// Tells the kinds of the lamps of a texture.
+pub fn tell_kinds(lamps: &mut [Luminaire], texture: &Image) {
+    let size = DVec2::new(texture.width as f64, texture.height as f64);
     kinds::tell(lamps.iter_mut().map(|lamp| {
         let count = usize::from(lamp.is_within(size));
         (lamp, count)
     }));
-    Ok(lamps)
 }
 
-fn measure(lamp: &Component, texture: &Image, total: f64, is_in: &dyn Fn(isize, isize) -> bool) -> Luminaire {
-    // Mean colour and second moments.
-    let pixels = || {
-        let columns = lamp.min[0]..=lamp.max[0];
-        (lamp.min[1]..=lamp.max[1])
-            .flat_map(move |y| columns.clone().map(move |x| (x, y)))
-            .filter(|&(x, y)| is_in(x as isize, y as isize))
-            .map(|(x, y)| (x, y, DVec2::new(x as f64 + 0.5, y as f64 + 0.5) - lamp.centre))
-    };
-    let (mut colour, mut xx, mut xy, mut yy) = (DVec3::ZERO, 0.0, 0.0, 0.0);
-    for (x, y, d) in pixels() {
-        colour += texture.rgb(x, y).as_dvec3();
-        (xx, xy, yy) = (xx + d.x * d.x, xy + d.x * d.y, yy + d.y * d.y);
+/// Which texels are light, and how much of each.
+pub struct Lights<'a> {
+    pub width: usize,
+    pub height: usize,
+    /// 0 or the number of the lamp.
+    pub labels: &'a [u32],
+    pub coverage: Coverage<'a>,
+}
+
+impl Lights<'_> {
+    fn index(&self, [x, y]: [isize; 2]) -> Option<usize> {
+        let inside = x >= 0 && y >= 0 && x < self.width as isize && y < self.height as isize;
+        inside.then(|| y as usize * self.width + x as usize)
     }
+
+    /// The number of a texel's lamp, or 0; nothing beyond the texture.
+    fn label(&self, at: [isize; 2]) -> Option<u32> {
+        self.index(at).map(|i| self.labels[i])
+    }
+
+    /// How much of a texel is light; nothing beyond the texture.
+    fn coverage(&self, at: [isize; 2]) -> Option<f64> {
+        let i = self.index(at)?;
+        let share = f64::from((self.coverage)(i));
+        Some(if self.labels[i] != 0 { share.clamp(0.5, 1.0) } else { share.clamp(0.0, 0.5) })
+    }
+
+    /// What a texel of a lamp adds to it, as steps from it and areas: itself, whole if it lies deep in the lamp; and at the edge its
+    /// part of those around it that are less than half light.
+    pub fn parts(&self, at: [isize; 2], mut add: impl FnMut([isize; 2], f64)) {
+        let is_dark = |at: [isize; 2]| self.label(at) == Some(0);
+        let step = |by: [isize; 2], from: [isize; 2]| [from[0] + by[0], from[1] + by[1]];
+        if !AROUND.iter().any(|&by| is_dark(step(by, at))) {
+            return add([0; 2], 1.0);
+        }
+        add([0; 2], self.sharpened(at));
+        for by in AROUND {
+            let rim = step(by, at);
+            let share = if is_dark(rim) { self.sharpened(rim) } else { 0.0 };
+            if share > 0.0 {
+                let lit = AROUND.iter().filter(|&&by| self.label(step(by, rim)).is_some_and(|l| l != 0)).count();
+                add(by, share / lit as f64);
+            }
+        }
+    }
+
+    /// How much of a texel at the edge is light. Where coverage takes more than two texels from none to all it is blurred: there it
+    /// tells the distance from the edge.
+    fn sharpened(&self, at: [isize; 2]) -> f64 {
+        let coverage = self.coverage(at).unwrap_or(0.0);
+        let is_lit = self.label(at) != Some(0);
+        let beside = [[-1, 0], [1, 0], [0, -1], [0, 1]].map(|[u, v]| [at[0] + u, at[1] + v]);
+        let across = beside.into_iter().filter(|&to| (self.label(to) != Some(0)) != is_lit);
+        let steps = across.filter_map(|to| self.coverage(to)).map(|other| (coverage - other).abs());
+        match steps.fold(0.0, f64::max) {
+            step if step > 0.0 && step < 0.5 => (0.5 + (coverage - 0.5) / step).clamp(0.0, 1.0),
+            _ => coverage,
+        }
+    }
+}
+
+fn measure(label: u32, lamp: &Component, texture: &Image, total: f64, lights: &Lights) -> Luminaire {
+    let [low, high] = [lamp.min, lamp.max].map(|p| p.map(|v| v as isize));
+    let is_in = |at: [isize; 2]| lights.label(at) == Some(label);
+
+    // Area and moments of what is light, its edge included; from its own corner, so that they are the same everywhere.
+    let (mut area, mut sum, mut squares, mut colour) = (0.0, DVec2::ZERO, DVec3::ZERO, DVec3::ZERO);
+    for y in low[1]..=high[1] {
+        for x in (low[0]..=high[0]).filter(|&x| is_in([x, y])) {
+            lights.parts([x, y], |[u, v], part| {
+                let p = DVec2::new((x + u - low[0]) as f64, (y + v - low[1]) as f64) + 0.5;
+                area += part;
+                sum += p * part;
+                squares += DVec3::new(p.x * p.x, p.x * p.y, p.y * p.y) * part;
+            });
+            colour += texture.rgb(x as usize, y as usize).as_dvec3();
+        }
+    }
+    let centre = sum / area;
+    let moments = squares - DVec3::new(centre.x * centre.x, centre.x * centre.y, centre.y * centre.y) * area;
+    let orientation = orientation(moments.to_array());
     colour /= lamp.area as f64;
 
-    let orientation = orientation([xx, xy, yy]);
-
-    // Extent along both axes, texels being squares of side 1.
-    let axis = DVec2::from_angle(orientation);
-    let extent = |axis: DVec2| {
-        let (low, high) = pixels().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (.., d)| {
-            (low.min(d.dot(axis)), high.max(d.dot(axis)))
-        });
-        high - low + axis.x.abs().max(axis.y.abs())
-    };
+    let ring = Ring::walk(lamp, &is_in, &|at| lights.coverage(at));
+    let (outline, size) = ring.outline(DVec2::from_angle(orientation));
     let flux = f64::from(luminance(colour.as_vec3())) * lamp.area as f64;
     Luminaire {
-        centre: lamp.centre,
-        size: DVec2::new(extent(axis), extent(axis.perp())),
+        centre: DVec2::new(low[0] as f64, low[1] as f64) + centre,
+        size,
         orientation,
-        area: lamp.area as f64,
+        area,
         colour: colour.as_vec3(),
         flux_share: if total > 0.0 { flux / total } else { 0.0 },
-        outline: outline(lamp, is_in),
+        outline,
         kind: 0,
     }
 }
@@ -141,70 +204,6 @@ pub fn orientation([xx, xy, yy]: [f64; 3]) -> f64 {
     if angle <= -std::f64::consts::FRAC_PI_2 + 1e-12 { angle + std::f64::consts::PI } else { angle }
 }
 
-/// The outer boundary along the edges of the texels, the lamp on the right, simplified (Douglas and Peucker 1973).
-fn outline(lamp: &Component, is_in: &dyn Fn(isize, isize) -> bool) -> Vec<DVec2> {
-    // The first texel in reading order has its upper left corner on the outer boundary.
-    let y = lamp.min[1] as isize;
-    let first = (lamp.min[0]..=lamp.max[0]).find(|&x| is_in(x as isize, y)).unwrap_or(lamp.min[0]) as isize;
-    let start = [first, y];
-
-    // Walk eastwards from there with the lamp at the right hand. Only one texel of the lamp meets the first corner, so the
-    // walk is over when it is back. Where texels touch by a corner, turn left: the lamp holds both.
-    let (mut at, mut heading) = (start, [1isize, 0isize]);
-    let mut corners = vec![DVec2::new(at[0] as f64, at[1] as f64)];
-    loop {
-        at = [at[0] + heading[0], at[1] + heading[1]];
-        if at == start {
-            break;
-        }
-        let ahead = |side: isize| {
-            let x = at[0] + (heading[0] - 1 - side * heading[1]).div_euclid(2);
-            let y = at[1] + (heading[1] - 1 + side * heading[0]).div_euclid(2);
-            is_in(x, y)
-        };
-        heading = match (ahead(-1), ahead(1)) {
-            (true, _) => [heading[1], -heading[0]],
-            (false, true) => continue,
-            (false, false) => [-heading[1], heading[0]],
-        };
-        corners.push(DVec2::new(at[0] as f64, at[1] as f64));
-    }
-    simplified(corners, lamp.size()[0].min(lamp.size()[1]) as f64)
-}
-
-/// A ring of corners without those that tell little of a lamp so narrow.
-pub fn simplified(mut corners: Vec<DVec2>, narrow: f64) -> Vec<DVec2> {
-    // Split the ring at the corner farthest from the first, then simplify both halves.
-    let far = (0..corners.len())
-        .max_by(|&a, &b| corners[a].distance_squared(corners[0]).total_cmp(&corners[b].distance_squared(corners[0])))
-        .unwrap_or(0);
-    let mut kept = vec![false; corners.len() + 1];
-    (kept[0], kept[far]) = (true, true);
-    corners.push(corners[0]);
-    // A lamp of a few texels keeps its corners.
-    let tolerance = OUTLINE_TOLERANCE.min(0.3 * narrow);
-    simplify(&corners, 0, far, tolerance, &mut kept);
-    simplify(&corners, far, corners.len() - 1, tolerance, &mut kept);
-    corners.iter().zip(&kept).take(corners.len() - 1).filter(|(_, k)| **k).map(|(c, _)| *c).collect()
-}
-
-/// Marks the corners between two kept ones that lie too far from the line between them.
-fn simplify(corners: &[DVec2], first: usize, last: usize, tolerance: f64, kept: &mut [bool]) {
-    let mut open = vec![(first, last)];
-    while let Some((a, b)) = open.pop() {
-        let along = (corners[b] - corners[a]).normalize_or_zero();
-        let distance = |i: usize| {
-            let d = corners[i] - corners[a];
-            (d - along * d.dot(along)).length()
-        };
-        let worst = (a + 1..b).map(|i| (i, distance(i))).max_by(|p, q| p.1.total_cmp(&q.1));
-        if let Some((i, _)) = worst.filter(|w| w.1 > tolerance) {
-            kept[i] = true;
-            open.extend([(a, i), (i, b)]);
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -215,7 +214,7 @@ mod tests {
         let on = |x: usize, y: usize| inside(x as f64 + 0.5, y as f64 + 0.5);
         let mask = Image::from_fn(width, height, |x, y| [f32::from(on(x, y))]).unwrap();
         let texture = Image::from_fn(width, height, |x, y| [2.0, 1.0, 0.5].map(|v| v * f32::from(on(x, y)))).unwrap();
-        find(&texture, &components(&mask).unwrap(), Monitor::default().job()).unwrap()
+        find(&texture, &components(&mask).unwrap(), &|i| mask.data[i], Monitor::default().job()).unwrap()
     }
 
     #[test]

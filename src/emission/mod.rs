@@ -9,8 +9,8 @@
 //! 3. [`metadata`]: confidence and signed x and y distance to the nearest light.
 //! 4. [`patches`]: quilting over colour and metadata with minimum-error [`seam`]s, held to the lattice, the light in [`balance`].
 //! 5. [`lamps`]: every lamp that patches show becomes one piece again; no seam cuts it.
-//! 6. [`recover`]: full detail from the photo. 7. [`luminaires`]: the lamps as a list, by [`kinds`]. 8. [`statistics`]: how far the
-//!    texture's are from the exemplar's, and how far by [`sampling`] alone; and by [`pairs`] of lamps.
+//! 6. [`recover`]: full detail from the photo. 7. [`luminaires`]: the lamps as a list with their [`outline`]s, by [`kinds`].
+//! 8. [`statistics`]: how far the texture's are from the exemplar's, and how far by [`sampling`] alone; and by [`pairs`] of lamps.
 //! 9. [`lamp_list`]: the lamps of a plan, whose texture is never there as a whole; [`mod@sweep`]: its lights that are none.
 //!
 //! A texture that fits inside the exemplar is a part of it, copied.
@@ -38,6 +38,7 @@ mod layout;
 mod luminaires;
 mod measure;
 mod metadata;
+mod outline;
 pub mod pairs;
 mod patches;
 mod period;
@@ -152,13 +153,16 @@ pub struct Luminaire {
     pub size: DVec2,
     /// Angle of the long axis from x towards y, in radians, in (-π/2, π/2].
     pub orientation: f64,
-    /// Area in texels.
+    /// Area in texels, of those at the edge what is light.
     pub area: f64,
     /// Mean linear colour.
     pub colour: Vec3,
     /// Share of the light of the whole texture, in `[0, 1]`.
     pub flux_share: f64,
-    /// Corners of the outline in texels.
+    /// Corners of the outline in texels, from x towards y: where half of a texel would be light. Where the confidence of the lights
+    /// tells that between 0 and 1, and the lamp is wider than two texels, within a quarter of one or of an unwarped pixel,
+    /// whichever is larger; its corners, where they are not sharper than a right angle, within 0.71 of that. Else it follows the
+    /// sides of texels.
     pub outline: Vec<DVec2>,
     /// Number of its kind ([`kinds`]), from 1, those with most lamps first; 0 of a lamp that the border cuts.
     pub kind: u32,
@@ -246,7 +250,7 @@ pub fn given(texture: &Image, job: Job) -> Result<Emission> {
         return Err(Error::degenerate("the emissive texture is black everywhere: nothing in it gives light"));
     }
     let components = luminaires::components(&mask)?;
-    let luminaires = luminaires::find(&texture, &components, job)?;
+    let luminaires = luminaires::find(&texture, &components, &|i| mask.data[i], job)?;
     let statistics = statistics_of(&texture, &components, [Some(f64::INFINITY); 2]);
     let exemplar_lamps = statistics.whole;
     Ok(Emission {
@@ -306,8 +310,10 @@ pub fn blend_measured(
 }
 
 fn make(mut plan: Plan, input: &Input, styles: &[Style], params: &Params, job: Job) -> Result<Emission> {
-    let (texture, mask, components) = plan.all(input, styles, job.part(0.85, 0.95))?;
-    let luminaires = luminaires::find(&texture, &components, job.part(0.95, 1.0))?;
+    let (texture, mut coverage, components) = plan.all(input, styles, job.part(0.85, 0.95))?;
+    let luminaires = luminaires::find(&texture, &components, &|i| coverage.data[i], job.part(0.95, 1.0))?;
+    recover::threshold(&mut coverage);
+    let mask = coverage;
 
     let inputs = std::iter::once(input).chain(styles.iter().map(|style| &style.input));
     let parts = plan.layers.iter().zip(inputs).enumerate().map(|(k, (layer, input))| {

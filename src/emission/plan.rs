@@ -138,20 +138,21 @@ impl Plan {
             let mut found = luminaires::components(&mask)?;
             self.sweep(&mut texture, &mut mask, &mut found, around);
         }
+        recover::threshold(&mut mask);
         if around == tile {
             return Ok((texture, mask));
         }
         Ok((tile.cut(&texture, around)?, tile.cut(&mask, around)?))
     }
 
-    /// The whole texture, its mask, and the lamps of that.
+    /// The whole texture, its coverage, and the lamps of that.
     pub(super) fn all(&self, input: &Input, styles: &[Style], job: Job) -> Result<(Image, Image, Components)> {
-        let (mut texture, mut mask) = self.render(input, styles, self.whole(), job)?;
-        let mut found = luminaires::components(&mask)?;
+        let (mut texture, mut coverage) = self.render(input, styles, self.whole(), job)?;
+        let mut found = luminaires::components(&coverage)?;
         if self.has_crumbs() {
-            self.sweep(&mut texture, &mut mask, &mut found, self.whole());
+            self.sweep(&mut texture, &mut coverage, &mut found, self.whole());
         }
-        Ok((texture, mask, found))
+        Ok((texture, coverage, found))
     }
 
     /// Takes the crumbs out of a tile. What the border of the texture leaves of a lamp is none.
@@ -167,13 +168,13 @@ impl Plan {
         self.crumb > 1.0
     }
 
-    /// A tile, crumbs and all.
+    /// A tile and its coverage, crumbs and all.
     fn render(&self, input: &Input, styles: &[Style], tile: Tile, job: Job) -> Result<(Image, Image)> {
         self.check_exemplars(input, styles)?;
         self.render_lights(input, styles, tile, Lights::All, job)
     }
 
-    /// Some lights of a tile.
+    /// Some lights of a tile, and their coverage.
     pub(super) fn render_lights(
         &self,
         input: &Input,

@@ -10,13 +10,17 @@ use super::lamps::Instance;
 use super::period::Continuation;
 use super::plan::{Layer, Plan, Tile};
 use crate::error::Result;
-use crate::image::Image;
+use crate::image::{Image, try_vec};
 use crate::job::Job;
 use glam::{DVec2, DVec3, Vec3, Vec4};
 use rayon::prelude::*;
 
-/// Most samples along each side of a texel.
+/// Least and most samples along each side of a texel that is larger than an unwarped pixel. Fewer would not tell where half of it is
+/// light to an eighth of its side.
+const LEAST_SAMPLES: f64 = 4.0;
 const MOST_SAMPLES: f64 = 16.0;
+/// The most that is not half.
+const LESS_THAN_HALF: f32 = 0.5 - f32::EPSILON;
 /// Rows of texels that share one list of lamps.
 const BAND: usize = 16;
 
@@ -45,7 +49,7 @@ pub enum Lights {
     OfPatches,
 }
 
-/// A tile of the texture and its mask.
+/// A tile of the texture, and how much of each texel is light: of its mask from 0.5 on, of others less.
 pub fn run(plan: &Plan, sources: &[Source], tile: Tile, lights: Lights, job: Job) -> Result<(Image, Image)> {
     let Tile { width, height, .. } = tile;
     let mut texture = Image::new(width, height, 3)?;
@@ -54,11 +58,13 @@ pub fn run(plan: &Plan, sources: &[Source], tile: Tile, lights: Lights, job: Job
     rows.try_for_each(|(row, (colours, coverage))| {
         job.check()?;
         let y = tile.y + row;
-        let mut add = |x: usize, (colour, share): (Vec3, f32)| {
-            if share > 0.0 {
-                let at = x - tile.x;
-                coverage[at] += share;
-                colours[3 * at..3 * at + 3].iter_mut().zip(colour.to_array()).for_each(|(o, c)| *o += c);
+        let mut shares = try_vec(width, 0f32)?;
+        let mut add = |x: usize, shown: Texel| {
+            let at = x - tile.x;
+            coverage[at] += shown.coverage;
+            if shown.share > 0.0 {
+                shares[at] += shown.share;
+                colours[3 * at..3 * at + 3].iter_mut().zip(shown.colour.to_array()).for_each(|(o, c)| *o += c);
             }
         };
         for (k, source) in sources.iter().enumerate() {
@@ -83,16 +89,23 @@ pub fn run(plan: &Plan, sources: &[Source], tile: Tile, lights: Lights, job: Job
                 let weight = plan.weights.at(k, at);
                 if let Some(shift) = source.shift_at(x, y).filter(|_| weight > 0.0) {
                     let is_shown = |label: u32| label != 0 && layer.by_pixel[label as usize - 1];
-                    let (colour, share) = source.texel(x, y, shift, is_shown);
-                    add(x, (colour * weight, share));
+                    let shown = source.texel(x, y, shift, is_shown);
+                    add(x, Texel { colour: shown.colour * weight, ..shown });
                 }
             }
         }
-        coverage.iter_mut().for_each(|c| *c = f32::from(*c >= 0.5));
+        for (coverage, share) in coverage.iter_mut().zip(shares) {
+            *coverage = if share >= 0.5 { coverage.clamp(0.5, 1.0) } else { coverage.min(LESS_THAN_HALF) };
+        }
         Ok(())
     })?;
     job.report(1.0);
     Ok((texture, mask))
+}
+
+/// The mask of what is at least half light, in its place.
+pub fn threshold(coverage: &mut Image) {
+    coverage.data.iter_mut().for_each(|c| *c = f32::from(*c >= 0.5));
 }
 
 /// The mean colour of every component of the exemplar.
@@ -138,6 +151,15 @@ impl Layer {
     }
 }
 
+/// What a texel shows of some lights.
+#[derive(Clone, Copy)]
+struct Texel {
+    colour: Vec3,
+    /// Share of its samples that are light, and mean confidence that they are: the same but for the finer steps of this.
+    share: f32,
+    coverage: f32,
+}
+
 /// What is shown, and the images it is taken from.
 #[derive(Clone, Copy)]
 pub struct Source<'a> {
@@ -154,20 +176,22 @@ impl Source<'_> {
         layout.shift(u, v).map(|s| s.exact)
     }
 
-    /// The light of the components that `is_shown` names by label, averaged over a texel; and the share it covers.
-    fn texel(&self, x: usize, y: usize, shift: DVec2, is_shown: impl Fn(u32) -> bool) -> (Vec3, f32) {
+    /// The light of the components that `is_shown` names by label, averaged over a texel.
+    fn texel(&self, x: usize, y: usize, shift: DVec2, is_shown: impl Fn(u32) -> bool) -> Texel {
         let scale = self.layer.scale;
-        let n = scale.ceil().clamp(1.0, MOST_SAMPLES);
+        let n = if scale > 1.0 { scale.ceil().clamp(LEAST_SAMPLES, MOST_SAMPLES) } else { 1.0 };
         let spacing = scale / n;
         let corner = DVec2::new(x as f64, y as f64) * scale - self.layer.rounded(shift);
-        let (mut colour, mut inside) = (Vec3::ZERO, 0u32);
+        let (mut colour, mut inside, mut coverage) = (Vec3::ZERO, 0u32, 0f32);
         for i in 0..(n * n) as usize {
             let step = DVec2::new((i % n as usize) as f64 + 0.5, (i / n as usize) as f64 + 0.5);
             let p = corner + step * spacing;
             let is_magnified = spacing <= 0.999;
             let taps = self.taps(p, !is_magnified);
-            let light: f32 = taps.iter().map(|&(pixel, w)| w * self.light(pixel, is_magnified, &is_shown)).sum();
-            if light >= LIT {
+            let light: f32 = taps.iter().map(|&(pixel, w)| w * self.light(pixel, &is_shown)).sum();
+            coverage += light;
+            let is_light = if is_magnified { light >= LIT } else { self.is_light(taps[0].0, &is_shown) };
+            if is_light {
                 inside += 1;
                 let lamp = taps.iter().map(|&(pixel, _)| self.label(pixel)).find(|&label| is_shown(label));
                 colour += match (&self.layer.even, lamp) {
@@ -177,7 +201,7 @@ impl Source<'_> {
             }
         }
         let samples = (n * n) as f32;
-        (colour / samples, inside as f32 / samples)
+        Texel { colour: colour / samples, share: inside as f32 / samples, coverage: coverage / samples }
     }
 
     /// The light at a point, from the finest source there is.
@@ -213,18 +237,16 @@ impl Source<'_> {
         self.layer.exemplar.components.labels.get(pixel).copied().unwrap_or(0)
     }
 
-    /// How much an unwarped pixel is of the light that is shown. Beside a lamp confidence fades away; where it is none of a
-    /// lamp's, it is nobody's.
-    fn light(&self, pixel: usize, is_graded: bool, is_shown: &impl Fn(u32) -> bool) -> f32 {
+    /// Whether an unwarped pixel is of the light that is shown.
+    fn is_light(&self, pixel: usize, is_shown: &impl Fn(u32) -> bool) -> bool {
         let label = self.label(pixel);
-        if label != 0 && !is_shown(label) || !self.layer.exemplar.shown.get(pixel).is_some_and(|&s| s) {
-            return 0.0;
-        }
-        match (is_graded, self.input.light.data[pixel].min(1.0)) {
-            (false, _) => f32::from(label != 0),
-            (true, confidence) if label != 0 || confidence < LIT => confidence.max(0.0),
-            _ => 0.0,
-        }
+        label != 0 && is_shown(label)
+    }
+
+    /// How much an unwarped pixel is. Beside a lamp confidence fades away; where it is none of a lamp's, it is nobody's.
+    fn light(&self, pixel: usize, is_shown: &impl Fn(u32) -> bool) -> f32 {
+        let label = self.label(pixel);
+        if label != 0 && !is_shown(label) { 0.0 } else { self.layer.exemplar.coverage(self.input.light, pixel) }
     }
 
     /// Pixels and weights of a bilinear look-up, or of the pixel a point lies in.

@@ -1,10 +1,11 @@
 //! Lights that follow the patches, of a texture that is never there as a whole: those that run through are as long as it is.
 //!
 //! The texture is swept from top to bottom in bands. Of every connected light sums are kept, and its first and last texel in each
-//! row; so its outline is that of what lies between these.
+//! row; so its outline is that of what lies between these, to the texel.
 
 use super::blend::Style;
-use super::luminaires::{components, simplified};
+use super::luminaires::{self, components};
+use super::outline::{simplified, staircase};
 use super::plan::{Plan, Tile};
 use super::recover::Lights;
 use super::{Input, Luminaire};
@@ -14,8 +15,9 @@ use crate::image::try_vec;
 use crate::job::Job;
 use glam::{DVec2, DVec3, Vec3};
 
-/// Rows of texels that are rendered at once.
+/// Rows of texels that are looked at at once, and those beside them that tell how much of them is light.
 const BAND: usize = 64;
+const BESIDE: usize = 2;
 /// No light.
 const NONE: u32 = u32::MAX;
 
@@ -27,15 +29,22 @@ pub fn find(plan: &Plan, input: &Input, styles: &[Style], job: Job) -> Result<Ve
     let mut lights = Joined::default();
     let mut above = try_vec(plan.width, NONE)?;
     for y in (0..plan.height).step_by(BAND) {
-        let tile = Tile { x: 0, y, width: plan.width, height: BAND.min(plan.height - y) };
-        let (texture, mask) = plan.render_lights(input, styles, tile, Lights::OfPatches, job.part(0.0, 0.0))?;
-        let found = components(&mask)?;
+        let (top, rows) = (y.saturating_sub(BESIDE), BAND.min(plan.height - y));
+        let tile = Tile { x: 0, y: top, width: plan.width, height: (y + rows + BESIDE).min(plan.height) - top };
+        let (texture, coverage) = plan.render_lights(input, styles, tile, Lights::OfPatches, job.part(0.0, 0.0))?;
+        let found = components(&coverage)?;
         let first = lights.add(found.list.len());
-        let light = |i: usize| found.labels[i].checked_sub(1).map(|k| first + k);
-        for i in 0..found.labels.len() {
+        let (own, start) = ((y - top) * plan.width, y - top);
+        let light = |i: usize| found.labels[own + i].checked_sub(1).map(|k| first + k);
+        let coverage = |i: usize| coverage.data[i];
+        let shown =
+            luminaires::Lights { width: plan.width, height: tile.height, labels: &found.labels, coverage: &coverage };
+        for i in 0..rows * plan.width {
             if let Some(k) = light(i) {
                 let (u, v) = (i % plan.width, i / plan.width);
-                lights.parts[k as usize].push([u, y + v], texture.rgb(u, v));
+                let part = &mut lights.parts[k as usize];
+                part.push([u, y + v], texture.rgb(u, start + v));
+                shown.parts([u as isize, (start + v) as isize], |step, area| part.cover([u, y + v], step, area));
             }
         }
         for x in 0..plan.width {
@@ -44,7 +53,7 @@ pub fn find(plan: &Plan, input: &Input, styles: &[Style], job: Job) -> Result<Ve
                 near.iter().filter(|k| **k != NONE).for_each(|&k| lights.join(k, below));
             }
         }
-        let last = (tile.height - 1) * plan.width;
+        let last = (rows - 1) * plan.width;
         above.iter_mut().enumerate().for_each(|(x, k)| *k = light(last + x).unwrap_or(NONE));
     }
     let size = [plan.width as u32, plan.height as u32];
@@ -98,8 +107,10 @@ struct Span {
 /// What is known of a light.
 #[derive(Default)]
 struct Light {
+    /// Number of its texels.
+    texels: f64,
+    /// Sums over what of texels is light: area, centres from that of the first, and their products; and over its texels: colours.
     area: f64,
-    /// Sums over its texels: centres from those of the first, their products, and colours.
     origin: DVec2,
     centres: DVec2,
     squares: DVec3,
@@ -109,16 +120,20 @@ struct Light {
 }
 
 impl Light {
+    /// Adds a part of a texel, a step from one of its own.
+    fn cover(&mut self, [x, y]: [usize; 2], [u, v]: [isize; 2], area: f64) {
+        let p = DVec2::new(x as f64 + u as f64, y as f64 + v as f64) + 0.5 - self.origin;
+        self.area += area;
+        self.centres += p * area;
+        self.squares += DVec3::new(p.x * p.x, p.x * p.y, p.y * p.y) * area;
+    }
+
     /// Adds a texel, row by row.
     fn push(&mut self, [x, y]: [usize; 2], colour: Vec3) {
-        let centre = DVec2::new(x as f64, y as f64) + 0.5;
-        if self.area == 0.0 {
-            self.origin = centre;
+        if self.texels == 0.0 {
+            self.origin = DVec2::new(x as f64, y as f64) + 0.5;
         }
-        let p = centre - self.origin;
-        self.area += 1.0;
-        self.centres += p;
-        self.squares += DVec3::new(p.x * p.x, p.x * p.y, p.y * p.y);
+        self.texels += 1.0;
         self.colours += colour.as_dvec3();
         let (x, y) = (x as u32, y as u32);
         match self.spans.last_mut() {
@@ -151,6 +166,7 @@ impl Light {
             + DVec3::new(by.x * by.x, by.x * by.y, by.y * by.y) * area;
         self.centres += c + by * area;
         self.area += area;
+        self.texels += other.texels;
         self.colours += other.colours;
         let rows = |spans: &[Span]| -> Vec<Span> {
             spans.iter().flat_map(|s| (0..s.rows).map(|i| Span { row: s.row + i, rows: 1, ..*s })).collect()
@@ -196,9 +212,9 @@ impl Light {
             size,
             orientation,
             area: self.area,
-            colour: (self.colours / self.area).as_vec3(),
+            colour: (self.colours / self.texels).as_vec3(),
             flux_share: 0.0,
-            outline: simplified(ring, size.min_element()),
+            outline: simplified(ring, staircase(size.min_element())),
             kind: 0,
         }
     }

@@ -3,6 +3,7 @@
 mod blending;
 mod extremes;
 mod lines;
+mod outlines;
 mod placing;
 mod tiles;
 mod variety;
@@ -299,7 +300,8 @@ fn one_lamp_is_repeated_at_the_size_of_the_exemplar() {
     let result = exemplar.run(&Params { width: 240, height: 180, ..Params::default() }).unwrap();
     assert!(matches!(result.continuation, Continuation::Tile(_)));
     assert_eq!(result.luminaires.len(), 9);
-    assert!(result.luminaires.iter().all(|l| l.area == 320.0));
+    // The mask is unsure by a tenth at the edge.
+    assert!(result.luminaires.iter().all(|l| (l.area / 320.0 - 1.0).abs() < 0.01));
     assert!(result.error < 1e-6);
 }
 
@@ -316,7 +318,9 @@ fn lights_that_touch_every_border_go_on() {
     let result = lines.run(&Params { width: 500, height: 480, ..Params::default() }).unwrap();
     assert!(result.error < 0.05, "{}", result.error);
     assert_eq!(result.luminaires.len(), 20);
-    assert!(result.luminaires.iter().all(|l| l.size.x == 500.0 && l.size.y == 6.0));
+    // The mask is unsure by a tenth at the edge.
+    assert!(result.luminaires.iter().all(|l| (l.size - DVec2::new(500.0, 6.0)).abs().max_element() < 0.3));
+    assert!(result.luminaires.iter().all(|l| (l.area / 3000.0 - 1.0).abs() < 0.01));
 }
 
 #[test]

@@ -181,7 +181,7 @@ pub struct luxfer_luminaire {
     pub size: [f64; 2],
     /// Angle of the long axis from x towards y, in radians, in (-pi/2, pi/2].
     pub orientation: f64,
-    /// Area in texels.
+    /// Area in texels, of those at the edge what is light.
     pub area: f64,
     /// Share of the light of the whole texture, in [0, 1].
     pub flux_share: f64,
@@ -482,6 +482,10 @@ pub unsafe extern "C" fn luxfer_emission_get_luminaire(
 }
 
 /// Tells a corner of a luminaire's outline, in texels. Any thread.
+///
+/// The outline lies where half of a texel would be light, finer than texels where the confidence of the lights is: within a quarter
+/// of a texel, or of an unwarped pixel where that is larger; corners of the lamp within 0.71 of one. Of lamps up to two texels wide,
+/// of a mask that is all or nothing and of lights of a plan that follow its patches it follows the sides of texels.
 /// LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such luminaire or corner.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_get_corner(

@@ -1174,7 +1174,7 @@ class Luminaire:
     orientation: float
     """Angle of the long axis from x towards y, in radians, in (-pi/2, pi/2]."""
     area: float
-    """Area in texels."""
+    """Area in texels, of those at the edge what is light."""
     flux_share: float
     """Share of the light of the whole texture, in [0, 1]."""
     colour: tuple[float, float, float]

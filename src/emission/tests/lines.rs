@@ -29,8 +29,9 @@ fn lines_meet_where_the_texture_repeats() {
         let across = if along_x { height } else { width };
         let count = (across as f64 * scale / 24.0).round() as usize;
         let period = across as f64 / count as f64;
-        // A texel is light from half of its samples on: with two a side each edge is off by three quarters of a texel at most.
-        let slack = if scale > 1.0 { 1.5 * scale } else { 1.0 };
+        // Each edge is rounded to the texel, by half of one at most; and between texels larger than a pixel, where the stretch goes
+        // on by a pixel, a line has one more or less.
+        let slack = if scale > 1.0 { scale + 1.0 } else { 1.0 };
         for k in 0..width * height / across {
             let at = |i: usize| if along_x { i * width + k } else { k * width + i };
             let lit: Vec<bool> = (0..across).map(|i| result.mask.data[at(i)] > 0.5).collect();

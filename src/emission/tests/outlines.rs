@@ -1,0 +1,149 @@
+//! Outlines against shapes whose outline is known, finer than a texel.
+
+use super::*;
+use crate::geometry::polygon;
+
+/// A shape by its corners, turned about the origin, made larger and put somewhere.
+fn turned(corners: &[[f64; 2]], angle: f64, radius: f64, at: DVec2) -> Vec<DVec2> {
+    corners.iter().map(|&[x, y]| at + DVec2::from_angle(angle).rotate(DVec2::new(x, y)) * radius).collect()
+}
+
+/// A polygon that a disc differs from by less than a thousandth of its radius.
+fn disc(radius: f64, at: DVec2) -> Vec<DVec2> {
+    (0..96).map(|i| at + DVec2::from_angle(f64::from(i) * std::f64::consts::TAU / 96.0) * radius * 1.0003).collect()
+}
+
+const SQUARE: [[f64; 2]; 4] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+const ARROW: [[f64; 2]; 5] = [[-1.0, -1.0], [0.2, -1.0], [1.0, 0.1], [0.2, 1.2], [-1.0, 1.2]];
+const ELL: [[f64; 2]; 6] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 0.1], [0.1, 0.1], [0.1, 1.0], [-1.0, 1.0]];
+
+/// Even-odd rule.
+fn is_inside(shape: &[DVec2], p: DVec2) -> bool {
+    let sides = shape.iter().zip(shape.iter().cycle().skip(1));
+    sides.filter(|(a, b)| (a.y > p.y) != (b.y > p.y) && p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y)).count() % 2
+        == 1
+}
+
+/// An exemplar of which each pixel is as light as the shapes cover it.
+fn design(width: usize, height: usize, shapes: &[Vec<DVec2>]) -> Design {
+    const N: usize = 8;
+    let mut light = Image::new(width, height, 1).unwrap();
+    for shape in shapes {
+        let (low, high) = shape.iter().fold((shape[0], shape[0]), |(low, high), p| (low.min(*p), high.max(*p)));
+        for y in low.y.max(0.0) as usize..(high.y.ceil() as usize).min(height) {
+            for x in low.x.max(0.0) as usize..(high.x.ceil() as usize).min(width) {
+                let inside = (0..N * N).filter(|i| {
+                    let step = DVec2::new((i % N) as f64 + 0.5, (i / N) as f64 + 0.5) / N as f64;
+                    is_inside(shape, DVec2::new(x as f64, y as f64) + step)
+                });
+                light.data[y * width + x] = inside.count() as f32 / (N * N) as f32;
+            }
+        }
+    }
+    let unwarped = Image::from_fn(width, height, |_, _| [0.8, 0.7, 0.6]).unwrap();
+    let valid = Image::from_fn(width, height, |_, _| [1.0]).unwrap();
+    Design { unwarped, light, valid }
+}
+
+/// The largest distance of a point on one ring from the other (Hausdorff), those of the first within `spared` of `corners` aside.
+fn distance(from: &[DVec2], to: &[DVec2], corners: &[DVec2], spared: f64) -> f64 {
+    let sides = || to.iter().copied().zip(to.iter().copied().cycle().skip(1));
+    let nearest = |p: DVec2| {
+        let of_side = |(a, b): (DVec2, DVec2)| {
+            let t = ((p - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
+            p.distance(a + (b - a) * t)
+        };
+        sides().map(of_side).fold(f64::INFINITY, f64::min)
+    };
+    let points = from.iter().zip(from.iter().cycle().skip(1)).flat_map(|(a, b)| {
+        let n = ((*b - *a).length() * 10.0).ceil().max(1.0) as usize;
+        (0..n).map(move |i| a.lerp(*b, i as f64 / n as f64))
+    });
+    points.filter(|p| corners.iter().all(|c| c.distance(*p) >= spared)).map(nearest).fold(0.0, f64::max)
+}
+
+/// What is stated of a lamp against the truth, in texels: how far sides are off, how far all is, and how far the area, relatively.
+fn off(lamp: &Luminaire, truth: &[DVec2], corners: &[DVec2]) -> [f64; 3] {
+    let both = |corners: &[DVec2]| {
+        distance(truth, &lamp.outline, corners, 1.5).max(distance(&lamp.outline, truth, corners, 1.5))
+    };
+    [both(corners), both(&[]), (lamp.area / polygon::area(truth) - 1.0).abs()]
+}
+
+#[test]
+fn outlines_lie_within_a_quarter_of_a_texel() {
+    // Texels finer than pixels tell no more than these do: there it is a quarter of a pixel.
+    for scale in [0.5, 1.0, 1.25, 1.5, 2.0, 3.0, 4.0] {
+        let side = (112.0 * scale) as usize;
+        let mut worst = [0.0f64; 3];
+        for k in 0..5 {
+            // Four shapes of 11 to 16 texels, each somewhere within a texel and turned.
+            let aside = |n: f64| DVec2::new((n * 0.618).fract(), (n * 0.755).fract());
+            let centre = |n: usize| {
+                (DVec2::new((n % 2) as f64 + 0.5, (n / 2) as f64 + 0.5) * 56.0 + aside((4 * k + n) as f64)) * scale
+            };
+            let (angle, larger) = (k as f64 * 0.18, 1.0 + 0.05 * k as f64);
+            let shapes = [
+                disc(5.5 * larger * scale, centre(0)),
+                turned(&SQUARE, angle, 5.5 * larger * scale, centre(1)),
+                turned(&ARROW, angle, 6.3 * larger * scale, centre(2)),
+                turned(&ELL, -angle, 7.1 * larger * scale, centre(3)),
+            ];
+            let params = Params { width: 112, height: 112, scale, ..Params::default() };
+            let result = design(side, side, &shapes).run(&params).unwrap();
+            assert_eq!((result.continuation, result.luminaires.len()), (Continuation::Copy, 4));
+            for (n, shape) in shapes.iter().enumerate() {
+                let truth: Vec<DVec2> = shape.iter().map(|p| *p / scale).collect();
+                let apart = |l: &&Luminaire| l.centre.distance(centre(n) / scale);
+                let lamp = result.luminaires.iter().min_by(|a, b| apart(a).total_cmp(&apart(b))).unwrap();
+                let off = off(lamp, &truth, if n == 0 { &[] } else { &truth });
+                worst = std::array::from_fn(|i| worst[i].max(off[i]));
+                assert!(lamp.outline.len() < 40, "{}", lamp.outline.len());
+            }
+        }
+        let [sides, all, area] = worst;
+        // A corner of 90° or more, its legs cut off by a texel at most, is half a diagonal from the outline.
+        let quarter = if scale < 1.0 { 0.25 / scale } else { 0.25 };
+        assert!(sides < quarter, "{scale}: {sides}");
+        assert!(all < 2.0 * quarter * 2f64.sqrt(), "{scale}: {all}");
+        assert!(area < 0.01 || scale < 1.0, "{scale}: {area}");
+    }
+}
+
+#[test]
+fn a_mirrored_exemplar_has_the_mirrored_outline() {
+    let (width, height) = (60usize, 50usize);
+    let shape = turned(&ELL, 0.37, 13.0, DVec2::new(27.3, 22.8));
+    let mirror = |p: &DVec2| DVec2::new(width as f64 - p.x, p.y);
+    let mirrored: Vec<DVec2> = shape.iter().map(mirror).collect();
+    let params = Params { width, height, ..Params::default() };
+    let outline = |shape: &[DVec2]| {
+        let result = design(width, height, &[shape.to_vec()]).run(&params).unwrap();
+        result.luminaires[0].outline.clone()
+    };
+    let (one, other) = (outline(&shape), outline(&mirrored));
+    assert_eq!(one.len(), other.len());
+    for p in &one {
+        assert!(other.iter().any(|q| q.distance(mirror(p)) < 1e-9), "{p} {other:?}");
+    }
+    // Both run from x towards y.
+    assert!(polygon::area(&one) > 0.0 && polygon::area(&other) > 0.0);
+}
+
+#[test]
+fn what_the_border_cuts_ends_at_the_border() {
+    let shape = turned(&SQUARE, 0.0, 10.0, DVec2::new(3.25, 30.375));
+    let params = Params { width: 60, height: 60, ..Params::default() };
+    let exemplar = design(60, 60, &[shape]);
+    let lamp = &exemplar.run(&params).unwrap().luminaires[0];
+    let truth = turned(&[[0.0, 20.375], [13.25, 20.375], [13.25, 40.375], [0.0, 40.375]], 0.0, 1.0, DVec2::ZERO);
+    assert!(distance(&truth, &lamp.outline, &[], 0.0) < 0.05, "{:?}", lamp.outline);
+    assert!(distance(&lamp.outline, &truth, &[], 0.0) < 0.05, "{:?}", lamp.outline);
+    assert!((lamp.area / (13.25 * 20.0) - 1.0).abs() < 0.002 && lamp.kind == 0, "{}", lamp.area);
+    assert!((lamp.size - DVec2::new(20.0, 13.25)).abs().max_element() < 0.1, "{}", lamp.size);
+    // The list of a plan says the same.
+    let job = Monitor::default();
+    let plan = Plan::new(&exemplar.input(), &[], &params, job.job()).unwrap();
+    let list = LampList::new(&plan, &exemplar.input(), &[], job.job()).unwrap();
+    assert_eq!((list.count(), list.get(&plan, 0).unwrap().outline), (1, lamp.outline.clone()));
+}
