@@ -1,10 +1,13 @@
 //! Emissive textures: how well patterns go on, against patches alone and another program, and what it costs.
 //!
 //! Designs of known statistics are cut from a larger ceiling, continued, and held against what they were made by.
+//! `cargo bench --bench emission -- SECTION …` runs some sections only.
 
 mod harness;
 #[path = "emission/photos.rs"]
 mod photos;
+#[path = "emission/recovery.rs"]
+mod recovery;
 #[path = "emission/score.rs"]
 mod score;
 #[path = "emission/tiles.rs"]
@@ -28,17 +31,27 @@ const ROUNDS: usize = 5;
 const BLOCKS: [usize; 8] = [25, 50, 75, 100, 125, 150, 175, 200];
 
 fn main() {
+    let chosen: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with('-')).collect();
+    let wants = |section: &str| chosen.is_empty() || chosen.iter().any(|c| c == section);
     let pool = Pool::new(2).expect("two threads");
-    pool.run(|| {
-        patterns();
-        photos::perspective();
-        photos::ceilings();
-        photos::real();
-        seconds();
-        knobs();
-        tiles::tiles();
-    });
-    if let Err(reason) = peer(&pool) {
+    let sections: [(&str, fn()); 8] = [
+        ("patterns", patterns),
+        ("perspective", photos::perspective),
+        ("ceilings", photos::ceilings),
+        ("real", photos::real),
+        ("recovery", recovery::recovery),
+        ("seconds", seconds),
+        ("knobs", knobs),
+        ("tiles", tiles::tiles),
+    ];
+    for (name, section) in sections {
+        if wants(name) {
+            pool.run(section);
+        }
+    }
+    if wants("peer")
+        && let Err(reason) = peer(&pool)
+    {
         absent("emission.vs_texture_synthesis", &reason);
     }
 }

@@ -9,7 +9,7 @@
 //! 3. [`metadata`]: confidence and signed x and y distance to the nearest light.
 //! 4. [`patches`]: quilting over colour and metadata with minimum-error [`seam`]s, held to the lattice, the light in [`balance`].
 //! 5. [`lamps`]: every lamp that patches show becomes one piece again; no seam cuts it.
-//! 6. [`recover`]: full detail from the photo. 7. [`luminaires`]: the lamps as a list with their [`outline`]s, by [`kinds`].
+//! 6. [`recover`]: full detail from the [`photo`]. 7. [`luminaires`]: the lamps as a list with their [`outline`]s, by [`kinds`].
 //! 8. [`statistics`]: how far the texture's are from the exemplar's, and how far by [`sampling`] alone; and by [`pairs`] of lamps.
 //! 9. [`lamp_list`]: the lamps of a plan, whose texture is never there as a whole; [`mod@sweep`]: its lights that are none.
 //!
@@ -42,6 +42,7 @@ mod outline;
 pub mod pairs;
 mod patches;
 mod period;
+mod photo;
 mod places;
 mod plan;
 mod recover;

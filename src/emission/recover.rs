@@ -8,6 +8,7 @@ use super::Input;
 use super::exemplar::LIT;
 use super::lamps::Instance;
 use super::period::Continuation;
+use super::photo;
 use super::plan::{Layer, Plan, Tile};
 use crate::error::Result;
 use crate::image::{Image, try_vec};
@@ -272,30 +273,6 @@ impl Source<'_> {
     /// The photo's colour at a point of the unwarped image, averaged over a square of the given side there.
     fn from_photo(&self, p: DVec2, side: f64) -> Option<Vec3> {
         let (photo, to_photo) = self.input.photo?;
-        let (right, down) = (to_photo.apply(p + DVec2::X * side / 2.0), to_photo.apply(p + DVec2::Y * side / 2.0));
-        let centre = to_photo.apply(p);
-        let stretch = 2.0 * (right - centre).length().max((down - centre).length());
-        let n = stretch.ceil().clamp(1.0, MOST_SAMPLES) as usize;
-        let mut sum = Vec3::ZERO;
-        for i in 0..n * n {
-            let step = (DVec2::new((i % n) as f64 + 0.5, (i / n) as f64 + 0.5) / n as f64 - 0.5) * side;
-            sum += bilinear(photo, to_photo.apply(p + step))?;
-        }
-        Some(sum / (n * n) as f32).filter(|c| c.is_finite())
+        photo::mean(photo, &to_photo, p, side)
     }
-}
-
-/// Colour at a point of the photo; `None` off the photo.
-fn bilinear(photo: &Image, p: DVec2) -> Option<Vec3> {
-    let last = DVec2::new(photo.width as f64, photo.height as f64) - 1.0;
-    if !(p.cmpge(DVec2::ZERO).all() && p.cmple(last + 1.0).all()) {
-        return None;
-    }
-    let q = (p - 0.5).clamp(DVec2::ZERO, last);
-    let (low, t) = (q.floor(), q.fract().as_vec2());
-    let high = (low + 1.0).min(last);
-    let at = |x: f64, y: f64| photo.rgb(x as usize, y as usize);
-    let top = at(low.x, low.y).lerp(at(high.x, low.y), t.x);
-    let bottom = at(low.x, high.y).lerp(at(high.x, high.y), t.x);
-    Some(top.lerp(bottom, t.y))
 }
