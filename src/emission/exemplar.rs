@@ -54,15 +54,13 @@ pub struct Working {
     pub colour: Image,
     /// Confidence that a pixel is light.
     pub confidence: Vec<f32>,
-    /// Share of a pixel that is light, and whether half of it is.
+    /// Share of a pixel that is light.
     pub coverage: Vec<f32>,
-    pub lit: Vec<bool>,
     /// May be used: shown, and not part of a lamp that the border cuts off while whole ones are there to take its place.
     pub usable: Vec<bool>,
-    /// Shown, cut lamps and all, the share that is light, and whether half of it is: what the pattern is read from.
+    /// Shown, cut lamps and all, and the share that is light: what the pattern is read from.
     pub shown: Vec<bool>,
     pub shown_coverage: Vec<f32>,
-    pub shown_lit: Vec<bool>,
 }
 
 impl Exemplar {
@@ -248,7 +246,6 @@ impl Working {
         let channel = |c: usize| reduced.data.iter().skip(c).step_by(CHANNELS);
         let confidence = try_collect(channel(3).copied())?;
         let coverage = try_collect(channel(4).copied())?;
-        let lit = try_collect(channel(4).map(|&v| v >= 0.5))?;
 
         // A working pixel is usable if all of it is. If that leaves none, only full size can show what there is.
         let all = |c: usize| try_collect(channel(c).map(|&v| v > 1.0 - 1e-4));
@@ -257,8 +254,12 @@ impl Working {
             return Self::new(sources, longest, job);
         }
         let (shown, shown_coverage) = (all(6)?, try_collect(channel(7).copied())?);
-        let shown_lit = try_collect(channel(7).map(|&v| v >= 0.5))?;
-        Ok(Self { width, height, pitch, colour, confidence, coverage, lit, usable, shown, shown_coverage, shown_lit })
+        Ok(Self { width, height, pitch, colour, confidence, coverage, usable, shown, shown_coverage })
+    }
+
+    /// Whether half of a pixel is light.
+    pub fn is_lit(&self, pixel: usize) -> bool {
+        self.coverage[pixel] >= 0.5
     }
 
     /// The index of a pixel, if there is one.

@@ -15,8 +15,15 @@ const NONE: u32 = u32::MAX;
 
 /// Confidence in channel 0; the x and y offset to the nearest lit pixel in channels 1 and 2, divided by `cap` and clamped
 /// to [-1, 1]; both are 1 where there is no light at all. The two ends of the range mean the same: nothing near.
-pub fn compute(confidence: &[f32], lit: &[bool], width: usize, height: usize, cap: f64, job: Job) -> Result<Image> {
-    let nearest = nearest_feature(lit, width, height, job)?;
+pub fn compute(
+    confidence: &[f32],
+    is_lit: impl Fn(usize) -> bool,
+    width: usize,
+    height: usize,
+    cap: f64,
+    job: Job,
+) -> Result<Image> {
+    let nearest = nearest_feature(is_lit, width, height, job)?;
     let mut out = Image::new(width, height, 3)?;
     for (i, pixel) in out.data.chunks_exact_mut(3).enumerate() {
         let distance = |from: usize, to: usize| ((to as f64 - from as f64) / cap).clamp(-1.0, 1.0) as f32;
@@ -34,14 +41,14 @@ pub fn compute(confidence: &[f32], lit: &[bool], width: usize, height: usize, ca
 
 /// Index of the lit pixel nearest to each pixel, exact and in linear time: along columns by two sweeps, then along rows by
 /// the lower envelope of parabolas (Felzenszwalb and Huttenlocher 2012).
-fn nearest_feature(lit: &[bool], width: usize, height: usize, job: Job) -> Result<Vec<u32>> {
+fn nearest_feature(is_lit: impl Fn(usize) -> bool, width: usize, height: usize, job: Job) -> Result<Vec<u32>> {
     // The nearest lit row within each column.
     let mut row_of = try_vec(width * height, NONE)?;
     for y in 0..height {
         for x in 0..width {
             let i = y * width + x;
             row_of[i] = match () {
-                _ if lit[i] => y as u32,
+                _ if is_lit(i) => y as u32,
                 _ if y > 0 => row_of[i - width],
                 _ => NONE,
             };
@@ -103,7 +110,7 @@ mod tests {
         {
             let mut rng = Rng::new(3, &[case as u64]);
             let lit: Vec<bool> = (0..w * h).map(|_| rng.next_f64() < density).collect();
-            let nearest = nearest_feature(&lit, w, h, monitor.job()).unwrap();
+            let nearest = nearest_feature(|i| lit[i], w, h, monitor.job()).unwrap();
             for i in 0..w * h {
                 let square = |j: usize| (i % w).abs_diff(j % w).pow(2) + (i / w).abs_diff(j / w).pow(2);
                 let best = (0..w * h).filter(|&j| lit[j]).map(square).min();
@@ -121,12 +128,12 @@ mod tests {
         let monitor = Monitor::default();
         let mut lit = vec![false; 11 * 3];
         lit[11 + 5] = true;
-        let metadata = compute(&[0.5; 33], &lit, 11, 3, 4.0, monitor.job()).unwrap();
+        let metadata = compute(&[0.5; 33], |i| lit[i], 11, 3, 4.0, monitor.job()).unwrap();
         assert_eq!(metadata.pixel(5, 1), [0.5, 0.0, 0.0]);
         assert_eq!(metadata.pixel(3, 0), [0.5, 0.5, 0.25]);
         assert_eq!(metadata.pixel(7, 2), [0.5, -0.5, -0.25]);
         assert_eq!(metadata.pixel(10, 1), [0.5, -1.0, 0.0]);
-        let dark = compute(&[0.0; 33], &[false; 33], 11, 3, 4.0, monitor.job()).unwrap();
+        let dark = compute(&[0.0; 33], |_| false, 11, 3, 4.0, monitor.job()).unwrap();
         assert!(dark.data.chunks_exact(3).all(|p| p == [0.0, 1.0, 1.0]));
     }
 }

@@ -505,7 +505,7 @@ impl Quilt<'_> {
             (NONE, _) | (_, None) => 0.0,
             (old, Some(new)) => {
                 let old = old as usize;
-                let lamp = if working.lit[old] || working.lit[new] { LAMP_COST } else { 0.0 };
+                let lamp = if working.is_lit(old) || working.is_lit(new) { LAMP_COST } else { 0.0 };
                 squares(&self.features[old..=old], &self.features[new..=new], self.turns) + lamp
             }
         };

@@ -136,7 +136,7 @@ pub fn find(exemplar: &Exemplar, least_regularity: f32, job: Job) -> Result<(Con
     let (width, height) = (reduce(working.width), reduce(working.height));
     let mut mask = Image::new(working.width, working.height, 2)?;
     for (i, pixel) in mask.data.chunks_exact_mut(2).enumerate().filter(|(i, _)| working.shown[*i]) {
-        pixel.copy_from_slice(&[f32::from(working.shown_lit[i]), 1.0]);
+        pixel.copy_from_slice(&[f32::from(working.shown_coverage[i] >= 0.5), 1.0]);
     }
     let mask = pyramid::resize(&mask, width, height, job.part(0.0, 0.2))?;
     let valid: Vec<bool> = mask.data.chunks_exact(2).map(|p| p[1] > 0.5).collect();

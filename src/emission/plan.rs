@@ -275,7 +275,7 @@ impl Layer {
         let cap = reach.min(block as f64).max(1.0);
         let metadata = metadata::compute(
             &working.confidence,
-            &working.lit,
+            |pixel| working.is_lit(pixel),
             working.width,
             working.height,
             cap,
