@@ -34,7 +34,9 @@ fn main() {
     let chosen: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with('-')).collect();
     let wants = |section: &str| chosen.is_empty() || chosen.iter().any(|c| c == section);
     let pool = Pool::new(2).expect("two threads");
+    // The peak of memory first: a process keeps some of what it has once had.
     let sections: [(&str, fn()); 8] = [
+        ("tiles", tiles::tiles),
         ("patterns", patterns),
         ("perspective", photos::perspective),
         ("ceilings", photos::ceilings),
@@ -42,7 +44,6 @@ fn main() {
         ("recovery", recovery::recovery),
         ("seconds", seconds),
         ("knobs", knobs),
-        ("tiles", tiles::tiles),
     ];
     for (name, section) in sections {
         if wants(name) {
