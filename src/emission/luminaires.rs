@@ -181,7 +181,8 @@ fn measure(label: u32, lamp: &Component, texture: &Image, total: f64, lights: &L
     colour /= lamp.area as f64;
 
     let ring = Ring::walk(lamp, &is_in, &|at| lights.coverage(at));
-    let (outline, size) = ring.outline(DVec2::from_angle(orientation));
+    let (outline, size) =
+        ring.outline(DVec2::from_angle(orientation), DVec2::new(texture.width as f64, texture.height as f64));
     let flux = f64::from(luminance(colour.as_vec3())) * lamp.area as f64;
     Luminaire {
         centre: DVec2::new(low[0] as f64, low[1] as f64) + centre,

@@ -22,6 +22,8 @@ const SIDE: f64 = 2.0;
 const BLUNT: f64 = 2.0;
 const MOST_EXTENDED: f64 = 1.5;
 const CORNER: f64 = 0.5;
+/// How far from the border of the texture, in texels, a corner on it may be by rounding.
+const ROUNDING: f64 = 1e-6;
 
 /// The outer boundary of a lamp, the lamp on the right, a crossing and the texel corner before it for each texel's edge. Points
 /// are relative to the lamp's first column and row, so that they have the same bits wherever it lies.
@@ -71,15 +73,15 @@ impl Ring {
         Self { crossings, corners, is_soft, narrow, origin: DVec2::new(origin[0] as f64, origin[1] as f64) }
     }
 
-    /// The corners of the outline, and how far it reaches along and across a direction.
-    pub fn outline(self, axis: DVec2) -> (Vec<DVec2>, DVec2) {
+    /// The corners of the outline within a texture of a size, and how far it reaches along and across a direction.
+    pub fn outline(self, axis: DVec2, texture: DVec2) -> (Vec<DVec2>, DVec2) {
         let Self { mut crossings, corners, is_soft, narrow, origin } = self;
         let mut outline = if is_soft && narrow > NARROW {
             // From the point farthest from the middle on, however the lamp lies.
             let middle = crossings.iter().sum::<DVec2>() / crossings.len() as f64;
             let first = farthest(&crossings, middle);
             crossings.rotate_left(first);
-            let outline = with_corners(&simplified(crossings.clone(), TOLERANCE));
+            let outline = with_corners(&simplified(crossings.clone(), TOLERANCE), [-origin, texture - origin]);
             crossings.extend(&outline);
             outline
         } else {
@@ -152,24 +154,26 @@ fn simplify(points: &[DVec2], first: usize, last: usize, tolerance: f64, kept: &
     }
 }
 
-/// The same ring with the corners that lie beyond its blunt ones.
-fn with_corners(ring: &[DVec2]) -> Vec<DVec2> {
+/// The same ring with the corners that lie beyond its blunt ones, but those that a texture, from its first to its last corner, cuts.
+fn with_corners(ring: &[DVec2], [first, last]: [DVec2; 2]) -> Vec<DVec2> {
     let n = ring.len();
     let point = |i: usize| ring[i % n];
     let is_side = |i: usize| point(i).distance(point(i + 1)) >= SIDE;
-    let Some(first) = (0..n).find(|&i| is_side(i)) else { return ring.to_vec() };
+    let Some(begin) = (0..n).find(|&i| is_side(i)) else { return ring.to_vec() };
+    let is_within = |corner: &DVec2| corner.distance(corner.clamp(first, last)) < ROUNDING;
 
     // From the end of each side to the beginning of the next, once around.
     let mut out = Vec::new();
-    let mut side = first;
-    while side < first + n {
+    let mut side = begin;
+    while side < begin + n {
         let (end, mut next) = (side + 1, side + 1);
         while !is_side(next) {
             next += 1;
         }
         let between: Vec<DVec2> = (end..=next).map(point).collect();
-        match corner([point(side), point(end)], [point(next), point(next + 1)], &between) {
-            Some(corner) => out.push(corner),
+        let corner = corner([point(side), point(end)], [point(next), point(next + 1)], &between);
+        match corner.filter(is_within) {
+            Some(corner) => out.push(corner.clamp(first, last)),
             None => out.extend(between),
         }
         side = next;

@@ -131,6 +131,19 @@ fn a_mirrored_exemplar_has_the_mirrored_outline() {
 }
 
 #[test]
+fn a_corner_that_the_border_cuts_stays_cut() {
+    for k in 0..8 {
+        // Squares on their corners, of which one reaches over the border by up to a texel.
+        let beyond = 0.15 * k as f64;
+        let shape = turned(&SQUARE, std::f64::consts::FRAC_PI_4, 9.0, DVec2::new(9.0 * 2f64.sqrt() - beyond, 25.3));
+        let result = design(40, 50, &[shape]).run(&Params { width: 40, height: 50, ..Params::default() }).unwrap();
+        let outline = &result.luminaires[0].outline;
+        assert!(outline.iter().all(|p| p.cmpge(DVec2::ZERO).all()), "{beyond}: {outline:?}");
+        assert!((result.luminaires[0].area / (324.0 - beyond * beyond) - 1.0).abs() < 0.01);
+    }
+}
+
+#[test]
 fn what_the_border_cuts_ends_at_the_border() {
     let shape = turned(&SQUARE, 0.0, 10.0, DVec2::new(3.25, 30.375));
     let params = Params { width: 60, height: 60, ..Params::default() };
