@@ -4,8 +4,8 @@ use super::components::{self, Component, Components};
 use super::outline::Ring;
 use super::{Luminaire, kinds};
 use crate::error::Result;
-use crate::image::Image;
 use crate::image::colour::luminance;
+use crate::image::{Image, try_vec};
 use crate::job::Job;
 use glam::{DVec2, DVec3, Vec3};
 
@@ -75,7 +75,7 @@ pub type Coverage<'a> = &'a dyn Fn(usize) -> f32;
 /// One luminaire for each connected component of the lights, in the order of their first texel.
 pub fn find(texture: &Image, found: &Components, coverage: Coverage, job: Job) -> Result<Vec<Luminaire>> {
     let total = texture.data.chunks_exact(3).map(|p| f64::from(luminance(Vec3::from_slice(p)))).sum::<f64>();
-    let lights = Lights { width: texture.width, height: texture.height, labels: &found.labels, coverage };
+    let lights = Lights::new(found, coverage, texture.width, texture.height)?;
     let lamps: Result<Vec<Luminaire>> = (1..)
         .zip(&found.list)
         .map(|(label, lamp)| {
@@ -99,14 +99,24 @@ pub fn tell_kinds(lamps: &mut [Luminaire], texture: &Image) {
 
 /// Which texels are light, and how much of each.
 pub struct Lights<'a> {
-    pub width: usize,
-    pub height: usize,
+    width: usize,
+    height: usize,
     /// 0 or the number of the lamp.
-    pub labels: &'a [u32],
-    pub coverage: Coverage<'a>,
+    labels: &'a [u32],
+    coverage: Coverage<'a>,
+    /// The most of each lamp by its number, which is taken for all of a texel: a confidence need not reach 1.
+    full: Vec<f32>,
 }
 
-impl Lights<'_> {
+impl<'a> Lights<'a> {
+    pub fn new(found: &'a Components, coverage: Coverage<'a>, width: usize, height: usize) -> Result<Self> {
+        let mut full = try_vec(found.list.len() + 1, 0f32)?;
+        for (i, &label) in found.labels.iter().enumerate().filter(|(_, label)| **label != 0) {
+            full[label as usize] = full[label as usize].max(coverage(i));
+        }
+        Ok(Self { width, height, labels: &found.labels, coverage, full })
+    }
+
     fn index(&self, [x, y]: [isize; 2]) -> Option<usize> {
         let inside = x >= 0 && y >= 0 && x < self.width as isize && y < self.height as isize;
         inside.then(|| y as usize * self.width + x as usize)
@@ -120,7 +130,12 @@ impl Lights<'_> {
     /// How much of a texel is light; nothing beyond the texture.
     fn coverage(&self, at: [isize; 2]) -> Option<f64> {
         let i = self.index(at)?;
-        let share = f64::from((self.coverage)(i));
+        let around = AROUND.iter().filter_map(|[u, v]| self.label([at[0] + u, at[1] + v]));
+        let full = match self.labels[i] {
+            0 => around.map(|label| self.full[label as usize]).fold(0.0, f32::max),
+            label => self.full[label as usize],
+        };
+        let share = f64::from((self.coverage)(i)) / f64::from(if full > 0.0 { full } else { 1.0 });
         Some(if self.labels[i] != 0 { share.clamp(0.5, 1.0) } else { share.clamp(0.0, 0.5) })
     }
 

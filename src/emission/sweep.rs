@@ -37,8 +37,7 @@ pub fn find(plan: &Plan, input: &Input, styles: &[Style], job: Job) -> Result<Ve
         let (own, start) = ((y - top) * plan.width, y - top);
         let light = |i: usize| found.labels[own + i].checked_sub(1).map(|k| first + k);
         let coverage = |i: usize| coverage.data[i];
-        let shown =
-            luminaires::Lights { width: plan.width, height: tile.height, labels: &found.labels, coverage: &coverage };
+        let shown = luminaires::Lights::new(&found, &coverage, plan.width, tile.height)?;
         for i in 0..rows * plan.width {
             if let Some(k) = light(i) {
                 let (u, v) = (i % plan.width, i / plan.width);

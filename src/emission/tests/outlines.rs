@@ -131,6 +131,27 @@ fn a_mirrored_exemplar_has_the_mirrored_outline() {
 }
 
 #[test]
+fn a_mask_that_is_nowhere_sure_tells_nearly_the_same() {
+    // A lamp of which nothing is surer than 0.8 is no smaller for that, but for what the mask leaves out.
+    let shapes = [turned(&SQUARE, 0.3, 7.2, DVec2::new(16.3, 14.9)), disc(7.7, DVec2::new(42.6, 16.2))];
+    let whole = [turned(&SQUARE, 0.0, 6.0, DVec2::new(15.0, 16.0))];
+    let params = Params { width: 60, height: 32, ..Params::default() };
+    for (shapes, share, away) in [(&shapes[..], 0.03, 0.3), (&whole[..], 1e-6, 1e-6)] {
+        let sure = design(60, 32, shapes);
+        let mut unsure = design(60, 32, shapes);
+        unsure.light.data.iter_mut().for_each(|c| *c *= 0.8);
+        let (sure, unsure) = (sure.run(&params).unwrap(), unsure.run(&params).unwrap());
+        assert_eq!(unsure.luminaires.len(), shapes.len());
+        for (a, b) in sure.luminaires.iter().zip(&unsure.luminaires) {
+            assert!(
+                (b.area / a.area - 1.0).abs() < share && distance(&a.outline, &b.outline, &[], 0.0) < away,
+                "{b:?}"
+            );
+        }
+    }
+}
+
+#[test]
 fn a_corner_that_the_border_cuts_stays_cut() {
     for k in 0..8 {
         // Squares on their corners, of which one reaches over the border by up to a texel.
