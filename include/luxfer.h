@@ -4164,6 +4164,14 @@ typedef struct luxfer_stylize_params {
     float coarse_guides;
     /** Rounds on each level coarser than the one before the finest, in [1, 100]; default 24; 6 is the paper's. */
     uint32_t coarse_iterations;
+    /**
+     * Weight of usage in LUXFER_STYLIZE_MODE_OCCURRENCE, lambda, in [0, 10]; default 0.1, which Fiser et al. found best by
+     * hand (Fig. 10n). What a match to a patch that is used as often as all on average costs beside its distance, both in the
+     * unit of Eq. 1: squared differences of channels in [0, 1], summed over a patch. 0 is LUXFER_STYLIZE_MODE_NEAREST.
+     */
+    float occurrence;
+    /** Must be 0. */
+    uint32_t reserved;
 } luxfer_stylize_params;
 
 /** How good and how fast: a LUXFER_STYLIZE_ preset. */
@@ -4197,6 +4205,12 @@ typedef int32_t luxfer_stylize_preset;
  * Each pixel takes the exemplar pixel whose guides are nearest; with normals as guides the Lit Sphere (Sloan et al. 2001).
  */
 #define LUXFER_STYLIZE_MODE_LIT_SPHERE 4
+
+/**
+ * Each place takes its nearest exemplar patch, and one that is used often counts as farther (Kaspar et al. 2015): see
+ * occurrence. On one thread, and by LUXFER_STYLIZE_SEARCH_PATCHMATCH only.
+ */
+#define LUXFER_STYLIZE_MODE_OCCURRENCE 5
 
 /** PatchMatch, the default. */
 #define LUXFER_STYLIZE_SEARCH_PATCHMATCH 0

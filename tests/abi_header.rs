@@ -402,7 +402,7 @@ layouts! {
     luxfer_guides_params: struct_size width height samples camera smooth seed;
     luxfer_stylize_params: struct_size mode search patch guide_weight levels iterations finest_iterations polish sweeps
         coverage passes settle seam vote final_vote preview keep_for_update coherence match_appearance
-        seed coarse_guides coarse_iterations;
+        seed coarse_guides coarse_iterations occurrence reserved;
     luxfer_stylize_report: struct_size finished levels halvings patch most_used energy used entropy guide_error
         broken_source broken_target;
     luxfer_stylize_round: struct_size passes energy;

@@ -90,6 +90,28 @@ fn ready(context: *mut luxfer_context, width: u32) -> *mut luxfer_stylize {
 }
 
 #[test]
+fn usage_can_be_a_cost() {
+    let context = context(2);
+    let stylize = ready(context, 140);
+    let with = |mode, occurrence: f32| {
+        let params = luxfer_stylize_params { mode, occurrence, ..params() };
+        assert_eq!(run(stylize, &params), LUXFER_OK, "{}", message(context));
+        let picture = get(stylize, LUXFER_STYLIZE_IMAGE_PICTURE);
+        let (_, _, colours) = pixels(picture);
+        assert_eq!(unsafe { luxfer_image_release(picture) }, LUXFER_OK);
+        (colours, report(stylize).used)
+    };
+    let plain = with(LUXFER_STYLIZE_MODE_NEAREST, 1.0);
+    assert!(with(LUXFER_STYLIZE_MODE_OCCURRENCE, 0.0) == plain);
+    let used = with(LUXFER_STYLIZE_MODE_OCCURRENCE, 1.0).1;
+    assert!(used > plain.1, "{used} {}", plain.1);
+    unsafe {
+        assert_eq!(luxfer_stylize_release(stylize), LUXFER_OK);
+        assert_eq!(luxfer_context_release(context), LUXFER_OK);
+    }
+}
+
+#[test]
 fn a_target_is_stylised_and_reported_level_by_level() {
     let context = context(2);
     let stylize = ready(context, 70);
@@ -278,7 +300,7 @@ fn handles_and_settings_that_are_wrong_are_refused() {
         }
         let good = params();
         for bad in [
-            luxfer_stylize_params { mode: 5, ..good },
+            luxfer_stylize_params { mode: 6, ..good },
             luxfer_stylize_params { mode: -1, ..good },
             luxfer_stylize_params { search: 2, ..good },
             luxfer_stylize_params { patch: 4, ..good },
@@ -291,6 +313,10 @@ fn handles_and_settings_that_are_wrong_are_refused() {
             luxfer_stylize_params { vote: 4, ..good },
             luxfer_stylize_params { preview: 2, ..good },
             luxfer_stylize_params { keep_for_update: 7, ..good },
+            luxfer_stylize_params { occurrence: f32::NAN, ..good },
+            luxfer_stylize_params { occurrence: -1.0, ..good },
+            luxfer_stylize_params { occurrence: 10.5, ..good },
+            luxfer_stylize_params { reserved: 1, ..good },
             luxfer_stylize_params { struct_size: 71, ..good },
         ] {
             assert_eq!(luxfer_stylize_start(stylize, &bad, &mut job), LUXFER_INVALID_ARGUMENT);

@@ -63,8 +63,15 @@ pub fn energy(picture: &Image, artwork: &Image, guides: &[(Image, Image)]) -> f6
     let base = features(artwork, &|g| guides[g].0.clone());
     let query = features(picture, &|g| guides[g].1.clone());
     let allowed = everywhere(&base);
-    let search =
-        Search { query: &query, base: &base, allowed: &allowed, patch: PATCH, kernel: Kernel::detect(), seed: 9 };
+    let search = Search {
+        query: &query,
+        base: &base,
+        allowed: &allowed,
+        patch: PATCH,
+        occurrence: None,
+        kernel: Kernel::detect(),
+        seed: 9,
+    };
     let mut field = Field::new(query.width + 1 - PATCH, query.height + 1 - PATCH).expect("memory");
     for index in 0..10 {
         search
@@ -104,8 +111,15 @@ fn coherence(picture: &Image, artwork: &Image) -> f64 {
     };
     let (base, query) = (features(artwork), features(picture));
     let allowed = everywhere(&base);
-    let search =
-        Search { query: &query, base: &base, allowed: &allowed, patch: PATCH, kernel: Kernel::detect(), seed: 9 };
+    let search = Search {
+        query: &query,
+        base: &base,
+        allowed: &allowed,
+        patch: PATCH,
+        occurrence: None,
+        kernel: Kernel::detect(),
+        seed: 9,
+    };
     let mut field = Field::new(query.width + 1 - PATCH, query.height + 1 - PATCH).expect("memory");
     let mut rng = Rng::new(5, &[]);
     let mut chosen = vec![false; field.at.len()];

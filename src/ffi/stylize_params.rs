@@ -32,6 +32,9 @@ pub const LUXFER_STYLIZE_MODE_NEAREST: luxfer_stylize_mode = 2;
 pub const LUXFER_STYLIZE_MODE_GREEDY: luxfer_stylize_mode = 3;
 /// Each pixel takes the exemplar pixel whose guides are nearest; with normals as guides the Lit Sphere (Sloan et al. 2001).
 pub const LUXFER_STYLIZE_MODE_LIT_SPHERE: luxfer_stylize_mode = 4;
+/// Each place takes its nearest exemplar patch, and one that is used often counts as farther (Kaspar et al. 2015): see
+/// occurrence. On one thread, and by LUXFER_STYLIZE_SEARCH_PATCHMATCH only.
+pub const LUXFER_STYLIZE_MODE_OCCURRENCE: luxfer_stylize_mode = 5;
 
 /// How nearest patches are searched for: a LUXFER_STYLIZE_SEARCH_ value.
 pub type luxfer_stylize_search = i32;
@@ -106,18 +109,24 @@ pub struct luxfer_stylize_params {
     pub coarse_guides: f32,
     /// Rounds on each level coarser than the one before the finest, in [1, 100]; default 24; 6 is the paper's.
     pub coarse_iterations: u32,
+    /// Weight of usage in LUXFER_STYLIZE_MODE_OCCURRENCE, lambda, in [0, 10]; default 0.1, which Fiser et al. found best by
+    /// hand (Fig. 10n). What a match to a patch that is used as often as all on average costs beside its distance, both in the
+    /// unit of Eq. 1: squared differences of channels in [0, 1], summed over a patch. 0 is LUXFER_STYLIZE_MODE_NEAREST.
+    pub occurrence: f32,
+    /// Must be 0.
+    pub reserved: u32,
 }
 
 // SAFETY: plain numbers.
 unsafe impl Versioned for luxfer_stylize_params {
     const NAME: &'static str = "luxfer_stylize_params";
-    const SIZES: &'static [usize] = &[96];
+    const SIZES: &'static [usize] = &[104];
     fn defaults() -> Self {
         Self::of(&stylize::Params::default())
     }
 }
 
-const MODES: [Mode; 5] = [Mode::Budget, Mode::Uniform, Mode::Nearest, Mode::Greedy, Mode::LitSphere];
+const MODES: [Mode; 6] = [Mode::Budget, Mode::Uniform, Mode::Nearest, Mode::Greedy, Mode::LitSphere, Mode::Occurrence];
 const SEARCHES: [Finder; 2] = [Finder::PatchMatch, Finder::Table];
 const VOTES: [Vote; 4] = [Vote::Plain, Vote::Weighted, Vote::Nearest, Vote::Most];
 
@@ -130,7 +139,7 @@ pub(super) fn choice<T: Copy>(values: &[T], index: i32, name: &str, prefix: &str
 impl luxfer_stylize_params {
     pub(super) fn of(p: &stylize::Params) -> Self {
         Self {
-            struct_size: 96,
+            struct_size: 104,
             mode: p.mode as i32,
             search: p.finder as i32,
             patch: p.patch as u32,
@@ -153,10 +162,15 @@ impl luxfer_stylize_params {
             seed: p.seed,
             coarse_guides: p.coarse_guides,
             coarse_iterations: p.coarse_iterations as u32,
+            occurrence: p.occurrence,
+            reserved: 0,
         }
     }
 
     pub(super) fn params(&self) -> Result<stylize::Params> {
+        if self.reserved != 0 {
+            return Err(Error::argument(format!("reserved is {}; it must be 0", self.reserved)));
+        }
         let params = stylize::Params {
             mode: choice(&MODES, self.mode, "mode", "LUXFER_STYLIZE_MODE_")?,
             finder: choice(&SEARCHES, self.search, "search", "LUXFER_STYLIZE_SEARCH_")?,
@@ -179,6 +193,7 @@ impl luxfer_stylize_params {
             seed: self.seed,
             coarse_guides: self.coarse_guides,
             coarse_iterations: self.coarse_iterations as usize,
+            occurrence: self.occurrence,
         };
         params.check()?;
         Ok(params)

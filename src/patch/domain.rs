@@ -90,12 +90,14 @@ impl Domain {
         &self.list
     }
 
-    /// The domain with the members for which `keep` holds.
-    pub fn filtered(&self, keep: impl Fn(usize) -> bool) -> Result<Self> {
-        let mut out = self.try_clone()?;
-        out.member.iter_mut().enumerate().for_each(|(i, m)| *m = *m && keep(i));
-        out.compact();
-        Ok(out)
+    /// Of each patch whether it is a member.
+    pub fn flags(&self) -> &[bool] {
+        &self.member
+    }
+
+    /// [`Domain::flags`], of which nothing else is kept.
+    pub fn into_flags(self) -> Vec<bool> {
+        self.member
     }
 }
 

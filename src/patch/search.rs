@@ -7,6 +7,7 @@ use super::domain::Domain;
 use super::features::Features;
 use super::field::{Field, NONE, pack, unpack};
 use super::kernel::{Kernel, Patch};
+use super::occurrence::Occurrence;
 use crate::error::Result;
 use crate::exec;
 use crate::job::Job;
@@ -24,6 +25,9 @@ pub struct Search<'a> {
     pub allowed: &'a Domain,
     /// Width of a patch in pixels.
     pub patch: usize,
+    /// What matches cost beside their distances, counted along in [`Search::sweep`], which then takes one tile after the
+    /// other, on one thread.
+    pub occurrence: Option<&'a Occurrence>,
     pub kernel: Kernel,
     pub seed: u64,
 }
@@ -48,6 +52,14 @@ impl Search<'_> {
         }
         let run = self.patch * self.query.lanes;
         self.kernel.distance(at(self.query, x, y), at(self.base, match_x, match_y), run, self.patch, limit)
+    }
+
+    /// What a match at a position, or [`NONE`], costs beside its distance.
+    fn cost(&self, position: u32) -> u32 {
+        match self.occurrence {
+            Some(occurrence) if position != NONE => occurrence.cost(position),
+            _ => 0,
+        }
     }
 
     /// Recomputes the distances of the patches for which `wanted` holds, where they have an allowed match.
@@ -90,7 +102,7 @@ impl Search<'_> {
         Ok(())
     }
 
-    /// Lowers the distances of the patches for which `active` holds; no distance rises.
+    /// Lowers the distances of the patches for which `active` holds; no distance rises, but where usage costs.
     pub fn sweep(
         &self,
         field: &mut Field,
@@ -103,6 +115,16 @@ impl Search<'_> {
         }
         let (columns, rows) = (field.width.div_ceil(TILE), field.height.div_ceil(TILE));
         let key = hash(self.seed, &[sweep.index]);
+        if self.occurrence.is_some() {
+            for t in 0..columns * rows {
+                job.check()?;
+                let mut tile = Tile::cut(field, t % columns * TILE, t / columns * TILE);
+                tile.search(self, field, sweep, key, &active);
+                tile.paste(field);
+                job.report((t + 1) as f64 / (columns * rows) as f64);
+            }
+            return Ok(());
+        }
         let tiles = exec::map(columns * rows, job, |t| {
             let mut tile = Tile::cut(field, t % columns * TILE, t / columns * TILE);
             tile.search(self, field, sweep, key, &active).then_some(tile)
@@ -170,11 +192,13 @@ impl Tile {
             let i = if backwards { 2 * count - 1 - step } else { step };
             let (x, y) = (self.x0 + i % self.width, self.y0 + i / self.width);
             let index = y * before.width + x;
-            if self.error[i] == 0 || !active(index) {
+            if self.error[i] == 0 && search.occurrence.is_none() || !active(index) {
                 continue;
             }
             busy = true;
-            let mut best = Best { at: self.at[i], error: self.error[i], x, y };
+            // Distances are compared with what matches cost, but kept without.
+            let total = self.error[i].saturating_add(search.cost(self.at[i]));
+            let mut best = Best { at: self.at[i], error: total, x, y };
 
             // Propagation: the matches of the two neighbours just visited, moved by one.
             let d = if backwards { 1 } else { -1 };
@@ -204,7 +228,14 @@ impl Tile {
                     reach /= 2;
                 }
             }
-            (self.at[i], self.error[i]) = (best.at, best.error);
+            if best.error == total && best.at == self.at[i] {
+                continue;
+            }
+            let distance = best.error - search.cost(best.at);
+            if let Some(occurrence) = search.occurrence {
+                occurrence.replace(self.at[i], best.at);
+            }
+            (self.at[i], self.error[i]) = (best.at, distance);
         }
         busy
     }
@@ -290,9 +321,13 @@ impl Best {
         if (at == self.at && self.error != u32::MAX) || !search.allowed.contains(px, py) {
             return;
         }
-        let error = search.distance(self.x, self.y, px, py, self.error);
-        if error < self.error {
-            (self.at, self.error) = (at, error);
+        let cost = search.cost(at);
+        if cost >= self.error {
+            return;
+        }
+        let error = search.distance(self.x, self.y, px, py, self.error - cost);
+        if error < self.error - cost {
+            (self.at, self.error) = (at, error + cost);
         }
     }
 }
@@ -315,8 +350,15 @@ mod tests {
     fn joining_mends_strays_lowers_its_cost_and_leaves_what_fits() {
         let (query, base) = (noise(70, 60), noise(70, 60));
         let allowed = Domain::new(70, 60, 5, None, false).unwrap();
-        let search =
-            Search { query: &query, base: &base, allowed: &allowed, patch: 5, kernel: Kernel::detect(), seed: 1 };
+        let search = Search {
+            query: &query,
+            base: &base,
+            allowed: &allowed,
+            patch: 5,
+            occurrence: None,
+            kernel: Kernel::detect(),
+            seed: 1,
+        };
         let monitor = Monitor::default();
         let truth = {
             let mut field = Field::proportional(66, 56, &allowed).unwrap();

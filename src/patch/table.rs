@@ -180,8 +180,15 @@ mod tests {
         let allowed = Domain::new(60, 50, 5, None, false).unwrap();
         let table = Table::new(&Means::new(&base, 5, job.job()).unwrap(), &allowed, job.job()).unwrap();
         let means = Means::new(&query, 5, job.job()).unwrap();
-        let search =
-            Search { query: &query, base: &base, allowed: &allowed, patch: 5, kernel: Kernel::detect(), seed: 1 };
+        let search = Search {
+            query: &query,
+            base: &base,
+            allowed: &allowed,
+            patch: 5,
+            occurrence: None,
+            kernel: Kernel::detect(),
+            seed: 1,
+        };
         let mut field = Field::new(26, 16).unwrap();
         search.look_up(&mut field, &table, &means, 2 * LEAF, job.job(), |_| true).unwrap();
         // A patch whose mean equals that of a split may lie on the other side of it: the few ties are missed.

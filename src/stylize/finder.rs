@@ -41,17 +41,17 @@ impl<'a> Nearest<'a> {
         Ok(Self { level, sweeps: params.sweeps, tables })
     }
 
-    /// Improves the matches of target patches among exemplar patches; `index` numbers the call.
+    /// Improves the matches of target patches among exemplar patches, as `search` counts them; `index` numbers the call.
     pub fn forward(
         &self,
+        search: &Search,
         field: &mut Field,
         index: u64,
         job: Job,
         active: impl Fn(usize) -> bool + Sync,
     ) -> Result<()> {
-        let search = self.level.forward();
         match &self.tables {
-            None => self.sweep(&search, field, Sweep { index, reach: 64, fresh: 4 }, job, active),
+            None => self.sweep(search, field, Sweep { index, reach: 64, fresh: 4 }, job, active),
             Some(t) => search.look_up(field, &t.source, &t.target_means, TRIES, job, active),
         }
     }

@@ -224,7 +224,7 @@ impl<'a> Level<'a> {
     }
 
     /// The wanted patches that would look different with another picture: the distances of all others stay as they are.
-    pub fn changed_by(&self, picture: &Image, job: Job) -> Result<Domain> {
+    pub fn changed_by(&self, picture: &Image, job: Job) -> Result<Vec<bool>> {
         let (width, lanes) = (picture.width, self.target.lanes);
         let mut differs = try_vec(width * picture.height, false)?;
         exec::for_rows(&mut differs, width, job, |y, row| {
@@ -233,8 +233,9 @@ impl<'a> Level<'a> {
                 *differs = old.iter().zip(new).zip(&self.colours).any(|((o, n), q)| q.quantise(*n) != *o);
             }
         })?;
-        let touched = Domain::new(width, picture.height, self.problem.patch, Some(&differs), true)?;
-        touched.filtered(|i| self.wanted.contains_index(i))
+        let mut touched = Domain::new(width, picture.height, self.problem.patch, Some(&differs), true)?.into_flags();
+        touched.iter_mut().zip(self.wanted.flags()).for_each(|(touched, wanted)| *touched &= wanted);
+        Ok(touched)
     }
 
     /// Takes over the colour of one pixel.
@@ -257,6 +258,7 @@ impl<'a> Level<'a> {
             base: &self.source,
             allowed: &self.allowed,
             patch: self.problem.patch,
+            occurrence: None,
             kernel: self.kernel,
             seed: self.seed,
         }

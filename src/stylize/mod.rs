@@ -10,7 +10,8 @@
 //!
 //! `guides` normalises, `level` quantises one resolution, `retrieve` matches under the budget, `budget` fits the knee,
 //! `finder` searches,
-//! `schedule` goes from coarse to fine, `study` follows changes of the artwork, `animate` goes from frame to frame, `greedy` is Hertzmann's algorithm for comparison, `report` measures, `probe` foretells.
+//! `schedule` goes from coarse to fine, `study` follows changes of the artwork, `animate` goes from frame to frame, `greedy`
+//! is Hertzmann's algorithm for comparison, `report` measures, `probe` foretells.
 //!
 //! Colours are compared and averaged as they are encoded for display (sRGB), which is how paint is looked at.
 //!
@@ -42,8 +43,8 @@
 //!
 //! Leaving the last tenth of the target to ordinary retrieval saves a tenth of the time, and costs nothing.
 //!
-//! Memory: with four guides of three channels about 150 MiB for each megapixel of the target, and as much for the exemplar,
-//! beside the input (`benches/stylit.rs`, section `sizes`, up to 17.5 megapixels).
+//! Memory: with four guides of three channels about 125 MiB for each megapixel of the target, and as much for the exemplar,
+//! beside the input (`benches/stylit.rs`, section `sizes`).
 //!
 //! Not modelled: rotation of strokes along the target's shapes, and sequences as a whole: each frame knows the one before.
 //!
@@ -92,6 +93,9 @@ pub enum Mode {
     /// Each pixel takes the exemplar pixel with the nearest guides; with normals as the guide, the Lit Sphere (Sloan et
     /// al. 2001).
     LitSphere,
+    /// Each target patch takes its nearest exemplar patch, where those that are used often count as farther (Kaspar et al.
+    /// 2015): see `Params::occurrence`. On one thread, and by PatchMatch only.
+    Occurrence,
 }
 
 /// How nearest patches are searched for.
@@ -171,6 +175,10 @@ pub struct Params {
     /// How far the exemplar's light is changed to the brightness and contrast of the target's, in `[0, 1]`: for targets under
     /// another light than the exemplar (Fig. 16).
     pub match_appearance: f32,
+    /// Weight λ of `Mode::Occurrence`, in `[0, 10]`: what a match to a patch that is used as often as all on average costs
+    /// beside its distance, in the unit of Eq. 1, the sum over a patch of squared differences of channels in `[0, 1]`. 0 is
+    /// `Mode::Nearest` to the bit. 0.1 is what Fišer et al. found best (Fig. 10n), by hand for their picture.
+    pub occurrence: f32,
     /// Half resolution, guides compressed to their principal components: for watching while painting.
     pub preview: bool,
     pub seed: u64,
@@ -198,6 +206,7 @@ impl Default for Params {
             final_vote: Vote::Most,
             coherence: 1.0,
             match_appearance: 0.0,
+            occurrence: 0.1,
             preview: false,
             seed: 1,
         }
@@ -250,7 +259,13 @@ impl Params {
         check_range("settle", self.settle, 0, 100)?;
         check_range("seam", self.seam, 0.0, 100.0)?;
         check_range("coherence", self.coherence, 0.0, 1.0)?;
+        if self.mode == Mode::Occurrence && self.finder == Finder::Table {
+            return Err(Error::argument(
+                "mode is occurrence and search is table; with this mode it must be PatchMatch",
+            ));
+        }
         check_range("match_appearance", self.match_appearance, 0.0, 1.0)?;
+        check_range("occurrence", self.occurrence, 0.0, 10.0)?;
         check_range("passes", self.passes, 1, 1000)?;
         Ok(())
     }

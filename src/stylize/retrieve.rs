@@ -41,7 +41,7 @@ const LEAST_GAIN: f64 = 0.005;
 pub(super) fn retrieve(
     level: &Level,
     field: &mut Field,
-    changed: &Domain,
+    changed: &[bool],
     kept: &[bool],
     params: &Params,
     round: u64,
@@ -50,7 +50,7 @@ pub(super) fn retrieve(
     let wanted = level.wanted.len();
     let nearest = Nearest::new(level, params, job.part(0.0, 0.02))?;
     let search = level.forward();
-    search.rescore(field, job.part(0.02, 0.05), |i| changed.contains_index(i))?;
+    search.rescore(field, job.part(0.02, 0.05), |i| changed[i])?;
     let mut free = level.wanted.try_clone()?;
     let mut reverse = field.invert(&level.allowed)?;
     let mut matched = Field::new(field.width, field.height)?;
@@ -81,7 +81,7 @@ pub(super) fn retrieve(
     for i in (0..field.at.len()).filter(|&i| free.contains_index(i)) {
         (matched.at[i], matched.error[i]) = (field.at[i], field.error[i]);
     }
-    nearest.forward(&mut matched, 2000 * round + 1500, job.part(0.8, 0.9), |i| free.contains_index(i))?;
+    nearest.forward(&search, &mut matched, 2000 * round + 1500, job.part(0.8, 0.9), |i| free.contains_index(i))?;
     // Let patches continue their neighbours' matches where those fit better, seams counted.
     let seam = (f64::from(params.seam) * matched.energy() / wanted.max(1) as f64).min(1e9) as u32;
     for _ in 0..params.settle {

@@ -8,10 +8,10 @@ use super::retrieve::retrieve;
 use super::{Finder, Glimpse, Input, Mode, Output, Params, Publish, greedy};
 use crate::error::{Error, Result};
 use crate::exec;
-use crate::image::Image;
 use crate::image::colour::srgb_to_linear;
+use crate::image::{Image, try_collect};
 use crate::job::Job;
-use crate::patch::{Domain, Field, NONE, Sweep, Vote, level_count, origin, unpack, vote};
+use crate::patch::{Field, NONE, Occurrence, Search, Sweep, Vote, level_count, origin, unpack, vote};
 use crate::rng::hash;
 
 /// Up to this many pairs of patches the first field is found by comparing all.
@@ -50,7 +50,9 @@ pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Pu
     for l in (0..levels).rev() {
         let job = job.part(0.01 + 0.98 * done / total, 0.01 + 0.98 * (done + cost(l)) / total);
         done += cost(l);
-        let problem = if l == 0 { problem } else { &coarser[l - 1] };
+        // A level that is done is not needed any more.
+        let popped = if l > 0 { coarser.pop() } else { None };
+        let problem = popped.as_ref().unwrap_or(problem);
         let seed = hash(params.seed, &[l as u64]);
         let guides = if l > 0 { params.coarse_guides } else { 1.0 };
         let weights = Params { guide_weight: params.guide_weight * guides, ..params.clone() };
@@ -107,11 +109,15 @@ pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Pu
             // looks for matches where the budget gave them.
             let polishes = params.mode == Mode::Budget && l == 0 && k >= params.finest_iterations;
             let anew = k == 0 || polishes && k == params.finest_iterations;
-            let changed = if anew { level.wanted.try_clone()? } else { level.changed_by(&picture, part(0.0, 0.01))? };
+            let mut changed = if anew {
+                try_collect(level.wanted.flags().iter().copied())?
+            } else {
+                level.changed_by(&picture, part(0.0, 0.01))?
+            };
             level.set_picture(&picture, part(0.0, 0.01))?;
             match params.mode {
                 Mode::Budget if polishes => {
-                    let changed = changed.filtered(|i| kept.get(i) != Some(&true))?;
+                    changed.iter_mut().zip(&kept).for_each(|(changed, kept)| *changed &= !kept);
                     nearest(&level, &mut current, &changed, params, k, part(0.0, 0.9))?;
                 }
                 Mode::Budget | Mode::Uniform => {
@@ -125,7 +131,9 @@ pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Pu
                         part(0.0, 0.9),
                     )?);
                 }
-                Mode::Nearest | Mode::LitSphere => nearest(&level, &mut current, &changed, params, k, part(0.0, 0.9))?,
+                Mode::Nearest | Mode::LitSphere | Mode::Occurrence => {
+                    nearest(&level, &mut current, &changed, params, k, part(0.0, 0.9))?;
+                }
                 Mode::Greedy => {
                     nearest(&level, &mut current, &changed, params, k, part(0.0, 0.5))?;
                     greedy::run(&mut level, &mut current, &mut picture, l, part(0.5, 0.9))?;
@@ -142,12 +150,14 @@ pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Pu
         reports.push(report);
 
         if l == 0 {
+            let usage = Usage::of(&current, &level)?;
+            drop(level);
             let mut image = picture.try_clone()?;
             let made = Made { field: &current, problem, artwork: input.artwork, known: input.known };
             finish(&mut image, &picture, made, job.part(1.0, 1.0), |_| true)?;
             let report = Report {
                 levels: reports,
-                usage: Usage::of(&current, &level)?,
+                usage,
                 guide_error: guide_error(&current, problem, job)?,
                 sources: sources(&current, problem, halved, job)?,
                 halvings: halved,
@@ -164,10 +174,20 @@ pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Pu
 }
 
 /// The nearest exemplar patch of each target patch that has changed; the others have found theirs.
-fn nearest(level: &Level, field: &mut Field, changed: &Domain, params: &Params, round: usize, job: Job) -> Result<()> {
-    let changed = |i: usize| changed.contains_index(i);
-    level.forward().rescore(field, job.part(0.0, 0.1), changed)?;
-    Nearest::new(level, params, job.part(0.1, 0.2))?.forward(field, round as u64, job.part(0.2, 1.0), changed)
+fn nearest(level: &Level, field: &mut Field, changed: &[bool], params: &Params, round: usize, job: Job) -> Result<()> {
+    let changed = |i: usize| changed[i];
+    let search = level.forward();
+    search.rescore(field, job.part(0.0, 0.1), changed)?;
+    let nearest = Nearest::new(level, params, job.part(0.1, 0.2))?;
+    if params.mode != Mode::Occurrence || params.occurrence == 0.0 {
+        return nearest.forward(&search, field, round as u64, job.part(0.2, 1.0), changed);
+    }
+    // What is used costs, wherever that is: any match may change.
+    let patch = level.problem.patch;
+    let weight = f64::from(params.occurrence) * level.unit() / (patch * patch) as f64;
+    let occurrence = Occurrence::new(field, &level.allowed, patch, weight)?;
+    let search = Search { occurrence: Some(&occurrence), ..search };
+    nearest.forward(&search, field, round as u64, job.part(0.2, 1.0), |i| level.wanted.contains_index(i))
 }
 
 /// A field that follows the guides only; among equals the same relative position wins, so that equal guides give the
@@ -181,7 +201,8 @@ fn by_guides_alone(problem: &Problem, params: &Params, seed: u64, job: Job) -> R
     if level.wanted.len().saturating_mul(level.allowed.len()) <= EXHAUSTIVE {
         search.exhaustive(&mut field, job.part(0.05, 1.0), wanted)?;
     } else if params.finder == Finder::Table {
-        Nearest::new(&level, params, job.part(0.05, 0.4))?.forward(&mut field, 0, job.part(0.4, 1.0), wanted)?;
+        let nearest = Nearest::new(&level, params, job.part(0.05, 0.4))?;
+        nearest.forward(&search, &mut field, 0, job.part(0.4, 1.0), wanted)?;
     } else {
         let reach = level.allowed.width.max(level.allowed.height);
         for k in 0..8 {

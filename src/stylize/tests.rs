@@ -44,7 +44,7 @@ fn stylise(input: &Input, params: &Params) -> Result<Output> {
     run(input, params, Monitor::default().job())
 }
 
-const MODES: [Mode; 5] = [Mode::Budget, Mode::Uniform, Mode::Nearest, Mode::Greedy, Mode::LitSphere];
+const MODES: [Mode; 6] = [Mode::Budget, Mode::Uniform, Mode::Nearest, Mode::Greedy, Mode::LitSphere, Mode::Occurrence];
 
 #[test]
 fn equal_guides_give_the_artwork_back_to_the_bit_in_every_mode() {
@@ -72,6 +72,7 @@ fn results_do_not_depend_on_the_number_of_threads() {
     for params in [
         Params { levels: 3, iterations: 2, ..Params::default() },
         Params { mode: Mode::Nearest, levels: 3, iterations: 2, ..Params::default() },
+        Params { mode: Mode::Occurrence, levels: 3, iterations: 2, ..Params::default() },
         Params { iterations: 1, finest_iterations: 2, passes: 4, ..Params::paper() },
         Params::preview(),
         Params { finder: Finder::Table, levels: 2, iterations: 1, ..Params::default() },
@@ -150,6 +151,33 @@ fn light_that_the_exemplar_lacks_shows_in_the_guide_error() {
         values.iter().sum::<f32>() / values.len() as f32
     };
     assert!(mean(true) > 20.0 * mean(false) && mean(true) > 0.05, "{} {}", mean(true), mean(false));
+}
+
+/// Kaspar et al. 2015: from plain EM at λ = 0 towards even usage.
+#[test]
+fn the_more_occurrence_weighs_the_more_of_the_exemplar_is_used() {
+    let (a, b) = (scene(90, 70, 40.0, 30.0, 22.0), scene(120, 100, 70.0, 55.0, 35.0));
+    let art = artwork(&a);
+    let with = |mode, occurrence: f32| {
+        stylise(&input(&art, &[guide(&a, &b)]), &Params { mode, occurrence, ..Params::default() }).unwrap()
+    };
+    let (none, plain) = (with(Mode::Occurrence, 0.0), with(Mode::Nearest, 0.1));
+    assert!(none.image == plain.image && none.field == plain.field && none.report.levels == plain.report.levels);
+    // Up to 0.1; there nearly all is used, and more moves it about.
+    let runs = [0.0, 0.003, 0.01, 0.1].map(|weight| with(Mode::Occurrence, weight));
+    let usage = runs.each_ref().map(|run| run.report.usage);
+    assert!(usage.windows(2).all(|w| w[1].used > w[0].used && w[1].entropy > w[0].entropy), "{usage:?}");
+    assert!(usage[3].used > 0.95, "{usage:?}");
+    // It costs likeness, which is what is reported: the usage is no part of it. (At 0 fewer patches are searched for again.)
+    let energy = runs.each_ref().map(|run| *run.report.levels.last().unwrap().energy.last().unwrap());
+    assert!(energy[1] < energy[2] && energy[2] < energy[3], "{energy:?}");
+    // The most that may weigh, and what may not.
+    assert_eq!(with(Mode::Occurrence, 10.0).image.count_non_finite(), 0);
+    for weight in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -0.1, 10.1] {
+        let params = Params { occurrence: weight, ..Params::default() };
+        let error = stylise(&input(&art, &[guide(&a, &b)]), &params).unwrap_err();
+        assert!(error.kind == ErrorKind::InvalidArgument && error.message.contains("occurrence is"), "{error}");
+    }
 }
 
 #[test]
@@ -310,6 +338,7 @@ fn contradictions_are_named() {
         Params { coarse_guides: 1e4, ..default.clone() },
         Params { guide_weight: f32::INFINITY, ..default.clone() },
         Params { coverage: -0.1, ..default.clone() },
+        Params { mode: Mode::Occurrence, finder: Finder::Table, ..default.clone() },
     ] {
         assert_eq!(stylise(&good, &params).unwrap_err().kind, ErrorKind::InvalidArgument);
     }
@@ -366,11 +395,11 @@ fn only_patches_over_pixels_that_changed_are_looked_at_again() {
     let problem = level::Problem::new(&input(&picture, &guides), &Params::default(), monitor.job()).unwrap();
     let mut level = level::Level::new(&problem, &Params::default(), 1.0, 1, monitor.job()).unwrap();
     level.set_picture(&picture, monitor.job()).unwrap();
-    assert!(level.changed_by(&picture, monitor.job()).unwrap().is_empty());
+    assert!(!level.changed_by(&picture, monitor.job()).unwrap().contains(&true));
     picture.pixel_mut(12, 9)[1] += 0.1;
     let changed = level.changed_by(&picture, monitor.job()).unwrap();
-    assert_eq!(changed.len(), 25);
-    assert!(changed.contains(8, 5) && changed.contains(12, 9) && !changed.contains(13, 9));
+    assert_eq!(changed.iter().filter(|c| **c).count(), 25);
+    assert!(changed[5 * 36 + 8] && changed[9 * 36 + 12] && !changed[9 * 36 + 13]);
 }
 
 #[test]

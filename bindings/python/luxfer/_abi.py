@@ -183,6 +183,7 @@ LUXFER_STYLIZE_MODE_UNIFORM = 1
 LUXFER_STYLIZE_MODE_NEAREST = 2
 LUXFER_STYLIZE_MODE_GREEDY = 3
 LUXFER_STYLIZE_MODE_LIT_SPHERE = 4
+LUXFER_STYLIZE_MODE_OCCURRENCE = 5
 LUXFER_STYLIZE_SEARCH_PATCHMATCH = 0
 LUXFER_STYLIZE_SEARCH_TABLE = 1
 LUXFER_STYLIZE_VOTE_PLAIN = 0
@@ -1154,6 +1155,8 @@ class luxfer_stylize_params(Structure):
         ("seed", c_uint64),
         ("coarse_guides", c_float),
         ("coarse_iterations", c_uint32),
+        ("occurrence", c_float),
+        ("reserved", c_uint32),
     ]
     enumerations: dict[str, type] = {"mode": types.StylizeMode, "search": types.StylizeSearch, "vote": types.StylizeVote, "final_vote": types.StylizeVote}
 

@@ -502,6 +502,9 @@ class StylizeMode(IntEnum):
     LIT_SPHERE = 4
     """Each pixel takes the exemplar pixel whose guides are nearest; with normals as guides the Lit Sphere
     (Sloan et al. 2001)."""
+    OCCURRENCE = 5
+    """Each place takes its nearest exemplar patch, and one that is used often counts as farther (Kaspar et al.
+    2015): see occurrence. On one thread, and by StylizeSearch.PATCHMATCH only."""
 
 
 class StylizeSearch(IntEnum):
@@ -1799,6 +1802,11 @@ class StylizeParams(TypedDict, total=False):
     coarse_iterations: int
     """Rounds on each level coarser than the one before the finest, in [1, 100]; default 24; 6 is the
     paper's."""
+    occurrence: float
+    """Weight of usage in StylizeMode.OCCURRENCE, lambda, in [0, 10]; default 0.1, which Fiser et al. found best
+    by hand (Fig. 10n). What a match to a patch that is used as often as all on average costs beside its
+    distance, both in the unit of Eq. 1: squared differences of channels in [0, 1], summed over a patch. 0 is
+    StylizeMode.NEAREST."""
 
 
 @dataclass(frozen=True)
