@@ -273,8 +273,10 @@ fn update(pair: &Pair, pool: &Pool) {
     figure("stylit.update.seconds", harness::median(&seconds), "s");
 }
 
-/// Time and memory as the target grows, at fast quality; the exemplar stays.
+/// Time and memory as the target grows, at fast quality, up to 70 megapixels; the exemplar stays. The bytes are those that a
+/// pixel of the target adds to the smallest one's.
 fn sizes(pair: &Pair, pool: &Pool) {
+    let mut smallest = None;
     let mut table = Table::new([
         "target",
         "megapixels",
@@ -282,9 +284,10 @@ fn sizes(pair: &Pair, pool: &Pool) {
         "seconds per megapixel",
         "peak MiB",
         "of it input",
+        "bytes per pixel beside it",
         "ms to cancel",
     ]);
-    for scale in [1, 2, 4] {
+    for scale in [1, 2, 4, 8] {
         harness::forget_peak_memory();
         let job = Monitor::default();
         let large = |(source, target): &(Image, Image)| {
@@ -294,17 +297,26 @@ fn sizes(pair: &Pair, pool: &Pool) {
         let guides = pair.guides.iter().map(large).collect();
         let larger = Pair { folder: pair.folder.clone(), artwork: pair.artwork.clone(), guides };
         let (seconds, output) = time(Clock::Wall, || larger.stylise(&Params::fast(), pool));
-        let megapixels = (output.image.width * output.image.height) as f64 * 1e-6;
+        let (width, height) = (output.image.width, output.image.height);
+        let megapixels = (width * height) as f64 * 1e-6;
         let input: usize = larger.guides.iter().map(|(a, b)| 4 * (a.data.len() + b.data.len())).sum();
         let mib = |bytes: u64| format!("{:.0}", bytes as f64 / f64::from(1 << 20));
+        // What the run itself took, before others are timed.
+        let peak = harness::peak_memory();
+        let here = peak.map(|peak| (megapixels * 1e6, peak as f64 - input as f64));
+        smallest = smallest.or(here);
+        let growth = here.zip(smallest).filter(|(here, first)| here.0 > first.0);
+        let added = growth.map(|(here, first)| (here.1 - first.1) / (here.0 - first.0));
+        drop(output);
         let waits = cancel_waits(&larger, pool);
         table.row([
-            format!("{} x {}", output.image.width, output.image.height),
+            format!("{width} x {height}"),
             format!("{megapixels:.1}"),
             format!("{seconds:.1}"),
             format!("{:.2}", seconds / megapixels),
-            harness::peak_memory().map_or("unknown".to_string(), mib),
+            peak.map_or("unknown".to_string(), mib),
             mib(input as u64),
+            added.map_or("-".to_string(), |bytes| format!("{bytes:.0}")),
             format!("{:.0}", 1e3 * waits),
         ]);
     }
@@ -333,7 +345,13 @@ fn cancel_waits(pair: &Pair, pool: &Pool) -> f64 {
     [0.0, 0.02, 0.15, 0.3, 0.45].into_iter().map(wait).fold(0.0, f64::max)
 }
 
-/// Ours beside plain EM and ebsynth, by the judge, by Eq. 3, and to look at. Ours runs before and after the others, so that
+/// Plain EM in which usage costs (Kaspar et al. 2015).
+fn occurrence(weight: f32) -> Params {
+    let params = Params { mode: Mode::Occurrence, occurrence: weight, ..Params::default() };
+    Params { vote: Vote::Plain, final_vote: Vote::Plain, ..params }
+}
+
+/// Ours beside plain EM, uniform usage and ebsynth, by the judge, by Eq. 3, and to look at. Ours runs before and after the others, so that
 /// what else the machine does weighs on all.
 fn rivals(pair: &Pair, pool: &Pool) {
     let mut made: Vec<(&str, Option<f64>, PathBuf)> = Vec::new();
@@ -360,6 +378,18 @@ fn rivals(pair: &Pair, pool: &Pool) {
     let name = format!("plain EM, {} + {} iterations", longer.iterations, longer.finest_iterations);
     let (seconds, file) = stylise("stylit_plain_em_long", &longer);
     made.push((&name, Some(seconds), file));
+
+    // Uniform usage, by force and as a cost.
+    let uniform = Params { mode: Mode::Uniform, ..Params::default() };
+    for (name, file, params) in [
+        ("uniform (Jamriska 2015)", "stylit_uniform", uniform),
+        ("occurrence, lambda 0.01", "stylit_occurrence_001", occurrence(0.01)),
+        ("occurrence, lambda 0.1 (Kaspar 2015)", "stylit_occurrence_01", occurrence(0.1)),
+        ("occurrence, lambda 1", "stylit_occurrence_1", occurrence(1.0)),
+    ] {
+        let (seconds, file) = stylise(file, &params);
+        made.push((name, Some(seconds), file));
+    }
 
     let theirs = match ebsynth(pair) {
         Ok((seconds, file)) => {
@@ -431,6 +461,9 @@ fn methods(pair: &Pair, pool: &Pool) {
         ("error budget (Fiser 2016)", Params::default()),
         ("the paper's settings", Params::paper()),
         ("uniform (Jamriska 2015)", of(Mode::Uniform)),
+        ("occurrence, lambda 0.01", occurrence(0.01)),
+        ("occurrence, lambda 0.1 (Kaspar 2015)", occurrence(0.1)),
+        ("occurrence, lambda 1", occurrence(1.0)),
         ("nearest (Wexler 2007)", Params { sweeps: 3, ..of(Mode::Nearest) }),
         ("nearest, mean", Params { sweeps: 3, final_vote: Vote::Plain, vote: Vote::Plain, ..of(Mode::Nearest) }),
         ("greedy (Hertzmann 2001)", of(Mode::Greedy)),
