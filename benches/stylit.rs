@@ -352,8 +352,8 @@ fn occurrence(weight: f32) -> Params {
     Params { vote: Vote::Plain, final_vote: Vote::Plain, ..params }
 }
 
-/// Ours beside plain EM, uniform usage and ebsynth, by the judge, by Eq. 3, and to look at. Ours runs before and after the others, so that
-/// what else the machine does weighs on all.
+/// Ours beside plain EM, uniform usage and ebsynth, by the judge, by Eq. 3, and to look at. Ours runs before and after the
+/// others, so that what else the machine does weighs on all.
 fn rivals(pair: &Pair, pool: &Pool) {
     let mut made: Vec<(&str, Option<f64>, PathBuf)> = Vec::new();
     let stylise = |file: &str, params: &Params| {
