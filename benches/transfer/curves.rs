@@ -20,7 +20,7 @@ use luxfer::transfer::{Params, Stage, Transfer};
 use std::fmt::Display;
 
 const PHOTO: [usize; 2] = [900, 600];
-const PICTURE: [usize; 2] = [160, 90];
+const PICTURE: [usize; 2] = [96, 54];
 const ROUNDS: u64 = 3;
 
 pub fn draw() {
@@ -45,7 +45,7 @@ pub fn draw() {
     let mut study = Study {
         truth,
         table: Table::new(["what varies", "at", "seconds", "error %", "mean light off %"]),
-        plot: Plot::new("A whole transfer, 160 x 90", "seconds", "error of the picture"),
+        plot: Plot::new("A whole transfer, 96 x 54", "seconds", "error of the picture"),
     };
     let whole = |photo: &Image, params: Params, seed: u64| {
         let mut transfer = transfer(photo.clone(), seeded(params, seed));

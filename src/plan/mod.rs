@@ -19,8 +19,7 @@
 //! Not modelled: the stages before the light, which no setting trades error for time in, and whose errors they state
 //! themselves; bright paths so rare that a plan meets one by chance or none, such as of a small lamp in polish: the picture's
 //! error may then be twice or half of what is expected; that a picture that stops at an error may fall below it by as much as its last
-//! pass brings; layers beside the picture, which take time of their own; that careful stylisations settle more slowly at higher
-//! resolutions, and may take half as long again as expected.
+//! pass brings; layers beside the picture, which take time of their own.
 
 mod curve;
 mod picture;
