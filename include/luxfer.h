@@ -4516,7 +4516,7 @@ luxfer_status luxfer_stylize_get_pass(luxfer_stylize *stylize,
  * Planning of stylisations
  *
  * How careful a stylisation can be in a time, or has to be for an error. A plan tries settings from quick to careful on the very
- * input at a part of its resolution, which takes about a tenth of the time of LUXFER_STYLIZE_FULL, and less for large targets.
+ * input at a part of its resolution, which takes a small part of the time of LUXFER_STYLIZE_FULL, less of larger targets.
  * ==================================================================================================================== */
 
 /**
