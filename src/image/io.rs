@@ -70,10 +70,29 @@ fn check_size(width: u64, height: u64) -> Result<()> {
 fn raster_decoder(bytes: &[u8]) -> Result<(ImageFormat, impl ImageDecoder + '_)> {
     let format = image::guess_format(bytes)
         .map_err(|_| Error::format("not a PNG, JPEG, Radiance HDR or OpenEXR file".to_string()))?;
+    if format == ImageFormat::Png {
+        check_palette(bytes)?;
+    }
     let decoder = ImageReader::with_format(Cursor::new(bytes), format).into_decoder().map_err(broken_raster)?;
     let (width, height) = decoder.dimensions();
     check_size(width.into(), height.into())?;
     Ok((format, decoder))
+}
+
+/// The decoder takes for granted that a PNG's palette holds whole colours.
+fn check_palette(bytes: &[u8]) -> Result<()> {
+    let mut chunks = bytes.get(8..).unwrap_or_default();
+    while let Some((&[a, b, c, d, ref name @ ..], rest)) = chunks.split_first_chunk::<8>() {
+        let length = u32::from_be_bytes([a, b, c, d]) as usize;
+        if name == b"PLTE" && !(length % 3 == 0 && (1..=256).contains(&(length / 3))) {
+            return Err(Error::format(format!(
+                "the PNG's palette has {length} bytes; it must hold 1 to 256 colours of 3"
+            )));
+        }
+        // Beyond its content lie four bytes of a checksum.
+        chunks = rest.get(length.saturating_add(4)..).unwrap_or_default();
+    }
+    Ok(())
 }
 
 fn broken_raster(e: image::ImageError) -> Error {
@@ -303,5 +322,19 @@ mod tests {
         let error = probe(&bomb).unwrap_err();
         assert!(error.kind == ErrorKind::Format && error.message.contains("promises more"), "{error}");
         assert_eq!(load(Path::new("/nonexistent.png"), Encoding::Srgb).unwrap_err().kind, ErrorKind::Io);
+    }
+
+    #[test]
+    fn a_palette_that_ends_within_a_colour_is_refused() {
+        let file =
+            b"\x89PNG\x0d\x0a\x1a\x0a\x00\x00\x00\x0dIHDR\x00\x00\x00\x04\x00\x00\x00\x04\x02\x03\x00\x00\x00\xd4\x9fv\
+            \xed\x00\x00\x001PLTE\x00\x01\x02\x03\x04\x05\x06\x07\x08\x09\x0a\x0b\x0c\x0d\x0e\x0f\x10\x11\x12\x13\
+            \x14\x15\x16\x17\x1e\x18iCCP\x1d\x1e\x1f !\"#$%&'()*+,-./\xad\x97\x8e\xef\x00\x00\x00\x09tR\x00\x00S\x00\
+            \x00N\x00\x00\x00\x00\x00sd\x9b\xa1\x00\x00\x00\x10IDATx\x9cc``d`b`\xbcf\x00\x00\x00\x1c\x00\x07\xcf\xe3\
+            \x82\xbb\x00\x00\x00\x00IEND\xaeB`\x82";
+        assert_eq!(file[37..41], *b"PLTE");
+        let error = decode(file, Encoding::Srgb).unwrap_err();
+        assert!(error.kind == ErrorKind::Format && error.message.contains("49 bytes"), "{error}");
+        assert!(probe(file).is_err());
     }
 }
