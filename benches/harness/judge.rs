@@ -44,6 +44,11 @@ fn everywhere(of: &Features) -> Domain {
     Domain::new(of.width, of.height, PATCH, None, false).expect("an image as large as a patch")
 }
 
+/// Looks for the nearest patches, whatever else is used.
+fn nearest<'a>(query: &'a Features, base: &'a Features, allowed: &'a Domain) -> Search<'a> {
+    Search { query, base, allowed, patch: PATCH, occurrence: None, kernel: Kernel::detect(), seed: 9 }
+}
+
 /// [`Judged::energy`] alone.
 pub fn energy(picture: &Image, artwork: &Image, guides: &[(Image, Image)]) -> f64 {
     let monitor = Monitor::default();
@@ -63,15 +68,7 @@ pub fn energy(picture: &Image, artwork: &Image, guides: &[(Image, Image)]) -> f6
     let base = features(artwork, &|g| guides[g].0.clone());
     let query = features(picture, &|g| guides[g].1.clone());
     let allowed = everywhere(&base);
-    let search = Search {
-        query: &query,
-        base: &base,
-        allowed: &allowed,
-        patch: PATCH,
-        occurrence: None,
-        kernel: Kernel::detect(),
-        seed: 9,
-    };
+    let search = nearest(&query, &base, &allowed);
     let mut field = Field::new(query.width + 1 - PATCH, query.height + 1 - PATCH).expect("memory");
     for index in 0..10 {
         search
@@ -111,15 +108,7 @@ fn coherence(picture: &Image, artwork: &Image) -> f64 {
     };
     let (base, query) = (features(artwork), features(picture));
     let allowed = everywhere(&base);
-    let search = Search {
-        query: &query,
-        base: &base,
-        allowed: &allowed,
-        patch: PATCH,
-        occurrence: None,
-        kernel: Kernel::detect(),
-        seed: 9,
-    };
+    let search = nearest(&query, &base, &allowed);
     let mut field = Field::new(query.width + 1 - PATCH, query.height + 1 - PATCH).expect("memory");
     let mut rng = Rng::new(5, &[]);
     let mut chosen = vec![false; field.at.len()];

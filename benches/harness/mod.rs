@@ -115,12 +115,8 @@ impl Table {
 
     /// Writes `out/bench/<name>.csv`.
     pub fn write(&self, name: &str) -> std::io::Result<()> {
-        let folder = std::path::PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("out/bench");
-        std::fs::create_dir_all(&folder)?;
-        let quoted =
-            |row: &Vec<String>| row.iter().map(|cell| format!("\"{}\"", cell.replace('"', "\"\""))).collect::<Vec<_>>();
-        let lines: Vec<String> = self.rows.iter().map(|row| quoted(row).join(",") + "\n").collect();
-        std::fs::write(folder.join(name).with_extension("csv"), lines.concat())
+        let line = |row: &Vec<String>| row.iter().map(|cell| plot::quoted(cell)).collect::<Vec<_>>().join(",") + "\n";
+        plot::write_out(&format!("{name}.csv"), &self.rows.iter().map(line).collect::<String>())
     }
 
     pub fn print(&self, title: &str) {

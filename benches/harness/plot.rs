@@ -25,6 +25,18 @@ const LEGEND: [f64; 2] = [44.0, 6.6];
 /// Distinct also for those who do not tell red from green (Okabe and Ito 2008).
 const COLOURS: [&str; 8] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#8a8a00"];
 
+/// Writes a file into `out/bench/`.
+pub fn write_out(name: &str, text: &str) -> std::io::Result<()> {
+    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("out/bench");
+    std::fs::create_dir_all(&folder)?;
+    std::fs::write(folder.join(name), text)
+}
+
+/// A cell of a CSV file.
+pub fn quoted(cell: &str) -> String {
+    format!("\"{}\"", cell.replace('"', "\"\""))
+}
+
 impl Plot {
     pub fn new(title: &str, x_label: &str, y_label: &str) -> Self {
         Self { title: title.into(), x_label: x_label.into(), y_label: y_label.into(), series: Vec::new() }
@@ -36,20 +48,17 @@ impl Plot {
 
     /// Writes `out/bench/<name>.csv` and `.svg` and says so.
     pub fn write(&self, name: &str) -> std::io::Result<()> {
-        let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("out/bench");
-        std::fs::create_dir_all(&folder)?;
-        std::fs::write(folder.join(name).with_extension("csv"), self.csv())?;
-        std::fs::write(folder.join(name).with_extension("svg"), self.svg())?;
+        write_out(&format!("{name}.csv"), &self.csv())?;
+        write_out(&format!("{name}.svg"), &self.svg())?;
         println!("plot out/bench/{name}.svg (numbers in {name}.csv)");
         Ok(())
     }
 
     fn csv(&self) -> String {
-        let quote = |s: &str| format!("\"{}\"", s.replace('"', "\"\""));
-        let mut out = format!("series,{},{}\n", quote(&self.x_label), quote(&self.y_label));
+        let mut out = format!("series,{},{}\n", quoted(&self.x_label), quoted(&self.y_label));
         for series in &self.series {
             for [x, y] in &series.points {
-                let _ = writeln!(out, "{},{x},{y}", quote(&series.name));
+                let _ = writeln!(out, "{},{x},{y}", quoted(&series.name));
             }
         }
         out
