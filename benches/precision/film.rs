@@ -1,9 +1,8 @@
 //! Sums of paths: a pixel of a million paths, most of them dim, few very bright.
 
 use super::real::Real;
-use super::{Study, Way};
+use super::{Study, Way, timed};
 use luxfer::rng::Rng;
-use std::hint::black_box;
 
 const PATHS: usize = 1 << 20;
 /// Paths that are summed before they are added to a pixel.
@@ -33,30 +32,14 @@ pub fn measure(study: &mut Study) {
         "relative, of the mean",
         1,
         &mut [
-            Way {
-                name: "f32",
-                bytes: 4,
-                error: error(narrow(&paths)),
-                work: &mut || {
-                    black_box(narrow(&paths));
-                },
-            },
+            Way { name: "f32", bytes: 4, error: error(narrow(&paths)), work: &mut timed(|| narrow(&paths)) },
             Way {
                 name: "f32, slices of 8 in f64",
                 bytes: 4,
                 error: error(mixed(&paths)),
-                work: &mut || {
-                    black_box(mixed(&paths));
-                },
+                work: &mut timed(|| mixed(&paths)),
             },
-            Way {
-                name: "f64",
-                bytes: 8,
-                error: error(wide(&paths)),
-                work: &mut || {
-                    black_box(wide(&paths));
-                },
-            },
+            Way { name: "f64", bytes: 8, error: error(wide(&paths)), work: &mut timed(|| wide(&paths)) },
         ],
     );
 }

@@ -1,9 +1,8 @@
 //! Autocorrelation by Fourier transforms: of a faint pattern on a bright ground.
 
 use super::real::Real;
-use super::{Study, Way};
+use super::{Study, Way, timed};
 use luxfer::rng::Rng;
-use std::hint::black_box;
 
 const LENGTH: usize = 1 << 16;
 const PERIOD: usize = 96;
@@ -62,22 +61,8 @@ pub fn measure(study: &mut Study) {
         "of a correlation, the largest",
         1,
         &mut [
-            Way {
-                name: "f32",
-                bytes: 8,
-                error,
-                work: &mut || {
-                    black_box(autocorrelation::<f32>(&values));
-                },
-            },
-            Way {
-                name: "f64",
-                bytes: 16,
-                error: 0.0,
-                work: &mut || {
-                    black_box(autocorrelation::<f64>(&values));
-                },
-            },
+            Way { name: "f32", bytes: 8, error, work: &mut timed(|| autocorrelation::<f32>(&values)) },
+            Way { name: "f64", bytes: 16, error: 0.0, work: &mut timed(|| autocorrelation::<f64>(&values)) },
         ],
     );
 }

@@ -1,8 +1,7 @@
 //! Where the texels of an unwarped plane lie in the photo.
 
 use super::real::Real;
-use super::{Study, Way};
-use std::hint::black_box;
+use super::{Study, Way, timed};
 
 /// Sides of the photo, in pixels.
 const SIDE: f64 = 16_384.0;
@@ -32,22 +31,8 @@ pub fn measure(study: &mut Study) {
         "pixels, the largest",
         1,
         &mut [
-            Way {
-                name: "f32",
-                bytes: 8,
-                error,
-                work: &mut || {
-                    black_box(map::<f32>());
-                },
-            },
-            Way {
-                name: "f64",
-                bytes: 16,
-                error: 0.0,
-                work: &mut || {
-                    black_box(map::<f64>());
-                },
-            },
+            Way { name: "f32", bytes: 8, error, work: &mut timed(|| map::<f32>()) },
+            Way { name: "f64", bytes: 16, error: 0.0, work: &mut timed(|| map::<f64>()) },
         ],
     );
 }

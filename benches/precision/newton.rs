@@ -1,9 +1,8 @@
 //! Logistic regression with quadratic terms, by Newton's method, on two classes that nearly part.
 
 use super::real::Real;
-use super::{Study, Way};
+use super::{Study, Way, timed};
 use luxfer::rng::Rng;
-use std::hint::black_box;
 
 const SAMPLES: usize = 2000;
 /// Five channels, their squares and products, and the constant.
@@ -91,22 +90,8 @@ pub fn measure(study: &mut Study) {
         "of a probability, the largest",
         1,
         &mut [
-            Way {
-                name: "f32",
-                bytes: 4 * TERMS,
-                error,
-                work: &mut || {
-                    black_box(fit(&narrow, &positive));
-                },
-            },
-            Way {
-                name: "f64",
-                bytes: 8 * TERMS,
-                error: 0.0,
-                work: &mut || {
-                    black_box(fit(&rows, &positive));
-                },
-            },
+            Way { name: "f32", bytes: 4 * TERMS, error, work: &mut timed(|| fit(&narrow, &positive)) },
+            Way { name: "f64", bytes: 8 * TERMS, error: 0.0, work: &mut timed(|| fit(&rows, &positive)) },
         ],
     );
 }

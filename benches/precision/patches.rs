@@ -1,13 +1,12 @@
 //! Distances of patches, sixteen channels, five pixels wide: in the library's integers, in f32 and in halves.
 
-use super::{Study, Way};
+use super::{Study, Way, timed};
 use half::f16;
 use half::slice::HalfFloatSliceExt;
 use luxfer::image::Image;
 use luxfer::job::Monitor;
 use luxfer::patch::{Features, Kernel, Patch, Quantiser};
 use luxfer::rng::Rng;
-use std::hint::black_box;
 
 const SIDE: usize = 256;
 const PATCH: usize = 5;
@@ -113,26 +112,20 @@ pub fn measure(study: &mut Study) {
                 bytes: 2,
                 error: error(&wide(of_halves)),
                 // SAFETY: as above.
-                work: &mut || {
-                    black_box(unsafe { in_halves(&halves, &pairs) });
-                },
+                work: &mut timed(|| unsafe { in_halves(&halves, &pairs) }),
             },
             Way {
                 name: "integers of 16 bits",
                 bytes: 2,
                 error: error(&of_integers),
-                work: &mut || {
-                    black_box(in_integers(&features, &pairs));
-                },
+                work: &mut timed(|| in_integers(&features, &pairs)),
             },
             Way {
                 name: "f32",
                 bytes: 4,
                 error: error(&wide(of_narrow)),
                 // SAFETY: as above.
-                work: &mut || {
-                    black_box(unsafe { in_f32(&narrow, &pairs) });
-                },
+                work: &mut timed(|| unsafe { in_f32(&narrow, &pairs) }),
             },
         ],
     );

@@ -1,9 +1,8 @@
 //! Rays against triangles: a bumpy sheet, at the origin and far from it, as the scene's own coordinates have it.
 
 use super::real::{Real, cross, dot, minus};
-use super::{Study, Way};
+use super::{Study, Way, timed};
 use luxfer::rng::Rng;
-use std::hint::black_box;
 
 const SIDE: usize = 24;
 const RAYS: usize = 512;
@@ -90,22 +89,8 @@ pub fn measure(study: &mut Study) {
             "metres along the ray, of those that hit in both",
             0,
             &mut [
-                Way {
-                    name: "f32",
-                    bytes: 36,
-                    error,
-                    work: &mut || {
-                        black_box(distances(&narrow, &narrow_rays));
-                    },
-                },
-                Way {
-                    name: "f64",
-                    bytes: 72,
-                    error: 0.0,
-                    work: &mut || {
-                        black_box(distances(&wide, &rays));
-                    },
-                },
+                Way { name: "f32", bytes: 36, error, work: &mut timed(|| distances(&narrow, &narrow_rays)) },
+                Way { name: "f64", bytes: 72, error: 0.0, work: &mut timed(|| distances(&wide, &rays)) },
             ],
         );
     }

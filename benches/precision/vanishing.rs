@@ -2,9 +2,8 @@
 //! sum of outer products, by inverse iteration.
 
 use super::real::{Real, cross, dot};
-use super::{Study, Way};
+use super::{Study, Way, timed};
 use luxfer::rng::Rng;
-use std::hint::black_box;
 
 const LINES: usize = 500;
 
@@ -55,18 +54,9 @@ pub fn measure(study: &mut Study) {
                 name: "f32",
                 bytes: 12,
                 error: error(direction(&narrow).map(f64::from)),
-                work: &mut || {
-                    black_box(direction(&narrow));
-                },
+                work: &mut timed(|| direction(&narrow)),
             },
-            Way {
-                name: "f64",
-                bytes: 24,
-                error: error(direction(&normals)),
-                work: &mut || {
-                    black_box(direction(&normals));
-                },
-            },
+            Way { name: "f64", bytes: 24, error: error(direction(&normals)), work: &mut timed(|| direction(&normals)) },
         ],
     );
 }
