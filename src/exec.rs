@@ -5,10 +5,12 @@
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::job::Job;
+use crate::reserve;
 use rayon::prelude::*;
+use std::io;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::thread::JoinHandle;
+use std::thread::{self, JoinHandle};
 
 pub struct Pool {
     threads: Option<rayon::ThreadPool>,
@@ -18,16 +20,13 @@ pub struct Pool {
 impl Pool {
     /// A pool of `num_threads` threads; 0 means one for each core this process may use.
     pub fn new(num_threads: usize) -> Result<Self> {
-        let cores = std::thread::available_parallelism().map_or(1, |n| n.get());
+        let cores = thread::available_parallelism().map_or(1, |n| n.get());
         let count = if num_threads == 0 { cores } else { num_threads };
         let handles = Mutex::new(Vec::new());
         let threads = rayon::ThreadPoolBuilder::new()
             .num_threads(count)
             .spawn_handler(|thread| {
-                let handle = std::thread::Builder::new()
-                    .name(format!("luxfer-{}", thread.index()))
-                    .stack_size(4 << 20)
-                    .spawn(|| thread.run())?;
+                let handle = spawn(&format!("luxfer-{}", thread.index()), || thread.run())?;
                 handles.lock().unwrap_or_else(|e| e.into_inner()).push(handle);
                 Ok(())
             })
@@ -44,6 +43,18 @@ impl Pool {
         }
     }
 }
+
+/// Starts a thread.
+pub fn spawn(name: &str, work: impl FnOnce() + Send + 'static) -> io::Result<JoinHandle<()>> {
+    if !reserve::has_room(STARTING) {
+        return Err(io::ErrorKind::OutOfMemory.into());
+    }
+    thread::Builder::new().name(name.into()).stack_size(STACK).spawn(work)
+}
+
+/// Bytes of a thread's stack, and more than there is to a thread beside it.
+const STACK: usize = 4 << 20;
+const STARTING: usize = 256 << 10;
 
 impl Drop for Pool {
     fn drop(&mut self) {

@@ -3,18 +3,32 @@
 //! A [`Monitor`] is shared by the thread that works and the threads that watch. A [`Job`] is the worker's end of it: a
 //! span of the whole progress bar, so that a routine reports from 0 to 1 without knowing what it is part of.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
+use crate::reserve;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 /// Progress in `[0, 1]`, never falling, and a cancel request, never taken back.
-#[derive(Default)]
 pub struct Monitor {
     cancelled: AtomicBool,
+    /// Uses of the reserve before it.
+    uses: u64,
     /// Bits of an `f64`: among non-negative floats they sort as integers do, so `fetch_max` keeps progress monotone.
     progress: AtomicU64,
     /// Called whenever a job asks whether to go on.
     #[cfg(test)]
     pub at_check: Option<Box<dyn Fn() + Send + Sync>>,
+}
+
+impl Default for Monitor {
+    fn default() -> Self {
+        Self {
+            cancelled: AtomicBool::new(false),
+            uses: reserve::uses(),
+            progress: AtomicU64::new(0),
+            #[cfg(test)]
+            at_check: None,
+        }
+    }
 }
 
 impl Monitor {
@@ -56,9 +70,16 @@ impl<'a> Job<'a> {
         self.monitor.progress.fetch_max(whole.to_bits(), Ordering::Relaxed);
     }
 
-    /// Ends the work if the caller asked for it. To be called at least every few milliseconds.
+    /// Ends the work if the caller asked for it, or if memory is so short that the reserve is in use. To be called at least
+    /// every few milliseconds.
     pub fn check(self) -> Result<()> {
-        if self.is_cancelled() { Err(Error::cancelled()) } else { Ok(()) }
+        if self.is_cancelled() {
+            Err(Error::cancelled())
+        } else if reserve::uses() != self.monitor.uses {
+            Err(Error::new(ErrorKind::OutOfMemory, "the process has no memory left, not even for small things"))
+        } else {
+            Ok(())
+        }
     }
 
     pub fn is_cancelled(self) -> bool {

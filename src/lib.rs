@@ -40,6 +40,7 @@ pub mod job;
 #[cfg(feature = "onnx")]
 pub mod network;
 pub mod photometry;
+mod reserve;
 pub mod rng;
 pub mod scene;
 mod simd;

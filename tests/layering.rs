@@ -6,11 +6,12 @@ use std::path::{Path, PathBuf};
 /// For each part of `src`, what it may use; a part may always use itself. Later parts use earlier ones.
 const ARROWS: &[(&str, &[&str])] = &[
     ("error", &[]),
-    ("job", &["error"]),
-    ("exec", &["error", "job"]),
+    ("reserve", &[]),
+    ("job", &["error", "reserve"]),
+    ("exec", &["reserve", "error", "job"]),
     ("rng", &[]),
     ("simd", &[]),
-    ("image", &["error", "job", "exec", "simd"]),
+    ("image", &["reserve", "error", "job", "exec", "simd"]),
     ("geometry", &["error", "rng"]),
     ("network", &["error", "job", "exec", "simd", "image"]),
     ("photometry", &["error", "image"]),
@@ -53,6 +54,7 @@ const ARROWS: &[(&str, &[&str])] = &[
 
 /// Files that may contain `unsafe` beside `ffi`: SIMD kernels, chosen at run time, and the memory they work on.
 const UNSAFE: &[&str] = &[
+    "reserve.rs",
     "simd.rs",
     "image/pages.rs",
     "rectify/four.rs",

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Miri over the C ABI's own `unsafe` code, and the views and buffers under it: interpreted, with every access to memory, every borrow and
-# every leak checked. By hand: it needs a nightly toolchain with miri (rustup component add miri --toolchain nightly), and some minutes.
+# Miri over the C ABI's own `unsafe` code, the allocator, and the views and buffers: interpreted, with every access to memory, every
+# borrow and every leak checked. By hand: it needs a nightly toolchain with miri (rustup component add miri --toolchain nightly), and some minutes.
 #
 #   tests/miri.sh
 #
@@ -11,5 +11,5 @@ cd "$(dirname "$0")/.."
 export MIRIFLAGS="-Zmiri-disable-isolation -Zmiri-tree-borrows -Zmiri-permissive-provenance" CARGO_TARGET_DIR="$PWD/target/miri"
 
 # What a caught panic carries is forgotten on purpose, which counts as a leak.
-cargo +nightly miri test --locked --lib -- ffi:: image::view image::buffer --skip panics_and_errors_become_statuses
+cargo +nightly miri test --locked --lib -- ffi:: image::view image::buffer reserve:: --skip panics_and_errors_become_statuses
 echo "miri: nothing found"

@@ -11,10 +11,11 @@ use super::handle::{self, Handle, Owned, tag};
 use super::pointer::set_optional;
 use super::status::luxfer_status;
 use crate::error::{Error, ErrorKind, Result};
+use crate::exec::spawn;
 use crate::job::Monitor;
 use std::ffi::c_void;
 use std::sync::{Arc, Condvar, Mutex};
-use std::thread::{self, JoinHandle};
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 /// Work in progress. See luxfer_job_wait.
@@ -73,9 +74,7 @@ impl Job {
                 shared.finished.notify_all();
             }
         };
-        let thread = thread::Builder::new()
-            .name("luxfer-job".into())
-            .spawn(run)
+        let thread = spawn("luxfer-job", run)
             .map_err(|e| Error::new(ErrorKind::OutOfMemory, format!("could not start a thread for the job: {e}")))?;
         Ok(Self { context: context.clone(), shared, thread: Mutex::new(Some(thread)) })
     }

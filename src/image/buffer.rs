@@ -2,6 +2,7 @@
 
 use super::pages::{prefer_huge, zeros};
 use crate::error::{Error, ErrorKind, Result};
+use crate::reserve;
 use glam::Vec3;
 
 /// Longest allowed side of any image, in pixels.
@@ -48,6 +49,11 @@ pub fn try_push<T>(data: &mut Vec<T>, item: T) -> Result<()> {
     }
     data.push(item);
     Ok(())
+}
+
+/// An error if there is no room for so many bytes, which a codec is about to take that would end the process without them.
+pub(crate) fn check_room(bytes: usize) -> Result<()> {
+    if reserve::has_room(bytes) { Ok(()) } else { Err(no_memory::<u8>(bytes)) }
 }
 
 /// The error where there is no room for so many items.

@@ -3,6 +3,7 @@
 //! A header that promises more than [`MAX_PIXELS`] is refused before anything is allocated for it.
 
 use crate::error::{Error, ErrorKind, Result};
+use crate::image::buffer::check_room;
 use crate::image::colour::{linear_to_srgb, srgb_to_linear, srgb8_table};
 use crate::image::{Image, MAX_SIDE, try_collect, try_vec, try_with_capacity};
 use exr::prelude as ex;
@@ -104,6 +105,8 @@ fn decode_raster(bytes: &[u8], encoding: Encoding) -> Result<Image> {
     let (width, height) = decoder.dimensions();
     let colour = decoder.color_type();
     let mut raw = try_vec(usize::try_from(decoder.total_bytes()).unwrap_or(usize::MAX), 0u8)?;
+    // Of a progressive JPEG all coefficients are kept, two bytes each, beside the file; of other formats a few rows.
+    check_room(bytes.len() + 2 * raw.len() + 16 * raw.len() / height as usize)?;
     decoder.read_image(&mut raw).map_err(broken_raster)?;
 
     // Grey with alpha becomes RGBA.
@@ -156,8 +159,17 @@ pub(super) fn exr_headers(bytes: &[u8]) -> Result<exr::meta::Headers> {
 }
 
 /// The first layer of a file whose headers have been looked at, with all of its channels.
-pub(super) fn first_exr_layer(bytes: &[u8]) -> Result<ex::Layer<ex::AnyChannels<ex::FlatSamples>>> {
+pub(super) fn first_exr_layer(
+    bytes: &[u8],
+    headers: &exr::meta::Headers,
+) -> Result<ex::Layer<ex::AnyChannels<ex::FlatSamples>>> {
     use ex::{ReadChannels, ReadLayers};
+    // All samples, and blocks as they are unpacked.
+    let taken = |h: &exr::meta::header::Header| {
+        let samples = h.layer_size.0 * h.layer_size.1 * h.channels.bytes_per_pixel;
+        samples.saturating_add(h.max_block_byte_size().min(2 * samples).saturating_mul(4))
+    };
+    check_room(headers.iter().map(taken).max().unwrap_or(0))?;
     let file = ex::read()
         .no_deep_data()
         .largest_resolution_level()
@@ -171,8 +183,7 @@ pub(super) fn first_exr_layer(bytes: &[u8]) -> Result<ex::Layer<ex::AnyChannels<
 
 /// The first layer that has R, G and B (and A), or one with a single channel.
 fn decode_exr(bytes: &[u8]) -> Result<Image> {
-    exr_headers(bytes)?;
-    let layer = first_exr_layer(bytes)?;
+    let layer = first_exr_layer(bytes, &exr_headers(bytes)?)?;
     let list = &layer.channel_data.list;
     let find = |name: &str| list.iter().find(|c| c.name.eq_case_insensitive(name));
     let channels: Vec<_> = match (find("R"), find("G"), find("B"), find("A")) {
@@ -209,6 +220,8 @@ pub fn encode_png(image: &Image, exposure: f32) -> Result<Vec<u8>> {
         let encoded = if alpha { v } else { linear_to_srgb(v * exposure) };
         *b = (encoded.clamp(0.0, 1.0) * 255.0).round() as u8;
     }
+    // Filtered rows of the whole picture, and what comes of them, which grows by doubling.
+    check_room(4 * bytes.len())?;
     let mut out = Cursor::new(Vec::new());
     image::write_buffer_with_format(
         &mut out,
@@ -263,11 +276,17 @@ pub fn encode_exr(layers: &[Layer], notes: &[(String, String)]) -> Result<Vec<u8
     let texts = notes.iter().map(|(name, note)| name.len() + note.len() + 64).sum::<usize>() + 128 * channels;
     let mut out =
         Cursor::new(try_with_capacity(4 * channels * first.width * first.height + 32 * first.height + texts + 4096)?);
+    check_room(block_room(channels))?;
     file.write()
         .non_parallel()
         .to_buffered(&mut out)
         .map_err(|e| Error::new(ErrorKind::Internal, format!("the OpenEXR encoder failed: {e}")))?;
     Ok(out.into_inner())
+}
+
+/// Bytes that the OpenEXR encoder takes for blocks on their way, of so many channels: a tile has 64 x 64 pixels.
+pub(super) fn block_room(channels: usize) -> usize {
+    8 * 64 * 64 * 4 * channels
 }
 
 /// Writes a whole file, or leaves what was there before: the bytes go to a neighbour first, then take its place.

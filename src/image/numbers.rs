@@ -4,7 +4,8 @@
 //! window lies in the whole, its display window. A double is two channels of 32-bit integers, `number.K.high` and
 //! `number.K.low`: floating-point channels have 32 bits at most. What else there is to say stands in texts of the header.
 
-use super::io::{broken_exr, exr_headers, first_exr_layer};
+use super::buffer::check_room;
+use super::io::{block_room, broken_exr, exr_headers, first_exr_layer};
 use super::{Image, try_vec, try_with_capacity};
 use crate::error::{Error, ErrorKind, Result};
 use exr::meta::header::Header;
@@ -96,12 +97,13 @@ pub fn read_head(path: &Path) -> Result<Head> {
 /// Hands over the numbers of each pixel of a file that is known to have this head: anything else is refused before memory is
 /// taken for it.
 pub fn decode(bytes: &[u8], head: &Head, mut pixel: impl FnMut([usize; 2], &[f64])) -> Result<()> {
-    let found = Head::of(&exr_headers(bytes)?)?;
+    let headers = exr_headers(bytes)?;
+    let found = Head::of(&headers)?;
     if found != *head {
         return Err(Error::format("its header is not what it was before"));
     }
     let [width, height] = head.size;
-    let layer = first_exr_layer(bytes)?;
+    let layer = first_exr_layer(bytes, &headers)?;
     let mut halves: Vec<&[u32]> = try_with_capacity(2 * head.numbers)?;
     for channel in layer.channel_data.list.iter().skip(3) {
         match &channel.sample_data {
@@ -144,16 +146,18 @@ pub fn encode(head: &Head, picture: &Image, number: impl Fn([usize; 2], usize) -
     for (name, note) in &head.notes {
         attributes.other.insert(text(name), ex::AttributeValue::Text(text(note)));
     }
-    let channels = ex::AnyChannels::sort(list);
+    let list = ex::AnyChannels::sort(list);
     // Run lengths: the digits of sums are noise, on which better compression spends as much time as on tracing paths.
-    let layer = ex::Layer::new((width, height), attributes, ex::Encoding::FAST_LOSSLESS, channels);
+    let layer = ex::Layer::new((width, height), attributes, ex::Encoding::FAST_LOSSLESS, list);
     let mut file = ex::Image::from_layer(layer);
     file.attributes.display_window = ex::IntegerBounds::new((0, 0), (head.whole[0], head.whole[1]));
     // Room for what no compression could make larger: samples, and for each line its number, size and place; names and notes.
     let texts = head.notes.iter().map(|(name, note)| name.len() + note.len() + 64).sum::<usize>();
-    let samples = (3 + 2 * head.numbers) * (4 * width * height + 64);
+    let channels = 3 + 2 * head.numbers;
+    let samples = channels * (4 * width * height + 64);
     use ex::WritableImage;
     let mut out = Cursor::new(try_with_capacity(samples + texts + 32 * height + 4096)?);
+    check_room(block_room(channels))?;
     file.write()
         .non_parallel()
         .to_buffered(&mut out)

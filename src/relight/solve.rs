@@ -140,8 +140,8 @@ fn colour_interval(answers: &[Answer; 3], response: DVec3, target: DVec3) -> f64
 
 fn explain(reach: &[Reach; 3]) -> String {
     if reach.iter().all(|&r| r == Reach::Dark) {
-        "no light of the emission finds its way back to the target surface: it may face away from the room, or everything \
-         around it may be black; choose another target surface"
+        "no light of the emission finds its way back to the target surface: it may face away from the room, or be \
+         all lamps, which are left out, or everything around it may be black; choose another target surface"
             .into()
     } else {
         "the other lights of the scene alone are brighter than the target: dim or remove them, or raise the target"

@@ -1,16 +1,20 @@
-// A machine that has no more memory: every allocation of a size that follows from the input fails once, in turn. The call, or the job,
-// must say so; the process lives on, nothing is lost, and the next try gives the same result as ever.
+// A machine that has no more memory: allocations of the library's fail, each once in turn, or all from one on. The call, or the job, must
+// say so, or do without; the process lives on, nothing is lost, and the next try gives the same result as ever.
 #include "check.hpp"
 
 #include <luxfer.hpp>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <climits>
 #include <cstdint>
 #include <cstdlib>
+#include <cstring>
 #include <functional>
 #include <vector>
 
+#include <link.h>
 #include <malloc.h>
 
 // glibc's own allocator, under its other names.
@@ -23,12 +27,33 @@ void *__libc_memalign(std::size_t, std::size_t);
 
 namespace {
 
-// Bytes from which on an allocation is counted, how many there have been, and which of them is to fail.
-std::atomic<std::size_t> least{SIZE_MAX};
-std::atomic<long> large{0}, failing{-1};
+// Where the library lies: only what it asks for is denied.
+std::uintptr_t library_begin = UINTPTR_MAX, library_end = 0;
 
-bool is_denied(std::size_t size) {
-    return size >= least.load() && large.fetch_add(1) == failing.load();
+int find_library(dl_phdr_info *object, std::size_t, void *) {
+    if (!std::strstr(object->dlpi_name, "libluxfer.so"))
+        return 0;
+    for (int i = 0; i < object->dlpi_phnum; ++i) {
+        const std::uintptr_t begin = object->dlpi_addr + object->dlpi_phdr[i].p_vaddr;
+        library_begin = std::min(library_begin, begin);
+        library_end = std::max(library_end, begin + object->dlpi_phdr[i].p_memsz);
+    }
+    return 1;
+}
+
+// What the standard library of Rust asks the system for when a thread starts, and cannot do without.
+constexpr std::size_t THREAD = 48;
+
+// Bytes from which on an allocation is counted, how many there have been, and which of them are to fail.
+std::atomic<std::size_t> least{SIZE_MAX};
+std::atomic<long> asked{0}, first_denied{-1}, last_denied{-1};
+
+bool is_denied(std::size_t size, const void *caller) {
+    const auto address = reinterpret_cast<std::uintptr_t>(caller);
+    if (size < least.load() || size == THREAD || address < library_begin || address >= library_end)
+        return false;
+    const long number = asked.fetch_add(1);
+    return number >= first_denied.load() && number <= last_denied.load();
 }
 
 } // namespace
@@ -37,27 +62,27 @@ bool is_denied(std::size_t size) {
 extern "C" {
 
 void *malloc(std::size_t size) {
-    return is_denied(size) ? nullptr : __libc_malloc(size);
+    return is_denied(size, __builtin_return_address(0)) ? nullptr : __libc_malloc(size);
 }
 
 void *calloc(std::size_t count, std::size_t size) {
-    return is_denied(count * size) ? nullptr : __libc_calloc(count, size);
+    return is_denied(count * size, __builtin_return_address(0)) ? nullptr : __libc_calloc(count, size);
 }
 
 void *realloc(void *old, std::size_t size) {
-    return is_denied(size) ? nullptr : __libc_realloc(old, size);
+    return is_denied(size, __builtin_return_address(0)) ? nullptr : __libc_realloc(old, size);
 }
 
 void *memalign(std::size_t alignment, std::size_t size) {
-    return is_denied(size) ? nullptr : __libc_memalign(alignment, size);
+    return is_denied(size, __builtin_return_address(0)) ? nullptr : __libc_memalign(alignment, size);
 }
 
 void *aligned_alloc(std::size_t alignment, std::size_t size) {
-    return memalign(alignment, size);
+    return is_denied(size, __builtin_return_address(0)) ? nullptr : __libc_memalign(alignment, size);
 }
 
 int posix_memalign(void **place, std::size_t alignment, std::size_t size) {
-    void *found = memalign(alignment, size);
+    void *found = is_denied(size, __builtin_return_address(0)) ? nullptr : __libc_memalign(alignment, size);
     if (!found)
         return ENOMEM;
     *place = found;
@@ -85,40 +110,51 @@ std::uint64_t hash(const Image &image) {
     return out;
 }
 
-// Lets each of a use's allocations of so many KiB and more fail; at most `most` of them, evenly chosen. Smaller ones do not follow from the
-// size of the pictures here, or are those of others: of the codecs, and of the tree over a scene.
-void starve(const char *name, std::size_t kib, const Use &use, long most) {
-    const std::uint64_t truth = use();
-    least = kib << 10;
-    large = 0;
+// Lets a use's allocations of so many bytes and more fail: so many of them, evenly chosen, and with each of them all later ones too
+// if it is for good.
+void starve(const char *name, std::size_t bytes, bool for_good, const Use &use, std::uint64_t truth, long most) {
+    least = bytes;
+    asked = 0;
     CHECK(use() == truth);
-    const long count = large;
+    const long count = asked;
     CHECK(count > 0);
     long refused = 0;
     const long tries = count < most ? count : most;
     for (long i = 0; i < tries; ++i) {
-        large = 0;
-        failing = i * count / tries;
+        asked = 0;
+        first_denied = i * count / tries;
+        last_denied = for_good ? LONG_MAX : first_denied.load();
         try {
             // What can do without the memory may go on, but not to another result.
             CHECK(use() == truth);
         } catch (const luxfer::Error &error) {
             ++refused;
             if (error.status() != LUXFER_OUT_OF_MEMORY)
-                std::fprintf(stderr, "%s, allocation %ld: %s\n", name, failing.load(), error.what());
+                std::fprintf(stderr, "%s, allocation %ld: %s\n", name, first_denied.load(), error.what());
             CHECK(error.status() == LUXFER_OUT_OF_MEMORY);
         }
-        failing = -1;
+        first_denied = last_denied = -1;
     }
     least = SIZE_MAX;
     CHECK(use() == truth);
-    std::printf("%-10s %4ld allocations of %zu KiB and more, %ld of %ld failures reported\n", name, count, kib, refused, tries);
+    std::printf("%-10s %7ld allocations of %7zu bytes and more, %s: %ld of %ld failures reported\n", name, count, bytes,
+                for_good ? "all from one on" : "one at a time  ", refused, tries);
     std::fflush(stdout);
+}
+
+// The same for what follows from the size of the pictures, from so many KiB on, and for all there is.
+void starve(const char *name, std::size_t kib, const Use &use, long most) {
+    const std::uint64_t truth = use();
+    for (const std::size_t bytes : {kib << 10, std::size_t(1)})
+        for (const bool for_good : {false, true})
+            starve(name, bytes, for_good, use, truth, most);
 }
 
 } // namespace
 
 int main() {
+    dl_iterate_phdr(find_library, nullptr);
+    CHECK(library_begin < library_end);
     const Context context = Context::create();
     static std::vector<float> samples(512 * 512 * 3, 0.25f);
 
@@ -172,7 +208,23 @@ int main() {
         texture.height = 300;
         emission.start(texture).wait();
         return hash(emission.image(LUXFER_EMISSION_TEXTURE));
-    }, 60);
+    }, 40);
+
+    Scene::demo(context, LUXFER_DEMO_TARGET_ROOM).save("memory.glb");
+    std::vector<float> lamp(8 * 8 * 3, 0.0f);
+    std::fill_n(&lamp[3 * 27], 3, 1.0f);
+    const Image texture = Image::create(context, {lamp, 8, 8});
+    starve("scene", 64, [&] {
+        const Scene room = Scene::load(context, "memory.glb");
+        const luxfer::PlacedEmission ceiling = room.place_emission("Ceiling", texture, {100, 100, 100});
+        const auto relight = luxfer::Relight::create(context);
+        relight.set_scene(room, ceiling);
+        relight.set_target({50, 40, 30});
+        luxfer::RelightParams rough;
+        rough.paths = 1 << 12;
+        relight.start(rough).wait();
+        return std::uint64_t(1e6 * relight.report().scale[0]);
+    }, 40);
 
     const auto render = luxfer::Render::create(context);
     render.set_scene(Scene::demo(context, LUXFER_DEMO_TARGET_ROOM));
@@ -186,11 +238,11 @@ int main() {
         small.preview = 1;
         render.start(small).wait();
         return hash(render.image());
-    }, 60);
+    }, 40);
     starve("layers", 400, [&] {
         render.write_exr("memory.exr");
         return hash(render.image());
-    }, 60);
+    }, 40);
 
     const auto guides = luxfer::Guides::create(context);
     guides.set_scene(Scene::demo(context, LUXFER_DEMO_SPHERE_ON_TABLE));
@@ -206,6 +258,6 @@ int main() {
         stylize.add_guides(guides, guides, LUXFER_GUIDES_WITH_NORMALS, 0.5f);
         stylize.start(luxfer::StylizeParams(LUXFER_STYLIZE_PREVIEW)).wait();
         return hash(stylize.image());
-    }, 40);
+    }, 30);
     return check::summary("memory");
 }

@@ -96,7 +96,8 @@ pub fn bent(scene: &Scene, triangles: &[(usize, usize)], normal: DVec3) -> f64 {
         let cosine = f.area_vector.dot(normal).abs() / f.area;
         BENT[0] < cosine && cosine < BENT[1]
     };
-    triangles.iter().filter_map(|&id| facet(scene, id)).filter(slopes).map(|f| f.area).sum()
+    // Not `sum`, which begins at -0.
+    triangles.iter().filter_map(|&id| facet(scene, id)).filter(slopes).fold(0.0, |sum, f| sum + f.area)
 }
 
 fn facet(scene: &Scene, id: (usize, usize)) -> Option<Facet> {

@@ -173,7 +173,7 @@ fn placing_splits_the_patch_off_and_lays_the_texture_over_it() {
     let mut scene = shell();
     scene.meshes.push(Mesh { material: 1, ..slab("Lid", Vec3::new(0., 3., 0.), Vec3::new(6., 3.2, 4.)) });
     let surface = find(&scene, "Lid").unwrap();
-    assert_eq!(surface.bent, 0.0);
+    assert_eq!(surface.bent.to_bits(), 0);
     let image = Image::from_fn(3, 2, |x, y| [x as f32, y as f32, 1.0]).unwrap();
     let placed = place(&mut scene, &surface, image, Vec3::new(5.0, 6.0, 7.0)).unwrap();
     assert_eq!(scene.validate(), Ok(()));
