@@ -2,6 +2,7 @@
 # make test   sets up what is missing (Debian packages; Mitsuba, numpy, Dask and mkdocs from PyPI) and runs every test
 # make bench  runs the benches and prints the headline figures; make bench ONLY=rays runs one; plots go to out/bench/
 # make trade  measures every stage's error against its time, over its knobs, and writes the plots and fronts into the guide
+#             (the benches' sections that draw them; make bench ONLY=stylit:knobs runs one)
 # make blender  builds the Blender extension, with the library inside, into out/blender/
 # make docs   builds the guide, with its pictures and the reference, into out/docs/
 # make clean  removes what was built
@@ -22,7 +23,7 @@ BENCHES  := $(patsubst benches/%.rs,%,$(wildcard benches/*.rs))
 ONLY     ?= $(BENCHES)
 GUIDE    := $(filter-out lighting_transfer stylize,$(patsubst examples_c/%.c,%,$(wildcard examples_c/*.c)))
 
-TRADE    := segment vp warp emission relight render error_control stylit transfer
+TRADE    := segment vp warp emission:knobs relight render:kitchen error_control stylit:presets:knobs transfer:curves precision
 
 .PHONY: all lib demo test bench trade blender docs peers setup clean
 
@@ -65,7 +66,8 @@ test: setup lib
 bench: SHELL := /bin/bash -o pipefail
 bench: peers
 	@mkdir -p out/bench
-	@for bench in $(ONLY); do $(CARGO) bench --quiet --bench $$bench | tee out/bench/$$bench.log || exit 1; done
+	@for asked in $(ONLY); do set -- $${asked//:/ }; \
+	  $(CARGO) bench --quiet --bench $$1 -- "$${@:2}" | tee out/bench/$$1.log || exit 1; done
 	@grep -h '^figure ' out/bench/*.log >out/bench/figures.txt
 	@python3 benches/table.py
 
