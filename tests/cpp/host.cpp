@@ -15,7 +15,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#ifdef _OPENMP // not where every thread's accesses are watched (tests/threads.sh): these pools synchronise unseen
+#ifdef _OPENMP // not where every thread's accesses are watched (tests/sanitize.sh): these pools synchronise unseen
 #include <omp.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
