@@ -184,10 +184,12 @@ mod tests {
     #[test]
     fn things_lie_apart_aligned_and_within_the_room() {
         static RESERVE: Reserve = Reserve::new();
-        let mut held: Vec<(usize, usize, *mut u8)> = Vec::new();
+        let mut held: Vec<(usize, *mut u8)> = Vec::new();
         let mut rng = crate::rng::Rng::new(1, &[]);
         let mut refused = 0;
-        for _ in 0..20_000 {
+        // Interpreted, as by tests/miri.sh, each takes a thousand times as long.
+        let rounds = if cfg!(miri) { 300 } else { 20_000 };
+        for _ in 0..rounds {
             let size = 1 + (rng.next_f32().powi(6) * SMALL as f32) as usize;
             let align = 1 << (rng.next_f32() * 12.99) as u32;
             let start = RESERVE.take(layout(size, align));
@@ -196,18 +198,18 @@ mod tests {
             } else {
                 assert!(start.addr().is_multiple_of(align), "{align}");
                 let (low, high) = (start.addr(), start.addr() + size);
-                assert!(held.iter().all(|&(_, s, other)| high <= other.addr() || other.addr() + s <= low));
+                assert!(held.iter().all(|&(size, other)| high <= other.addr() || other.addr() + size <= low));
                 assert!(RESERVE.block_of(start).is_some() && RESERVE.block_of(start.wrapping_add(size - 1)).is_some());
-                held.push((align, size, start));
+                held.push((size, start));
             }
             if held.len() > 200 || start.is_null() {
-                let (_, _, start) = held.swap_remove((rng.next_f32() * held.len() as f32) as usize);
+                let (_, start) = held.swap_remove((rng.next_f32() * held.len() as f32) as usize);
                 give_back(&RESERVE, start);
             }
         }
-        assert!(refused > 0 && refused < 19_000, "{refused}");
+        assert!(refused > 0 && refused < rounds / 2, "{refused} of {rounds}");
         // Nothing was lost: when all is back, all of it can be had again.
-        held.into_iter().for_each(|(_, _, start)| give_back(&RESERVE, start));
+        held.into_iter().for_each(|(_, start)| give_back(&RESERVE, start));
         let all: Vec<_> = (0..BYTES / SMALL).map(|_| RESERVE.take(layout(SMALL, PAGE))).collect();
         assert!(all.iter().all(|start| !start.is_null()));
         assert!(RESERVE.take(layout(1, 1)).is_null());

@@ -76,8 +76,7 @@ fn distortion_is_told_of_lenses_that_have_some() {
         println!("{name:22} {:?}", view.distortion);
         share
     };
-    let shares: Vec<f64> =
-        labelled_photos().iter().filter_map(|l| measured(&l.name, &l.photo)).map(f64::abs).collect();
+    let shares: Vec<f64> = labelled_photos().iter().filter_map(|l| measured(&l.name, &l.photo)).map(f64::abs).collect();
     let Some(folder) = data("photos") else { return };
     check_calibration("distortion", shares);
 
