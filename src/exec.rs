@@ -136,11 +136,8 @@ pub fn map<T: Send>(count: usize, job: Job, work: impl Fn(usize) -> T + Sync) ->
 
 /// An empty list with room for so many, or an error.
 fn room<T>(count: usize) -> Result<Vec<T>> {
-    let mut list = Vec::new();
-    match list.try_reserve_exact(count) {
-        Ok(()) => Ok(list),
-        Err(_) => Err(Error::new(ErrorKind::OutOfMemory, format!("could not allocate {count} results"))),
-    }
+    let none = || Error::new(ErrorKind::OutOfMemory, format!("could not allocate {count} results"));
+    reserve::list(count).ok_or_else(none)
 }
 
 /// Does two things, at the same time where a thread is free.

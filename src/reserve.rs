@@ -1,12 +1,15 @@
 //! Memory for small things in a process that has none left.
 //!
-//! What grows with the input is asked for in ways that can fail, and becomes `LUXFER_OUT_OF_MEMORY`.
-//! Small things (names, messages, the queues of threads, rows in a codec) are not: where the system has no room for one of
-//! them, Rust ends the process, and the host with it. So the library keeps a few MiB that no page of memory stands behind
-//! until they are used. Small things that find no room elsewhere are put there, and jobs end as soon as they see that one was.
-//! Codecs of others, and threads, take more than that, and cannot be told to do without: [`has_room`] tells before whether there is.
+//! What grows with the input is asked of the system in ways that can fail ([`list`], [`make_room`]), and becomes
+//! `LUXFER_OUT_OF_MEMORY`. Small things (names, messages, the queues of threads, rows in a codec) are not: where the system has
+//! no room for one of them, Rust ends the process, and the host with it. So the library keeps a few MiB that no page of memory
+//! stands behind until they are used. Small things that find no room elsewhere are put there, and all jobs of the process end as
+//! soon as they see that one was. Before codecs of others and new threads, which take more than that and cannot do without,
+//! [`has_room`] tells whether the system has it.
 //!
-//! Left to end the process: the 48 bytes that the standard library asks of the system itself when a thread starts.
+//! Left to end the process: that such room is taken by others in between; 48 bytes that the standard library asks of the system
+//! itself when a thread starts, or first fails in the library; and what the system's own library needs when a thread first
+//! comes to this one.
 //!
 //! Without the feature `reserve` the library leaves the choice of an allocator to the program that it is part of.
 
@@ -17,7 +20,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 /// Bytes of the reserve, and the most that a thing in it takes.
 const BYTES: usize = 8 << 20;
-const SMALL: usize = 1 << 20;
+const SMALL: usize = 256 << 10;
 /// They are given out in blocks.
 const BLOCK: usize = 64;
 const BLOCKS: usize = BYTES / BLOCK;
@@ -32,13 +35,54 @@ pub fn uses() -> u64 {
     ALLOCATOR.0.uses.load(Ordering::Relaxed)
 }
 
-/// Whether there is room now for so many bytes, which code that ends the process otherwise is about to take.
+/// An empty list with room for so many items, or none: never of the reserve, since whoever asks can do without.
+pub fn list<T>(len: usize) -> Option<Vec<T>> {
+    let layout = Layout::array::<T>(len).ok()?;
+    if layout.size() == 0 {
+        return Some(Vec::new());
+    }
+    // SAFETY: the layout has a size.
+    let start = unsafe { system(layout, false) };
+    // SAFETY: what is allocated has the layout of so many items; the list has none of them yet.
+    (!start.is_null()).then(|| unsafe { Vec::from_raw_parts(start.cast(), 0, len) })
+}
+
+/// Makes room for a number of items more, or says that there is none; lists grow by doubling.
+pub fn make_room<T>(items: &mut Vec<T>, more: usize) -> bool {
+    if items.capacity() - items.len() >= more {
+        return true;
+    }
+    let most = items.len().saturating_add(more).max(2 * items.capacity()).max(4);
+    // What is too large for the reserve may be moved by the system, which is faster.
+    if most.saturating_mul(size_of::<T>()) > SMALL {
+        return items.try_reserve(more).is_ok();
+    }
+    let Some(mut grown) = list(most) else { return false };
+    grown.append(items);
+    *items = grown;
+    true
+}
+
+/// Whether the system has so many bytes now, which code that ends the process otherwise is about to take.
 pub fn has_room(bytes: usize) -> bool {
-    let mut room = Vec::<u8>::new();
-    let found = room.try_reserve_exact(bytes).is_ok();
     // An allocation that nobody looks at need not take place.
-    std::hint::black_box(room);
-    found
+    std::hint::black_box(list::<u8>(bytes)).is_some()
+}
+
+/// Memory of the system's, which the allocator of the program takes back; null if there is none.
+///
+/// # Safety
+/// The layout has a size.
+pub unsafe fn system(layout: Layout, zeroed: bool) -> *mut u8 {
+    // SAFETY: what is asked of callers.
+    unsafe {
+        match (cfg!(feature = "reserve"), zeroed) {
+            (true, true) => System.alloc_zeroed(layout),
+            (true, false) => System.alloc(layout),
+            (false, true) => std::alloc::alloc_zeroed(layout),
+            (false, false) => std::alloc::alloc(layout),
+        }
+    }
 }
 
 /// The system's memory; after it, the reserve.
@@ -188,9 +232,9 @@ mod tests {
         let mut rng = crate::rng::Rng::new(1, &[]);
         let mut refused = 0;
         // Interpreted, as by tests/miri.sh, each takes a thousand times as long.
-        let rounds = if cfg!(miri) { 300 } else { 20_000 };
+        let rounds = if cfg!(miri) { 600 } else { 20_000 };
         for _ in 0..rounds {
-            let size = 1 + (rng.next_f32().powi(6) * SMALL as f32) as usize;
+            let size = 1 + (rng.next_f32().powi(4) * SMALL as f32) as usize;
             let align = 1 << (rng.next_f32() * 12.99) as u32;
             let start = RESERVE.take(layout(size, align));
             if start.is_null() {
@@ -213,6 +257,24 @@ mod tests {
         let all: Vec<_> = (0..BYTES / SMALL).map(|_| RESERVE.take(layout(SMALL, PAGE))).collect();
         assert!(all.iter().all(|start| !start.is_null()));
         assert!(RESERVE.take(layout(1, 1)).is_null());
+    }
+
+    #[test]
+    fn lists_have_the_room_they_are_asked_for() {
+        let mut items = list::<u32>(3).unwrap();
+        assert!(items.capacity() >= 3 && items.is_empty());
+        for item in 0..200_000 {
+            assert!(make_room(&mut items, 1));
+            let room = items.as_ptr();
+            items.push(item);
+            assert_eq!(items.as_ptr(), room);
+        }
+        assert!(items.iter().zip(0..).all(|(item, i)| *item == i));
+        assert!(list::<u32>(0).is_some() && list::<()>(9).is_some() && has_room(1 << 16));
+        assert!(
+            list::<u32>(usize::MAX).is_none() && !has_room(usize::MAX / 2) && !make_room(&mut items, usize::MAX / 4)
+        );
+        assert_eq!(items.len(), 200_000);
     }
 
     #[test]

@@ -191,7 +191,7 @@ pub unsafe extern "C" fn luxfer_lamps_start(
             let material = material.map(|m| m as usize);
             let lamps = params.lamps(&scene, material)?;
             let (group_of, groups) = params.groups(&lamps);
-            let triangles: Vec<Vec<(usize, usize)>> = inputs.goals.iter().map(|aim| aim.triangles(&scene)).collect();
+            let triangles = inputs.goals.iter().map(|aim| aim.triangles(&scene)).collect::<Result<Vec<_>>>()?;
             let goals: Vec<Goal> = inputs.goals.iter().zip(&triangles).map(|(aim, t)| aim.goal(t)).collect();
             let tracing = params.tracing();
             let emitter = material.unwrap_or(usize::MAX);

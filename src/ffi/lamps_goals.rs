@@ -13,6 +13,7 @@ use super::scene::{colour, missing};
 use super::stage::{Stage, need};
 use super::status::luxfer_status;
 use crate::error::{Error, Result};
+use crate::image::try_collect;
 use crate::relight::{Aspect, Goal, MAX_LEVELS, Place, Quantity, Sense};
 use crate::scene::Scene;
 use glam::Vec3;
@@ -154,13 +155,13 @@ pub unsafe extern "C" fn luxfer_lamps_clear_goals(lamps: *mut luxfer_lamps) -> l
 }
 
 impl Aim {
-    pub(super) fn triangles(&self, scene: &Scene) -> Vec<(usize, usize)> {
+    pub(super) fn triangles(&self, scene: &Scene) -> Result<Vec<(usize, usize)>> {
         match self.place {
             Where::Mesh(mesh) => {
                 let count = scene.meshes.get(mesh as usize).map_or(0, |m| m.triangles.len());
-                (0..count).map(|t| (mesh as usize, t)).collect()
+                try_collect((0..count).map(|t| (mesh as usize, t)))
             }
-            Where::Grid { .. } => Vec::new(),
+            Where::Grid { .. } => Ok(Vec::new()),
         }
     }
 

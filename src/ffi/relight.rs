@@ -13,6 +13,7 @@ use super::scene::{SceneObject, colour, luxfer_scene, missing};
 use super::stage::{Stage, need};
 use super::status::luxfer_status;
 use crate::error::{Error, Result};
+use crate::image::try_collect;
 use crate::relight::{self, Fit, Quantity, Reach, Sense, Solution};
 use crate::scene::Scene;
 use glam::Vec3;
@@ -324,7 +325,7 @@ impl Emitter {
         }
         let mesh = scene.meshes.get(self.mesh as usize);
         let mesh = mesh.ok_or_else(|| missing("mesh", self.mesh, scene.meshes.len()))?;
-        Ok((0..mesh.triangles.len()).map(|t| (self.mesh as usize, t)).collect())
+        try_collect((0..mesh.triangles.len()).map(|t| (self.mesh as usize, t)))
     }
 }
 

@@ -26,8 +26,7 @@ pub fn try_vec<T: Clone>(len: usize, value: T) -> Result<Vec<T>> {
 
 /// An empty vector with room for `len` items, or an error.
 pub fn try_with_capacity<T>(len: usize) -> Result<Vec<T>> {
-    let mut data = Vec::new();
-    data.try_reserve_exact(len).map_err(|_| no_memory::<T>(len))?;
+    let mut data = reserve::list(len).ok_or_else(|| no_memory::<T>(len))?;
     prefer_huge(data.spare_capacity_mut());
     Ok(data)
 }
@@ -44,16 +43,11 @@ pub fn try_collect<T>(items: impl IntoIterator<Item = T>) -> Result<Vec<T>> {
 
 /// Appends an item, or gives an error.
 pub fn try_push<T>(data: &mut Vec<T>, item: T) -> Result<()> {
-    if data.len() == data.capacity() {
-        data.try_reserve(1).map_err(|_| no_memory::<T>(2 * data.len()))?;
+    if !reserve::make_room(data, 1) {
+        return Err(no_memory::<T>(2 * data.len()));
     }
     data.push(item);
     Ok(())
-}
-
-/// An error if there is no room for so many bytes, which a codec is about to take that would end the process without them.
-pub(crate) fn check_room(bytes: usize) -> Result<()> {
-    if reserve::has_room(bytes) { Ok(()) } else { Err(no_memory::<u8>(bytes)) }
 }
 
 /// The error where there is no room for so many items.

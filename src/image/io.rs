@@ -3,9 +3,8 @@
 //! A header that promises more than [`MAX_PIXELS`] is refused before anything is allocated for it.
 
 use crate::error::{Error, ErrorKind, Result};
-use crate::image::buffer::check_room;
 use crate::image::colour::{linear_to_srgb, srgb_to_linear, srgb8_table};
-use crate::image::{Image, MAX_SIDE, try_collect, try_vec, try_with_capacity};
+use crate::image::{Image, MAX_SIDE, room, try_collect, try_vec, try_with_capacity};
 use exr::prelude as ex;
 use image::{ImageDecoder, ImageFormat, ImageReader};
 use std::io::Cursor;
@@ -72,7 +71,7 @@ fn raster_decoder(bytes: &[u8]) -> Result<(ImageFormat, impl ImageDecoder + '_)>
     let format = image::guess_format(bytes)
         .map_err(|_| Error::format("not a PNG, JPEG, Radiance HDR or OpenEXR file".to_string()))?;
     if format == ImageFormat::Png {
-        check_palette(bytes)?;
+        check_chunks(bytes)?;
     }
     let decoder = ImageReader::with_format(Cursor::new(bytes), format).into_decoder().map_err(broken_raster)?;
     let (width, height) = decoder.dimensions();
@@ -80,8 +79,8 @@ fn raster_decoder(bytes: &[u8]) -> Result<(ImageFormat, impl ImageDecoder + '_)>
     Ok((format, decoder))
 }
 
-/// The decoder takes for granted that a PNG's palette holds whole colours.
-fn check_palette(bytes: &[u8]) -> Result<()> {
+/// The decoder takes for granted that a PNG's palette holds whole colours, and takes memory for other chunks as they come.
+fn check_chunks(bytes: &[u8]) -> Result<()> {
     let mut chunks = bytes.get(8..).unwrap_or_default();
     while let Some((&[a, b, c, d, ref name @ ..], rest)) = chunks.split_first_chunk::<8>() {
         let length = u32::from_be_bytes([a, b, c, d]) as usize;
@@ -90,6 +89,7 @@ fn check_palette(bytes: &[u8]) -> Result<()> {
                 "the PNG's palette has {length} bytes; it must hold 1 to 256 colours of 3"
             )));
         }
+        room::check_chunk(name, length.min(rest.len()))?;
         // Beyond its content lie four bytes of a checksum.
         chunks = rest.get(length.saturating_add(4)..).unwrap_or_default();
     }
@@ -97,6 +97,11 @@ fn check_palette(bytes: &[u8]) -> Result<()> {
 }
 
 fn broken_raster(e: image::ImageError) -> Error {
+    if let image::ImageError::IoError(io) = &e
+        && io.kind() == std::io::ErrorKind::OutOfMemory
+    {
+        return Error::new(ErrorKind::OutOfMemory, "could not allocate memory to decode the file");
+    }
     Error::format(format!("the file cannot be decoded: {e}"))
 }
 
@@ -105,8 +110,7 @@ fn decode_raster(bytes: &[u8], encoding: Encoding) -> Result<Image> {
     let (width, height) = decoder.dimensions();
     let colour = decoder.color_type();
     let mut raw = try_vec(usize::try_from(decoder.total_bytes()).unwrap_or(usize::MAX), 0u8)?;
-    // Of a progressive JPEG all coefficients are kept, two bytes each, beside the file; of other formats a few rows.
-    check_room(bytes.len() + 2 * raw.len() + 16 * raw.len() / height as usize)?;
+    room::check_pixels(format, width as usize, height as usize, usize::from(colour.bytes_per_pixel()))?;
     decoder.read_image(&mut raw).map_err(broken_raster)?;
 
     // Grey with alpha becomes RGBA.
@@ -164,12 +168,7 @@ pub(super) fn first_exr_layer(
     headers: &exr::meta::Headers,
 ) -> Result<ex::Layer<ex::AnyChannels<ex::FlatSamples>>> {
     use ex::{ReadChannels, ReadLayers};
-    // All samples, and blocks as they are unpacked.
-    let taken = |h: &exr::meta::header::Header| {
-        let samples = h.layer_size.0 * h.layer_size.1 * h.channels.bytes_per_pixel;
-        samples.saturating_add(h.max_block_byte_size().min(2 * samples).saturating_mul(4))
-    };
-    check_room(headers.iter().map(taken).max().unwrap_or(0))?;
+    room::check_layer(headers)?;
     let file = ex::read()
         .no_deep_data()
         .largest_resolution_level()
@@ -220,8 +219,7 @@ pub fn encode_png(image: &Image, exposure: f32) -> Result<Vec<u8>> {
         let encoded = if alpha { v } else { linear_to_srgb(v * exposure) };
         *b = (encoded.clamp(0.0, 1.0) * 255.0).round() as u8;
     }
-    // Filtered rows of the whole picture, and what comes of them, which grows by doubling.
-    check_room(4 * bytes.len())?;
+    room::check_packing(bytes.len())?;
     let mut out = Cursor::new(Vec::new());
     image::write_buffer_with_format(
         &mut out,
@@ -271,22 +269,16 @@ pub fn encode_exr(layers: &[Layer], notes: &[(String, String)]) -> Result<Vec<u8
     for (name, note) in notes {
         file.layer_data.attributes.other.insert(text(name), ex::AttributeValue::Text(text(note)));
     }
-    // Room for what no compression could make larger: samples, and for each line its number, size and place; names and notes.
     let channels = layers.iter().map(|l| l.channels.len()).sum::<usize>();
-    let texts = notes.iter().map(|(name, note)| name.len() + note.len() + 64).sum::<usize>() + 128 * channels;
-    let mut out =
-        Cursor::new(try_with_capacity(4 * channels * first.width * first.height + 32 * first.height + texts + 4096)?);
-    check_room(block_room(channels))?;
+    let texts = notes.iter().map(|(name, note)| name.len() + note.len() + 64).sum::<usize>() + 64 * channels;
+    let (width, height) = (first.width, first.height);
+    let mut out = Cursor::new(try_with_capacity(room::longest_file(width, height, channels, texts))?);
+    room::check_blocks(width, height, channels)?;
     file.write()
         .non_parallel()
         .to_buffered(&mut out)
         .map_err(|e| Error::new(ErrorKind::Internal, format!("the OpenEXR encoder failed: {e}")))?;
     Ok(out.into_inner())
-}
-
-/// Bytes that the OpenEXR encoder takes for blocks on their way, of so many channels: a tile has 64 x 64 pixels.
-pub(super) fn block_room(channels: usize) -> usize {
-    8 * 64 * 64 * 4 * channels
 }
 
 /// Writes a whole file, or leaves what was there before: the bytes go to a neighbour first, then take its place.

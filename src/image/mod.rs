@@ -12,6 +12,7 @@ pub(crate) mod pages;
 pub mod patches;
 mod planes;
 pub mod pyramid;
+mod room;
 pub mod view;
 
 pub(crate) use buffer::no_memory;

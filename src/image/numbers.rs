@@ -4,9 +4,8 @@
 //! window lies in the whole, its display window. A double is two channels of 32-bit integers, `number.K.high` and
 //! `number.K.low`: floating-point channels have 32 bits at most. What else there is to say stands in texts of the header.
 
-use super::buffer::check_room;
-use super::io::{block_room, broken_exr, exr_headers, first_exr_layer};
-use super::{Image, try_vec, try_with_capacity};
+use super::io::{broken_exr, exr_headers, first_exr_layer};
+use super::{Image, room, try_vec, try_with_capacity};
 use crate::error::{Error, ErrorKind, Result};
 use exr::meta::header::Header;
 use exr::prelude as ex;
@@ -151,13 +150,11 @@ pub fn encode(head: &Head, picture: &Image, number: impl Fn([usize; 2], usize) -
     let layer = ex::Layer::new((width, height), attributes, ex::Encoding::FAST_LOSSLESS, list);
     let mut file = ex::Image::from_layer(layer);
     file.attributes.display_window = ex::IntegerBounds::new((0, 0), (head.whole[0], head.whole[1]));
-    // Room for what no compression could make larger: samples, and for each line its number, size and place; names and notes.
     let texts = head.notes.iter().map(|(name, note)| name.len() + note.len() + 64).sum::<usize>();
     let channels = 3 + 2 * head.numbers;
-    let samples = channels * (4 * width * height + 64);
     use ex::WritableImage;
-    let mut out = Cursor::new(try_with_capacity(samples + texts + 32 * height + 4096)?);
-    check_room(block_room(channels))?;
+    let mut out = Cursor::new(try_with_capacity(room::longest_file(width, height, channels, texts))?);
+    room::check_blocks(width, height, channels)?;
     file.write()
         .non_parallel()
         .to_buffered(&mut out)

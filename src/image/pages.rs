@@ -1,7 +1,8 @@
 //! Huge pages for large buffers: the first touch of a small page costs the system as much as hundreds of operations, and there
 //! are ten thousand of them in ten channels of a megapixel.
 
-use std::alloc::{Layout, alloc_zeroed};
+use crate::reserve;
+use std::alloc::Layout;
 use std::mem::MaybeUninit;
 
 /// Bytes of a huge page.
@@ -32,7 +33,7 @@ pub(crate) fn zeros(len: usize) -> Option<Vec<f32>> {
     // SAFETY: the layout has a size. What is allocated belongs to nobody else, has room for `len` numbers, aligned as they
     // are, and all of them are written: no bits are 0.
     unsafe {
-        let start = alloc_zeroed(layout).cast::<f32>();
+        let start = reserve::system(layout, true).cast::<f32>();
         if start.is_null() {
             return None;
         }

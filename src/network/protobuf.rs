@@ -1,6 +1,7 @@
 //! The wire format of Protocol Buffers: fields of a message, as views of its bytes.
 
 use crate::error::{Error, Result};
+use crate::image::try_push;
 
 /// What a field holds.
 #[derive(Clone, Copy)]
@@ -90,7 +91,7 @@ impl<'a> Value<'a> {
             return Ok(());
         };
         while !rest.is_empty() {
-            to.push(varint(&mut rest)? as i64);
+            try_push(to, varint(&mut rest)? as i64)?;
         }
         Ok(())
     }
@@ -101,9 +102,8 @@ impl<'a> Value<'a> {
             to.push(self.float()?);
             return Ok(());
         };
-        to.reserve(rest.len() / 4);
         while !rest.is_empty() {
-            to.push(f32::from_le_bytes(array(&mut rest)?));
+            try_push(to, f32::from_le_bytes(array(&mut rest)?))?;
         }
         Ok(())
     }

@@ -3,6 +3,7 @@
 use super::protobuf::{Value, fields};
 use super::tensor::{Data, Tensor, count};
 use crate::error::{Error, ErrorKind, Result};
+use crate::image::{try_collect, try_push};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -170,7 +171,7 @@ fn tensor(bytes: &[u8]) -> Result<(&str, Tensor)> {
             9 => raw = Some(value.bytes()?),
             10 => {
                 for eight in value.bytes()?.chunks_exact(8) {
-                    floats.push(f64::from_le_bytes(std::array::from_fn(|i| eight[i])) as f32);
+                    try_push(&mut floats, f64::from_le_bytes(std::array::from_fn(|i| eight[i])) as f32)?;
                 }
             }
             13 => is_elsewhere = true,
@@ -187,20 +188,20 @@ fn tensor(bytes: &[u8]) -> Result<(&str, Tensor)> {
         .map(|d| usize::try_from(d).map_err(|_| Error::format(format!("tensor {name} has a size of {d}"))))
         .collect::<Result<_>>()?;
 
-    fn raw_items<const N: usize, T>(raw: &[u8], item: impl Fn([u8; N]) -> T) -> Vec<T> {
-        raw.as_chunks::<N>().0.iter().map(|bytes| item(*bytes)).collect()
+    fn raw_items<const N: usize, T>(raw: &[u8], item: impl Fn([u8; N]) -> T) -> Result<Vec<T>> {
+        try_collect(raw.as_chunks::<N>().0.iter().map(|bytes| item(*bytes)))
     }
     let half = |bits: u16| half::f16::from_bits(bits).to_f32();
     let data = match (kind, raw) {
-        (1, Some(raw)) => floats_of(raw_items(raw, f32::from_le_bytes)),
-        (10, Some(raw)) => floats_of(raw_items(raw, |b| half(u16::from_le_bytes(b)))),
-        (11, Some(raw)) => floats_of(raw_items(raw, |b| f64::from_le_bytes(b) as f32)),
-        (2 | 9, Some(raw)) => integers_of(raw_items(raw, |[b]: [u8; 1]| i64::from(b))),
-        (3, Some(raw)) => integers_of(raw_items(raw, |b: [u8; 1]| i64::from(i8::from_le_bytes(b)))),
-        (6, Some(raw)) => integers_of(raw_items(raw, |b| i64::from(i32::from_le_bytes(b)))),
-        (7, Some(raw)) => integers_of(raw_items(raw, i64::from_le_bytes)),
+        (1, Some(raw)) => floats_of(raw_items(raw, f32::from_le_bytes)?),
+        (10, Some(raw)) => floats_of(raw_items(raw, |b| half(u16::from_le_bytes(b)))?),
+        (11, Some(raw)) => floats_of(raw_items(raw, |b| f64::from_le_bytes(b) as f32)?),
+        (2 | 9, Some(raw)) => integers_of(raw_items(raw, |[b]: [u8; 1]| i64::from(b))?),
+        (3, Some(raw)) => integers_of(raw_items(raw, |b: [u8; 1]| i64::from(i8::from_le_bytes(b)))?),
+        (6, Some(raw)) => integers_of(raw_items(raw, |b| i64::from(i32::from_le_bytes(b)))?),
+        (7, Some(raw)) => integers_of(raw_items(raw, i64::from_le_bytes)?),
         (1 | 11, None) => floats_of(floats),
-        (10, None) => floats_of(integers.into_iter().map(|bits| half(bits as u16)).collect()),
+        (10, None) => floats_of(try_collect(integers.into_iter().map(|bits| half(bits as u16)))?),
         // Varints of negative 32-bit numbers are those of 64 bits.
         (2 | 3 | 6 | 7 | 9, None) => integers_of(integers),
         _ => return Err(unsupported(format_args!("tensors of type {kind}"))),

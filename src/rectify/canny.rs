@@ -2,7 +2,7 @@
 
 use super::gradient::Gradients;
 use crate::error::Result;
-use crate::image::try_vec;
+use crate::image::{try_collect, try_push, try_vec};
 use crate::job::Job;
 
 /// Gradient magnitudes, in encoded luma per pixel: an edge must exceed the second somewhere, and the first throughout.
@@ -43,7 +43,7 @@ pub fn edges(gradients: &Gradients, job: Job) -> Result<Vec<u32>> {
                 state[i] = CANDIDATE;
                 if m >= STRONG {
                     state[i] = EDGE;
-                    pending.push(i as u32);
+                    try_push(&mut pending, i as u32)?;
                 }
             }
         }
@@ -56,12 +56,12 @@ pub fn edges(gradients: &Gradients, job: Job) -> Result<Vec<u32>> {
                 let n = ny * width + nx;
                 if state[n] == CANDIDATE {
                     state[n] = EDGE;
-                    pending.push(n as u32);
+                    try_push(&mut pending, n as u32)?;
                 }
             }
         }
     }
-    Ok((0..state.len() as u32).filter(|&i| state[i as usize] == EDGE).collect())
+    try_collect((0..state.len() as u32).filter(|&i| state[i as usize] == EDGE))
 }
 
 #[cfg(test)]

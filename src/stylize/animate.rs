@@ -9,7 +9,7 @@ use super::budget::budget;
 use super::level::{Level, Problem};
 use super::schedule::paint;
 use crate::error::Result;
-use crate::image::Image;
+use crate::image::{Image, try_collect};
 use crate::job::Job;
 use crate::patch::{Field, NONE, halve};
 use crate::rng::Rng;
@@ -52,7 +52,7 @@ pub(super) fn keep(level: &mut Level, field: &mut Field, params: &Params, seed: 
     level.forward().rescore(field, job, |i| level.wanted.contains_index(i))?;
 
     let fits = |i: usize| level.wanted.contains_index(i) && field.at[i] != NONE && field.error[i] != u32::MAX;
-    let mut errors: Vec<u32> = (0..field.at.len()).filter(|&i| fits(i)).map(|i| field.error[i]).collect();
+    let mut errors = try_collect((0..field.at.len()).filter(|&i| fits(i)).map(|i| field.error[i]))?;
     errors.sort_unstable();
     let feasible = (budget(&errors).knee * errors.len() as f64).ceil() as usize;
     let limit = errors.get(feasible.saturating_sub(1)).copied().unwrap_or(0);
@@ -60,5 +60,5 @@ pub(super) fn keep(level: &mut Level, field: &mut Field, params: &Params, seed: 
         let block = [(i % field.width / BLOCK) as u64, (i / field.width / BLOCK) as u64];
         Rng::new(seed, &block).next_f32() < params.coherence
     };
-    Ok((0..field.at.len()).map(|i| fits(i) && field.error[i] <= limit && stays(i)).collect())
+    try_collect((0..field.at.len()).map(|i| fits(i) && field.error[i] <= limit && stays(i)))
 }

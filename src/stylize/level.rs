@@ -60,7 +60,10 @@ impl Problem {
         broken.iter_mut().zip(&guides.broken_source).for_each(|(a, b)| *a |= b);
         let counts = (broken.iter().filter(|b| **b).count(), guides.broken_target.iter().filter(|b| **b).count());
         if counts.0 > 0 {
-            let mask = source_mask.get_or_insert_with(|| vec![true; broken.len()]);
+            let mask = match &mut source_mask {
+                Some(mask) => mask,
+                none => none.insert(try_vec(broken.len(), true)?),
+            };
             mask.iter_mut().zip(&broken).for_each(|(m, b)| *m &= !b);
         }
         if let Some(motion) = input.motion {
@@ -142,7 +145,7 @@ fn mask(name: &str, mask: Option<&Image>, of: &Image) -> Result<Option<Vec<bool>
     if mask.channels != 1 {
         return Err(Error::argument(format!("{name} has {} channels; it must have 1", mask.channels)));
     }
-    let set: Vec<bool> = mask.data.iter().map(|&v| v > 0.5).collect();
+    let set = try_collect(mask.data.iter().map(|&v| v > 0.5))?;
     if !set.contains(&true) {
         return Err(Error::degenerate(format!("{name} is empty: no pixel is above 0.5")));
     }

@@ -156,7 +156,7 @@ mod tests {
     #[test]
     fn turned_surfaces_keep_their_zones_and_their_area() {
         let (scene, surface) = l_shaped();
-        let turned = surface.turned(&scene, 0.5);
+        let turned = surface.turned(&scene, 0.5).unwrap();
         let size = (turned.size * 100.0).round().as_uvec2();
         let zone = DVec4::new(1.0, 2.5, 3.0, 3.5);
         let ground = of(&scene, (&turned, &surface), 0.0, &[zone], size, Monitor::default().job()).unwrap().unwrap();

@@ -70,7 +70,7 @@ impl Transfer {
         let scene = need(&self.input.scene, "set the scene")?;
         let found = self.find_surface(scene)?;
         let pattern = &self.params.pattern;
-        let surface = if pattern.rotation == 0.0 { found.clone() } else { found.turned(scene, pattern.rotation) };
+        let surface = if pattern.rotation == 0.0 { found.clone() } else { found.turned(scene, pattern.rotation)? };
         let mut emission = match &self.input.texture {
             Some(texture) => emission::given(texture, job.part(0.0, 0.9))?,
             None => self.texture_from_photo(&surface, job.part(0.0, 0.9))?,

@@ -1,4 +1,4 @@
-// A machine that has no more memory: allocations of the library's fail, each once in turn, or all from one on. The call, or the job, must
+// A machine that has no more memory: allocations of the library's fail, one at a time, or all from one on. The call, or the job, must
 // say so, or do without; the process lives on, nothing is lost, and the next try gives the same result as ever.
 #include "check.hpp"
 
@@ -41,7 +41,7 @@ int find_library(dl_phdr_info *object, std::size_t, void *) {
     return 1;
 }
 
-// What the standard library of Rust asks the system for when a thread starts, and cannot do without.
+// What the standard library of Rust asks the system for when a thread starts, or first fails, and cannot do without.
 constexpr std::size_t THREAD = 48;
 
 // Bytes from which on an allocation is counted, how many there have been, and which of them are to fail.
@@ -125,7 +125,7 @@ void starve(const char *name, std::size_t bytes, bool for_good, const Use &use, 
         first_denied = i * count / tries;
         last_denied = for_good ? LONG_MAX : first_denied.load();
         try {
-            // What can do without the memory may go on, but not to another result.
+            // What can do without may go on, but not to another result.
             CHECK(use() == truth);
         } catch (const luxfer::Error &error) {
             ++refused;
@@ -163,7 +163,12 @@ int main() {
         const double half[] = {2, 0, 0, 0, 2, 0, 0, 0, 1};
         image.save("memory.png");
         return hash(image.warp(half, 300, 300)) ^ hash(Image::load(context, "memory.png"));
-    }, 100);
+    }, 40);
+
+    starve("context", 64, [&] {
+        const Context other = Context::create();
+        return hash(Image::create(other, {samples, 300, 300, 3}));
+    }, 40);
 
     luxfer::DemoPhotoParams size;
     size.width = 480;
@@ -182,7 +187,7 @@ int main() {
         features.set_view(rectify);
         features.start().wait();
         return hash(features.image(LUXFER_FEATURES_CHANNELS));
-    }, 100);
+    }, 40);
 
     const auto plane = luxfer::Segment::create(context), lights = luxfer::Segment::create(context);
     const auto emission = luxfer::Emission::create(context);

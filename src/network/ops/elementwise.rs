@@ -4,6 +4,7 @@ use super::super::tensor::{Data, Room, Tensor, count};
 use super::{Call, Settings};
 use crate::error::{Error, Result};
 use crate::exec;
+use crate::image::try_collect;
 use crate::job::Job;
 
 /// Items of a row that is one unit of work.
@@ -280,7 +281,7 @@ fn pair(op: Binary, left: &Tensor, right: &Tensor, call: &Call) -> Result<Tensor
         }
         // An exponent may be whole.
         (Data::Floats(_), Data::Integers(b)) if op == Binary::Pow => {
-            let b = b.iter().map(|&v| v as f32).collect();
+            let b = try_collect(b.iter().map(|&v| v as f32))?;
             pair(op, left, &Tensor::floats(right.shape.clone(), b), call)
         }
         _ => Err(Error::format(format!("{op:?} of floats and integers together"))),

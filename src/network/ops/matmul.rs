@@ -5,6 +5,7 @@ use super::elementwise::Spread;
 use super::{Call, Settings};
 use crate::error::{Error, Result};
 use crate::exec;
+use crate::image::try_collect;
 use crate::simd::widest;
 
 const ROWS: usize = 4;
@@ -38,7 +39,7 @@ impl Gemm {
         let mut product = product(&left, &right, call)?;
         let out_shape = product.shape.clone();
         if self.alpha != 1.0 {
-            let scaled = product.as_floats()?.iter().map(|v| self.alpha * v).collect();
+            let scaled = try_collect(product.as_floats()?.iter().map(|v| self.alpha * v))?;
             product = Tensor::floats(out_shape.clone(), scaled);
         }
         let Some(bias) = call.optional(2) else { return Ok(product) };
@@ -50,7 +51,7 @@ impl Gemm {
             )));
         }
         let bias = spread.all(1, bias.as_floats()?, 0.0, call)?;
-        let sum = product.as_floats()?.iter().zip(bias).map(|(p, c)| p + self.beta * c).collect();
+        let sum = try_collect(product.as_floats()?.iter().zip(bias).map(|(p, c)| p + self.beta * c))?;
         Ok(Tensor::floats(out_shape, sum))
     }
 }

@@ -16,7 +16,8 @@ pub use emitter::{Emitter, mean_channel};
 use super::facet::Facet;
 use super::light::Bounds;
 use crate::error::Result;
-use crate::image::{no_memory, try_vec, try_with_capacity};
+use crate::image::{no_memory, try_collect, try_vec, try_with_capacity};
+use crate::reserve;
 use crate::scene::Scene;
 use glam::Vec2;
 use polygon::uniform_in_triangle;
@@ -60,7 +61,7 @@ impl Emitters {
     /// Returns the bounds of every piece as well.
     pub fn build(scene: &Scene, facets: &[Facet], first: &[u32]) -> Result<(Self, Vec<Bounds>)> {
         let numbered = facets.iter().zip(0..);
-        let emitters: Vec<Emitter> = numbered.filter_map(|(f, id)| Emitter::new(scene, f, id, first)).collect();
+        let emitters = try_collect(numbered.filter_map(|(f, id)| Emitter::new(scene, f, id, first)))?;
         let mut this = Self {
             divisions: try_vec(emitters.len(), Division::Even(NONE))?,
             emitters,
@@ -138,7 +139,9 @@ impl Emitters {
             }
         }
         self.tiles = tiles;
-        bounds.try_reserve_exact(light.len()).map_err(|_| no_memory::<Bounds>(light.len()))?;
+        if !reserve::make_room(bounds, light.len()) {
+            return Err(no_memory::<Bounds>(light.len()));
+        }
         bounds.append(&mut light);
         Ok(())
     }

@@ -8,6 +8,7 @@ use crate::error::Result;
 use crate::image::pages::{HUGE, prefer_huge};
 use crate::image::{no_memory, try_with_capacity};
 use crate::job::Job;
+use crate::reserve;
 use rayon::prelude::*;
 use std::mem::MaybeUninit;
 use std::ops::{Deref, DerefMut};
@@ -115,8 +116,5 @@ pub(super) fn prefetch<T>(first: *const T, lines: usize) {
 /// Makes room for a number of items more, or gives an error; lists grow by doubling.
 #[inline]
 pub(super) fn make_room<T>(list: &mut Vec<T>, more: usize) -> Result<()> {
-    if list.capacity() - list.len() >= more {
-        return Ok(());
-    }
-    list.try_reserve(more).map_err(|_| no_memory::<T>(list.len() + more))
+    if reserve::make_room(list, more) { Ok(()) } else { Err(no_memory::<T>(list.len() + more)) }
 }

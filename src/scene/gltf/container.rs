@@ -1,6 +1,7 @@
 //! The outer layers of a file: GLB chunks, buffers and images inside the file, in `data:` URIs, or beside it.
 
 use crate::error::{Error, ErrorKind, Result};
+use crate::image::try_with_capacity;
 use gltf::json::{Index, Root, buffer};
 use std::borrow::Cow;
 use std::path::{Component, Path, PathBuf};
@@ -158,7 +159,7 @@ fn decode_percent(text: &str) -> Option<Vec<u8>> {
 /// RFC 4648, section 4; padding is optional.
 fn decode_base64(text: &str) -> Result<Vec<u8>> {
     let digits = text.trim_end_matches('=');
-    let mut out = Vec::with_capacity(digits.len() / 4 * 3 + 2);
+    let mut out = try_with_capacity(digits.len() / 4 * 3 + 3)?;
     let (mut bits, mut count) = (0u32, 0);
     for byte in digits.bytes() {
         let value = match byte {

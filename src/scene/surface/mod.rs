@@ -20,6 +20,7 @@ pub use place::{Placed, cover, place};
 
 use super::Scene;
 use crate::error::{Error, Result};
+use crate::image::try_collect;
 use glam::{DVec2, DVec3, Vec2, Vec3};
 
 /// A planar patch of the scene with a frame of its own.
@@ -48,22 +49,22 @@ pub struct Surface {
 
 impl Surface {
     /// The same patch with its axes turned by an angle from u towards v, in the rectangle around it along these.
-    pub fn turned(&self, scene: &Scene, angle: f64) -> Self {
+    pub fn turned(&self, scene: &Scene, angle: f64) -> Result<Self> {
         let turn = DVec2::from_angle(angle);
         let u = self.u_axis.as_dvec3() * turn.x + self.v_axis.as_dvec3() * turn.y;
-        let frame = frame::bound(&corners(scene, &self.triangles), self.origin.as_dvec3(), u, self.normal.as_dvec3());
-        Self {
+        let frame = frame::bound(&corners(scene, &self.triangles)?, self.origin.as_dvec3(), u, self.normal.as_dvec3());
+        Ok(Self {
             origin: frame.origin.as_vec3(),
             u_axis: frame.u.as_vec3(),
             v_axis: frame.v.as_vec3(),
             size: frame.size.as_vec2(),
             ..self.clone()
-        }
+        })
     }
 }
 
-fn corners(scene: &Scene, triangles: &[(usize, usize)]) -> Vec<DVec3> {
-    triangles.iter().flat_map(|&(m, t)| scene.meshes[m].corners(t).map(|p| p.as_dvec3())).collect()
+fn corners(scene: &Scene, triangles: &[(usize, usize)]) -> Result<Vec<DVec3>> {
+    try_collect(triangles.iter().flat_map(|&(m, t)| scene.meshes[m].corners(t).map(|p| p.as_dvec3())))
 }
 
 /// Finds the planar patch of the object or material of that name which faces the room.
@@ -72,8 +73,8 @@ fn corners(scene: &Scene, triangles: &[(usize, usize)]) -> Vec<DVec3> {
 /// only. The scene must be valid. Errors: `NotFound` with the names there are; `Degenerate` if the object has no area.
 pub fn find(scene: &Scene, name: &str) -> Result<Surface> {
     let meshes = name::find(scene, name)?;
-    let triangles: Vec<_> =
-        meshes.iter().flat_map(|&mesh| (0..scene.meshes[mesh].triangles.len()).map(move |t| (mesh, t))).collect();
+    let triangles =
+        try_collect(meshes.iter().flat_map(|&mesh| (0..scene.meshes[mesh].triangles.len()).map(move |t| (mesh, t))))?;
     from_list(scene, &triangles).map_err(|e| e.within(format_args!("surface {name:?}")))
 }
 
@@ -82,7 +83,7 @@ pub fn find(scene: &Scene, name: &str) -> Result<Surface> {
 /// Errors: `InvalidArgument` if a pair is not in the scene; `Degenerate` if there is no area.
 pub fn from_triangles(scene: &Scene, triangles: &[(usize, usize)]) -> Result<Surface> {
     check_triangles(scene, triangles)?;
-    let mut triangles = triangles.to_vec();
+    let mut triangles = try_collect(triangles.iter().copied())?;
     triangles.sort_unstable();
     triangles.dedup();
     from_list(scene, &triangles)
@@ -109,7 +110,7 @@ fn from_list(scene: &Scene, triangles: &[(usize, usize)]) -> Result<Surface> {
     triangles.sort_unstable();
 
     // The rectangle around it, in its plane.
-    let frame = frame::fit(&corners(scene, &triangles), chosen.centre, normal);
+    let frame = frame::fit(&corners(scene, &triangles)?, chosen.centre, normal);
     if frame.size.min_element() <= 0.0 || !frame.size.is_finite() {
         return Err(Error::degenerate("the surface has no extent in one direction; it must have an area"));
     }

@@ -1,6 +1,7 @@
 //! Groups triangles into planes.
 
 use crate::error::{Error, Result};
+use crate::image::try_collect;
 use crate::scene::Scene;
 use glam::DVec3;
 use std::collections::BTreeMap;
@@ -48,7 +49,7 @@ struct Facet {
 /// Orientation is taken without sign, since sheets may be wound either way. Directions are counted in cells of a
 /// grid, weighted by area; in the heaviest ones the planes are found along the direction's offset.
 pub fn planes(scene: &Scene, triangles: &[(usize, usize)]) -> Result<Vec<Patch>> {
-    let facets: Vec<Facet> = triangles.iter().filter_map(|&id| facet(scene, id)).collect();
+    let facets = try_collect(triangles.iter().filter_map(|&id| facet(scene, id)))?;
     let no_area = || Error::degenerate(format!("its {} triangles have no area", triangles.len()));
     let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     for corner in facets.iter().flat_map(|f| f.corners) {

@@ -1,0 +1,77 @@
+//! Memory that codecs of others take, and without which they would end the process: asked for before they run.
+//!
+//! The bounds are of what the crates `png`, `zune-jpeg` and `exr` allocate beside what they are given.
+
+use super::no_memory;
+use crate::error::Result;
+use crate::reserve;
+use exr::compression::Compression;
+use exr::meta::BlockDescription;
+use exr::meta::header::Header;
+use image::ImageFormat;
+
+/// An error if the system has no room for so many bytes.
+fn check(bytes: usize) -> Result<()> {
+    if reserve::has_room(bytes) { Ok(()) } else { Err(no_memory::<u8>(bytes)) }
+}
+
+/// For the pixels of a PNG, JPEG or Radiance HDR file.
+pub(super) fn check_pixels(format: ImageFormat, width: usize, height: usize, pixel_bytes: usize) -> Result<()> {
+    check(match format {
+        // Of progressive ones the coefficients of four components, two bytes each, in blocks of up to 32 pixels; a row of blocks.
+        ImageFormat::Jpeg => (width + 32) * (8 * (height + 32) + 256),
+        _ => 16 * width * pixel_bytes + (1 << 20),
+    })
+}
+
+/// For a chunk of a PNG file beside its pixels. The pixels' are read bit by bit, a colour profile is unpacked, up to the limit
+/// of `image`; nothing that deflate has packed is more than 1032 times as long.
+pub(super) fn check_chunk(name: &[u8], length: usize) -> Result<()> {
+    check(match name {
+        b"IDAT" | b"fdAT" => return Ok(()),
+        b"iCCP" => length.saturating_mul(1032).min(512 << 20),
+        _ => length,
+    })
+}
+
+/// For a PNG file of so many bytes of pixels: what becomes of them, packed and as they are, which grow by doubling.
+pub(super) fn check_packing(bytes: usize) -> Result<()> {
+    check(bytes.saturating_mul(5))
+}
+
+/// For the first layer of an OpenEXR file: all of its samples, a block on its way through a decompressor, and lists of blocks.
+pub(super) fn check_layer(headers: &[Header]) -> Result<()> {
+    let Some(header) = headers.first() else { return Ok(()) };
+    let (width, height) = (header.layer_size.0, header.layer_size.1);
+    let [block_width, block_height] = match header.blocks {
+        BlockDescription::Tiles(tiles) => [tiles.tile_size.0.min(width), tiles.tile_size.1.min(height)],
+        BlockDescription::ScanLines => [width, header.compression.scan_lines_per_block().min(height)],
+    };
+    let channels = &header.channels;
+    let transform = match header.compression {
+        // 768 bytes for 8 x 8 pixels.
+        Compression::DWAA(_) | Compression::DWAB(_) => 13 * channels.list.len(),
+        _ => 0,
+    };
+    let block = (block_width + 8) * (block_height + 8) * (5 * channels.bytes_per_pixel + transform);
+    let chunks: usize = headers.iter().map(|h| h.chunk_count).sum();
+    check((width * height * channels.bytes_per_pixel).saturating_add(block).saturating_add(176 * chunks))
+}
+
+/// The blocks of an OpenEXR file as it is written here: tiles of so many pixels a side.
+const TILE: usize = 64;
+
+fn tiles(width: usize, height: usize) -> usize {
+    width.div_ceil(TILE) * height.div_ceil(TILE)
+}
+
+/// For an OpenEXR file that is written, beside the bytes of [`longest_file`]: blocks on their way, and their list.
+pub(super) fn check_blocks(width: usize, height: usize, channels: usize) -> Result<()> {
+    check(8 * TILE * TILE * 4 * channels + 160 * tiles(width, height))
+}
+
+/// Bytes of an OpenEXR file of such numbers that no compression makes shorter, with so many of names and notes: samples, and for each
+/// block its place and head.
+pub(super) fn longest_file(width: usize, height: usize, channels: usize, texts: usize) -> usize {
+    4 * channels * width * height + 32 * tiles(width, height) + 64 * channels + texts + 4096
+}
