@@ -76,7 +76,10 @@ impl<'a> Job<'a> {
         if self.is_cancelled() {
             Err(Error::cancelled())
         } else if reserve::uses() != self.monitor.uses {
-            Err(Error::new(ErrorKind::OutOfMemory, "for a moment at least the process had no memory left, not even for small things"))
+            Err(Error::new(
+                ErrorKind::OutOfMemory,
+                "for a moment at least the process had no memory left, not even for small things",
+            ))
         } else {
             Ok(())
         }

@@ -120,7 +120,7 @@ pub(super) struct Made {
     render: Option<(render::Params, Expected)>,
     relight: Option<(relight::Params, Expected)>,
     #[cfg(feature = "stylize")]
-    stylize: Option<stylize::Params>,
+    stylize: Option<Stylisation>,
 }
 
 impl From<plan::Rendering> for Made {
@@ -136,16 +136,21 @@ impl From<plan::Lighting> for Made {
     }
 }
 
+/// Settings of a stylisation, and whether what an update needs is to be kept, which is the caller's matter.
 #[cfg(feature = "stylize")]
-impl From<plan::Stylisation> for Made {
-    fn from(plan: plan::Stylisation) -> Self {
-        Self { whole: plan.expected, stylize: Some(plan.params), ..Self::default() }
-    }
+pub(super) struct Stylisation {
+    pub params: stylize::Params,
+    pub keep_for_update: bool,
 }
 
+#[cfg(feature = "stylize")]
 impl Made {
-    #[cfg(feature = "stylize")]
-    pub(super) fn stylize(&self) -> Result<&stylize::Params> {
+    pub(super) fn of_stylisation(plan: plan::Stylisation, keep_for_update: bool) -> Self {
+        let stylize = Stylisation { params: plan.params, keep_for_update };
+        Self { whole: plan.expected, stylize: Some(stylize), ..Self::default() }
+    }
+
+    pub(super) fn stylize(&self) -> Result<&Stylisation> {
         planned(&self.stylize, "stylises")
     }
 }

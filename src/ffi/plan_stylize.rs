@@ -32,11 +32,13 @@ pub unsafe extern "C" fn luxfer_plan_start_stylize(
     enter(plan, |stage| {
         let inputs = handle::borrow_in(stage.context(), stylize, "stylize")?.inputs();
         inputs.check()?;
-        let settings = params::read(settings)?.params()?;
+        let settings = params::read(settings)?;
+        let keep_for_update = params::flag(settings.keep_for_update, "keep_for_update")?;
+        let settings = settings.params()?;
         let goal = params::read_required(params)?.goal()?;
         stage.start(job, move |(), _, job| {
             let planned = inputs.with_input(|input| plan::stylisation(input, &settings, goal, &plan::wall(), job))?;
-            Ok(Made::from(planned))
+            Ok(Made::of_stylisation(planned, keep_for_update))
         })
     })
 }
@@ -51,7 +53,11 @@ pub unsafe extern "C" fn luxfer_plan_get_stylize_params(
     enter(plan, |stage| {
         let out = Report::new(params)?;
         let made = stage.output()?;
-        out.set(luxfer_stylize_params::of(made.stylize()?));
+        let planned = made.stylize()?;
+        out.set(luxfer_stylize_params {
+            keep_for_update: planned.keep_for_update.into(),
+            ..luxfer_stylize_params::of(&planned.params)
+        });
         Ok(())
     })
 }
