@@ -31,8 +31,8 @@ for target in $targets; do
   # library's, and what the sanitizer adds. A network may take 1 GiB for its values (src/network/run.rs), and as much for a node,
   # which it takes seconds to fill.
   rss=768 single=128 time=10
-  # Before an OpenEXR file is decoded the library looks whether there is room for its blocks; it does not touch what it gets.
-  case "$target" in exr | part | gltf) single=1024 ;; esac
+  # Before an image is decoded the library looks whether there is room for what the codec may take; it does not touch what it gets.
+  case "$target" in image | exr | part | gltf) single=1024 ;; esac
   [ "$target" != onnx ] || { rss=3072; single=1024; time=30; }
   limits=
   # A hundred calls, which may ask for pictures of any size: such allocations fail, as on a machine without memory.

@@ -19,6 +19,9 @@ const EXR_MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 /// quarter).
 const DENSEST: usize = 1400;
 
+/// Bytes of a tile that any file may have.
+const LARGEST_TILE: usize = 64 << 20;
+
 /// How the integers of a file are to be read. Floating-point files are always linear.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Encoding {
@@ -157,6 +160,13 @@ pub(super) fn exr_headers(bytes: &[u8]) -> Result<exr::meta::Headers> {
         // Memory is taken for all channels before the first of them is read.
         if (width * height).saturating_mul(header.channels.bytes_per_pixel) > bytes.len().saturating_mul(DENSEST) {
             return Err(Error::format("the OpenEXR header promises more than so short a file can hold"));
+        }
+        // Tiles may be larger than the picture; memory is taken for as much of one as the file says that it stores.
+        let tile = room::block_bytes(header);
+        if tile > bytes.len().saturating_mul(DENSEST).max(LARGEST_TILE) {
+            return Err(Error::format(format!(
+                "the OpenEXR header asks for tiles of {tile} bytes, which so short a file cannot hold"
+            )));
         }
     }
     Ok(meta.headers)
@@ -320,6 +330,13 @@ mod tests {
                 assert!(decode(&file[..cut], Encoding::Srgb).is_err(), "cut at {cut}");
             }
         }
+        // One whose tiles claim 2^20 pixels a side.
+        let mut bomb = exr.clone();
+        let at = exr.windows(15).position(|w| w == b"tiles\0tiledesc\0").unwrap() + 15 + 4;
+        assert_eq!(bomb[at..at + 8], [64, 0, 0, 0, 64, 0, 0, 0]);
+        bomb[at..at + 8].copy_from_slice(&[0, 0, 16, 0, 0, 0, 16, 0]);
+        let error = probe(&bomb).unwrap_err();
+        assert!(error.kind == ErrorKind::Format && error.message.contains("tiles of"), "{error}");
         // A PNG whose header claims 2^31 - 1 pixels a side.
         let mut bomb = png.clone();
         bomb[16..24].copy_from_slice(&[0x7f, 0xff, 0xff, 0xff, 0x7f, 0xff, 0xff, 0xff]);

@@ -39,6 +39,15 @@ pub(super) fn check_packing(bytes: usize) -> Result<()> {
     check(bytes.saturating_mul(5))
 }
 
+/// Bytes of a block of an OpenEXR file, all of which may lie in the picture or not.
+pub(super) fn block_bytes(header: &Header) -> usize {
+    let [width, height] = match header.blocks {
+        BlockDescription::Tiles(tiles) => [tiles.tile_size.0, tiles.tile_size.1],
+        BlockDescription::ScanLines => [header.layer_size.0, header.compression.scan_lines_per_block()],
+    };
+    width.saturating_mul(height).saturating_mul(header.channels.bytes_per_pixel)
+}
+
 /// For the first layer of an OpenEXR file: all of its samples, a block on its way through a decompressor, and lists of blocks.
 pub(super) fn check_layer(headers: &[Header]) -> Result<()> {
     let Some(header) = headers.first() else { return Ok(()) };
@@ -55,7 +64,8 @@ pub(super) fn check_layer(headers: &[Header]) -> Result<()> {
     };
     let block = (block_width + 8) * (block_height + 8) * (5 * channels.bytes_per_pixel + transform);
     let chunks: usize = headers.iter().map(|h| h.chunk_count).sum();
-    check((width * height * channels.bytes_per_pixel).saturating_add(block).saturating_add(176 * chunks))
+    let samples = width * height * channels.bytes_per_pixel;
+    check(samples.saturating_add(block).saturating_add(block_bytes(header)).saturating_add(176 * chunks))
 }
 
 /// The blocks of an OpenEXR file as it is written here: tiles of so many pixels a side.
