@@ -15,8 +15,8 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("geometry", &["error", "rng"]),
     ("network", &["error", "job", "exec", "simd", "image"]),
     ("photometry", &["error", "image"]),
-    ("scene", &["reserve", "simd", "error", "job", "exec", "rng", "image", "geometry", "photometry"]),
-    ("render", &["reserve", "error", "job", "exec", "rng", "image", "geometry", "photometry", "scene"]),
+    ("scene", &["simd", "error", "job", "exec", "rng", "image", "geometry", "photometry"]),
+    ("render", &["error", "job", "exec", "rng", "image", "geometry", "photometry", "scene"]),
     ("patch", &["simd", "error", "job", "exec", "rng", "image"]),
     // Stages: never each other. Segmentation knows how many channels the features have.
     ("features", &["simd", "error", "job", "exec", "rng", "image", "geometry", "network"]),

@@ -43,11 +43,15 @@ pub fn try_collect<T>(items: impl IntoIterator<Item = T>) -> Result<Vec<T>> {
 
 /// Appends an item, or gives an error.
 pub fn try_push<T>(data: &mut Vec<T>, item: T) -> Result<()> {
-    if !reserve::make_room(data, 1) {
-        return Err(no_memory::<T>(2 * data.len()));
-    }
+    make_room(data, 1)?;
     data.push(item);
     Ok(())
+}
+
+/// Makes room for a number of items more, or gives an error; lists grow by doubling.
+#[inline]
+pub(crate) fn make_room<T>(data: &mut Vec<T>, more: usize) -> Result<()> {
+    if reserve::make_room(data, more) { Ok(()) } else { Err(no_memory::<T>(data.len().saturating_add(more))) }
 }
 
 /// The error where there is no room for so many items.

@@ -15,6 +15,6 @@ pub mod pyramid;
 mod room;
 pub mod view;
 
-pub(crate) use buffer::no_memory;
 pub use buffer::{Image, MAX_SIDE, try_collect, try_push, try_vec, try_with_capacity};
+pub(crate) use buffer::{make_room, no_memory};
 pub use planes::{deinterleave, deinterleave_of, interleave};

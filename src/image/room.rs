@@ -39,12 +39,17 @@ pub(super) fn check_packing(bytes: usize) -> Result<()> {
     check(bytes.saturating_mul(5))
 }
 
-/// Bytes of a block of an OpenEXR file, all of which may lie in the picture or not.
-pub(super) fn block_bytes(header: &Header) -> usize {
-    let [width, height] = match header.blocks {
+/// Width and height of a block of an OpenEXR file, which may be larger than the picture.
+fn block_size(header: &Header) -> [usize; 2] {
+    match header.blocks {
         BlockDescription::Tiles(tiles) => [tiles.tile_size.0, tiles.tile_size.1],
         BlockDescription::ScanLines => [header.layer_size.0, header.compression.scan_lines_per_block()],
-    };
+    }
+}
+
+/// Bytes of a whole block.
+pub(super) fn block_bytes(header: &Header) -> usize {
+    let [width, height] = block_size(header);
     width.saturating_mul(height).saturating_mul(header.channels.bytes_per_pixel)
 }
 
@@ -52,17 +57,15 @@ pub(super) fn block_bytes(header: &Header) -> usize {
 pub(super) fn check_layer(headers: &[Header]) -> Result<()> {
     let Some(header) = headers.first() else { return Ok(()) };
     let (width, height) = (header.layer_size.0, header.layer_size.1);
-    let [block_width, block_height] = match header.blocks {
-        BlockDescription::Tiles(tiles) => [tiles.tile_size.0.min(width), tiles.tile_size.1.min(height)],
-        BlockDescription::ScanLines => [width, header.compression.scan_lines_per_block().min(height)],
-    };
+    let [block_width, block_height] = block_size(header);
     let channels = &header.channels;
     let transform = match header.compression {
         // 768 bytes for 8 x 8 pixels.
         Compression::DWAA(_) | Compression::DWAB(_) => 13 * channels.list.len(),
         _ => 0,
     };
-    let block = (block_width + 8) * (block_height + 8) * (5 * channels.bytes_per_pixel + transform);
+    let block =
+        (block_width.min(width) + 8) * (block_height.min(height) + 8) * (5 * channels.bytes_per_pixel + transform);
     let chunks: usize = headers.iter().map(|h| h.chunk_count).sum();
     let samples = width * height * channels.bytes_per_pixel;
     check(samples.saturating_add(block).saturating_add(block_bytes(header)).saturating_add(176 * chunks))

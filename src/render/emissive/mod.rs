@@ -16,8 +16,7 @@ pub use emitter::{Emitter, mean_channel};
 use super::facet::Facet;
 use super::light::Bounds;
 use crate::error::Result;
-use crate::image::{no_memory, try_collect, try_vec, try_with_capacity};
-use crate::reserve;
+use crate::image::{make_room, try_collect, try_vec, try_with_capacity};
 use crate::scene::Scene;
 use glam::Vec2;
 use polygon::uniform_in_triangle;
@@ -139,9 +138,7 @@ impl Emitters {
             }
         }
         self.tiles = tiles;
-        if !reserve::make_room(bounds, light.len()) {
-            return Err(no_memory::<Bounds>(light.len()));
-        }
+        make_room(bounds, light.len())?;
         bounds.append(&mut light);
         Ok(())
     }

@@ -7,6 +7,7 @@ use super::packet::WIDTH;
 use super::pages;
 use super::tree::{Tree, half_area};
 use crate::error::Result;
+use crate::image::make_room;
 use crate::job::Job;
 use glam::Vec3;
 use obvhs::aabb::Aabb;
@@ -85,8 +86,8 @@ impl Binary {
             if at % CHUNK == 0 {
                 job.check()?;
             }
-            pages::make_room(&mut branches, 1)?;
-            pages::make_room(&mut indices, 2)?;
+            make_room(&mut branches, 1)?;
+            make_room(&mut indices, 2)?;
             let index = indices[at];
             let node = &source.tree[index];
             branches.push(if let Some(&part) = cut.get(&index) {

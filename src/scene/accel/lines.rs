@@ -7,7 +7,7 @@ use super::node::Node;
 use super::packet::Packet;
 use super::pages::{self, Pages};
 use crate::error::Result;
-use crate::image::try_with_capacity;
+use crate::image::{make_room, try_with_capacity};
 use crate::job::Job;
 use std::ops::DerefMut;
 
@@ -46,7 +46,7 @@ impl Draft {
     /// Appends a node or a packet; gives its line.
     pub fn push<T: Plain>(&mut self, item: &T) -> Result<usize> {
         let line = self.list.len();
-        pages::make_room(&mut self.list, lines_of::<T>())?;
+        make_room(&mut self.list, lines_of::<T>())?;
         // SAFETY: `T` is plain, and as large and aligned as these.
         self.list.extend_from_slice(unsafe { std::slice::from_raw_parts((&raw const *item).cast(), lines_of::<T>()) });
         Ok(line)

@@ -6,9 +6,8 @@
 
 use crate::error::Result;
 use crate::image::pages::{HUGE, prefer_huge};
-use crate::image::{no_memory, try_with_capacity};
+use crate::image::{make_room, try_with_capacity};
 use crate::job::Job;
-use crate::reserve;
 use rayon::prelude::*;
 use std::mem::MaybeUninit;
 use std::ops::{Deref, DerefMut};
@@ -111,10 +110,4 @@ pub(super) fn prefetch<T>(first: *const T, lines: usize) {
     }
     #[cfg(not(target_arch = "x86_64"))]
     let _ = (first, lines);
-}
-
-/// Makes room for a number of items more, or gives an error; lists grow by doubling.
-#[inline]
-pub(super) fn make_room<T>(list: &mut Vec<T>, more: usize) -> Result<()> {
-    if reserve::make_room(list, more) { Ok(()) } else { Err(no_memory::<T>(list.len() + more)) }
 }

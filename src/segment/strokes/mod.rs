@@ -7,7 +7,7 @@ pub use image::from_image;
 pub use text::parse;
 
 use crate::error::{Error, Result, check_range};
-use crate::image::no_memory;
+use crate::image::make_room;
 use glam::DVec2;
 
 /// One stroke of the brush: the pixels it covers (`y * width + x`) and what they are examples of.
@@ -42,7 +42,7 @@ impl Stroke {
                             pixels.sort_unstable();
                             pixels.dedup();
                             let more = pixels.len().max(64);
-                            pixels.try_reserve(more).map_err(|_| no_memory::<u32>(2 * more))?;
+                            make_room(&mut pixels, more)?;
                         }
                         pixels.push((y * width + x) as u32);
                     }
