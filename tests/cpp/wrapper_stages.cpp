@@ -307,6 +307,12 @@ void stylisation(const Context &context) {
     CHECK(hurried.iterations > 0 && hurried.keep_for_update == 1 && hurried.seed == params.seed);
     const luxfer_plan_report expected = plan.report();
     CHECK(expected.seconds > 0 && expected.error > 0 && expected.error <= 1 && expected.render_seconds == 0);
+    // Out of reach: errors alone choose, whatever the machine is doing meanwhile.
+    goal.target_error = 1e-5f;
+    plan.start(stylize, goal, params).wait();
+    const luxfer_stylize_params careful = plan.stylize_params();
+    CHECK(careful.polish > 0 && careful.iterations > params.iterations && careful.keep_for_update == 1);
+    CHECK(plan.report().error > 1e-5f && plan.report().error <= expected.error);
 
     stylize.set_motion(target.motion(target));
     stylize.set_motion(Image());
