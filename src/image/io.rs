@@ -4,6 +4,7 @@
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::colour::{linear_to_srgb, srgb_to_linear, srgb8_table};
+use crate::image::samples::Largest;
 use crate::image::{Image, MAX_SIDE, room, try_collect, try_vec, try_with_capacity};
 use exr::prelude as ex;
 use image::{ImageDecoder, ImageFormat, ImageReader};
@@ -149,7 +150,9 @@ fn sample<const N: usize, T>(raw: &[u8], index: usize, of: fn([u8; N]) -> T) -> 
 }
 
 pub(super) fn broken_exr(e: exr::error::Error) -> Error {
-    Error::format(format!("the OpenEXR file cannot be decoded: {e}"))
+    let is_memory = matches!(&e, exr::error::Error::Io(e) if e.kind() == std::io::ErrorKind::OutOfMemory);
+    let kind = if is_memory { ErrorKind::OutOfMemory } else { ErrorKind::Format };
+    Error::new(kind, format!("the OpenEXR file cannot be decoded: {e}"))
 }
 
 pub(super) fn exr_headers(bytes: &[u8]) -> Result<exr::meta::Headers> {
@@ -179,10 +182,7 @@ pub(super) fn first_exr_layer(
 ) -> Result<ex::Layer<ex::AnyChannels<ex::FlatSamples>>> {
     use ex::{ReadChannels, ReadLayers};
     room::check_layer(headers)?;
-    let file = ex::read()
-        .no_deep_data()
-        .largest_resolution_level()
-        .all_channels()
+    let file = exr::image::read::any_channels::ReadAnyChannels { read_samples: Largest }
         .first_valid_layer()
         .all_attributes()
         .non_parallel()
@@ -350,6 +350,20 @@ mod tests {
         let error = probe(&bomb).unwrap_err();
         assert!(error.kind == ErrorKind::Format && error.message.contains("promises more"), "{error}");
         assert_eq!(load(Path::new("/nonexistent.png"), Encoding::Srgb).unwrap_err().kind, ErrorKind::Io);
+    }
+
+    #[test]
+    fn a_tile_of_a_resolution_that_the_file_has_not_is_refused() {
+        let image = Image::from_fn(1, 1, |_, _| [0.5]).unwrap();
+        let mut exr = encode_exr(&[Layer { name: "", image: &image, channels: &["Y"] }], &[]).unwrap();
+        assert_eq!(decode(&exr, Encoding::Srgb).unwrap(), image);
+        // The table with the place of the only tile, which begins with its column, its row and its level in both directions. It has one
+        // pixel at all levels.
+        let table = (0..exr.len() - 8).find(|&at| exr[at..at + 8] == (at as u64 + 8).to_le_bytes()).unwrap();
+        assert_eq!(exr[table + 8..table + 24], [0; 16]);
+        exr[table + 16] = 10;
+        let error = decode(&exr, Encoding::Srgb).unwrap_err();
+        assert!(error.kind == ErrorKind::Format && error.message.contains("is not where"), "{error}");
     }
 
     #[test]

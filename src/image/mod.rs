@@ -13,6 +13,7 @@ pub mod patches;
 mod planes;
 pub mod pyramid;
 mod room;
+mod samples;
 pub mod view;
 
 pub use buffer::{Image, MAX_SIDE, try_collect, try_push, try_vec, try_with_capacity};

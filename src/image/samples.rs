@@ -1,0 +1,69 @@
+//! The samples of an OpenEXR layer, in memory that is asked for, and each line where a picture has it. (The reader of the crate
+//! itself ends the process where there is no room, and takes the file's word for which resolution a tile is of.)
+
+use crate::reserve;
+use exr::block::chunk::TileCoordinates;
+use exr::block::lines::LineRef;
+use exr::error::{Error, IoError, Result, UnitResult};
+use exr::image::read::any_channels::{ReadSamples, SamplesReader};
+use exr::meta::attribute::{ChannelDescription, SampleType};
+use exr::meta::header::Header;
+use exr::prelude::{FlatSamples, Vec2, f16};
+use std::io::ErrorKind;
+
+/// Reads the largest of a layer's resolutions.
+pub(super) struct Largest;
+
+/// Samples of one channel, as far as they are read.
+pub(super) struct Samples {
+    width: usize,
+    samples: FlatSamples,
+}
+
+impl ReadSamples for Largest {
+    type Reader = Samples;
+
+    fn create_sample_reader(&self, header: &Header, channel: &ChannelDescription) -> Result<Samples> {
+        let (width, height) = (header.layer_size.0, header.layer_size.1);
+        let samples = match channel.sample_type {
+            SampleType::F16 => zeros(width * height, f16::ZERO).map(FlatSamples::F16),
+            SampleType::F32 => zeros(width * height, 0.0).map(FlatSamples::F32),
+            SampleType::U32 => zeros(width * height, 0).map(FlatSamples::U32),
+        };
+        Ok(Samples { width, samples: samples? })
+    }
+}
+
+fn zeros<T: Clone>(len: usize, zero: T) -> Result<Vec<T>> {
+    let mut samples = reserve::list(len).ok_or_else(|| IoError::from(ErrorKind::OutOfMemory))?;
+    samples.resize(len, zero);
+    Ok(samples)
+}
+
+impl SamplesReader for Samples {
+    type Samples = FlatSamples;
+
+    fn filter_block(&self, tile: TileCoordinates) -> bool {
+        tile.level_index == Vec2(0, 0)
+    }
+
+    fn read_line(&mut self, line: LineRef<'_>) -> UnitResult {
+        let at = line.location;
+        // A tile may say otherwise than the table of tiles did.
+        let misplaced = || Error::Invalid("a block that is not where the table of blocks has it".into());
+        if at.level != Vec2(0, 0) || at.position.0 + at.sample_count > self.width {
+            return Err(misplaced());
+        }
+        let start = at.position.1 * self.width + at.position.0;
+        let places = start..start + at.sample_count;
+        match &mut self.samples {
+            FlatSamples::F16(all) => line.read_samples_into_slice(all.get_mut(places).ok_or_else(misplaced)?),
+            FlatSamples::F32(all) => line.read_samples_into_slice(all.get_mut(places).ok_or_else(misplaced)?),
+            FlatSamples::U32(all) => line.read_samples_into_slice(all.get_mut(places).ok_or_else(misplaced)?),
+        }
+    }
+
+    fn into_samples(self) -> FlatSamples {
+        self.samples
+    }
+}
