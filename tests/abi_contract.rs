@@ -91,6 +91,10 @@ fn views_of_every_size_and_stride_are_read_or_refused() {
         (1, 65_537, LUXFER_INVALID_ARGUMENT),
         (u32::MAX, u32::MAX, LUXFER_INVALID_ARGUMENT),
     ] {
+        // Miri would take half an hour.
+        if cfg!(miri) && (width, height) != (1, 1) && want == LUXFER_OK {
+            continue;
+        }
         assert_eq!(create(&view(width, height, &mut pixels)), want, "{width} x {height}");
     }
     let good = view(5, 4, &mut pixels[..60]);

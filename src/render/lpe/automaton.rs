@@ -239,6 +239,9 @@ struct Subsets<'a> {
     next: Vec<u16>,
     ends: Vec<u16>,
     lists: Vec<Vec<u16>>,
+    /// The last round that met each place, and how many there were.
+    met: Vec<u32>,
+    rounds: u32,
     moves_left: usize,
 }
 
@@ -253,6 +256,8 @@ impl<'a> Subsets<'a> {
             next: Vec::new(),
             ends: Vec::new(),
             lists: vec![Vec::new()],
+            met: vec![0; places.jumps.len()],
+            rounds: 0,
             moves_left: MOST_MOVES,
         }
     }
@@ -312,16 +317,20 @@ impl<'a> Subsets<'a> {
 
     /// The places that can be entered from some others without an event; those that only pass on are left out.
     fn closure(&mut self, from: &[u32]) -> Result<Vec<u32>> {
-        let mut seen = std::collections::BTreeSet::new();
-        let mut waiting = from.to_vec();
+        self.rounds += 1;
+        let matters = |p: usize| self.places.moves[p].is_some() || !self.places.accepts[p].is_empty();
+        let (mut waiting, mut reached, mut met) = (from.to_vec(), Vec::new(), 0);
         while let Some(place) = waiting.pop() {
-            if seen.insert(place) {
-                waiting.extend(&self.places.jumps[place as usize]);
+            let at = place as usize;
+            if std::mem::replace(&mut self.met[at], self.rounds) != self.rounds {
+                met += 1;
+                waiting.extend(&self.places.jumps[at]);
+                reached.extend(matters(at).then_some(place));
             }
         }
-        self.spend(seen.len())?;
-        let matters = |&p: &u32| self.places.moves[p as usize].is_some() || !self.places.accepts[p as usize].is_empty();
-        Ok(seen.into_iter().filter(matters).collect())
+        self.spend(met)?;
+        reached.sort_unstable();
+        Ok(reached)
     }
 
     fn spend(&mut self, moves: usize) -> Result<()> {
