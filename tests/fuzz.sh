@@ -45,7 +45,7 @@ for target in $targets; do
     "$build/x86_64-unknown-linux-gnu/release/$target" -max_total_time="$seconds" -timeout=$time -rss_limit_mb=$rss -malloc_limit_mb=$single \
     -dict="$build/seeds/$target.dict" -artifact_prefix="$build/artifacts/$target-" -print_final_stats=1 \
     "$build/corpus/$target" "$build/seeds/$target" >"$build/$target.log" 2>&1 || failed="$failed $target"
-  grep -E "^(stat::|SUMMARY|Done)" "$build/$target.log"
+  grep -aE "^(stat::|SUMMARY|Done)" "$build/$target.log"
   echo "$(find "$build/corpus/$target" -type f | wc -l) inputs in the corpus"
 done
 if [ -n "$failed" ]; then
