@@ -143,11 +143,15 @@ impl Axis {
         (value.log10() - self.low) / (self.high - self.low)
     }
 
-    /// Powers of ten, with twos and fives between where there are few of them.
+    /// Powers of ten, and what is between them where there are few.
     fn ticks(&self) -> Vec<f64> {
         let decades = self.low.floor() as i32..=self.high.ceil() as i32;
-        let steps: &[f64] = if self.high - self.low > 2.5 { &[1.0] } else { &[1.0, 2.0, 5.0] };
-        let all = decades.flat_map(|d| steps.iter().map(move |s| s * 10f64.powi(d)));
+        let steps: &[&str] = match self.high - self.low {
+            span if span > 2.5 => &["1"],
+            span if span > 0.7 => &["1", "2", "5"],
+            _ => &["1", "1.5", "2", "3", "4", "5", "7"],
+        };
+        let all = decades.flat_map(|d| steps.iter().filter_map(move |s| format!("{s}e{d}").parse().ok()));
         all.filter(|v| (0.0..=1.0).contains(&self.place(*v))).collect()
     }
 }
