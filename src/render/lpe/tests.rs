@@ -3,7 +3,7 @@
 use super::alphabet::Scatter;
 use super::automaton::DEAD;
 use super::{BUILT_IN, EmitterAs, Expression, Table};
-use crate::error::ErrorKind;
+use crate::error::{Error, ErrorKind};
 use crate::render::LightSource;
 use crate::scene::{Material, Mesh, PunctualLight, Scene};
 use glam::{Vec2, Vec3};
@@ -247,12 +247,23 @@ fn what_is_no_expression_is_refused_where_it_ceases_to_be_one() {
     assert!(Expression::parse(&deep).unwrap_err().message.contains("deeper"));
 }
 
+fn refused(text: &str) -> Error {
+    let expression = Expression::parse(text).unwrap();
+    Table::new(&scene(), &[&expression], EmitterAs::Both).err().unwrap()
+}
+
+#[test]
+fn what_needs_too_many_states_is_refused() {
+    // The last 12 of any number of scatterings have to be kept in mind: 2^12 ways and more.
+    table(&["C.*D.{8}L"], EmitterAs::Both);
+    for text in ["C.*D.{12}L", "L(DD|....+.(DD|....+...S?){8}E?){6}E"] {
+        let error = refused(text);
+        assert!(error.kind == ErrorKind::InvalidArgument && error.message.contains("4096 states"), "{text}: {error}");
+    }
+}
+
 #[test]
 fn what_no_path_can_match_is_refused_with_the_scene() {
-    let refused = |text: &str| {
-        let expression = Expression::parse(text).unwrap();
-        Table::new(&scene(), &[&expression], EmitterAs::Both).err().unwrap()
-    };
     for text in ["C", "CD", "CVL", "CLD", "CCL", "LED", "C<RD'Floor''Ball'>L"] {
         assert!(refused(text).message.contains("matches no path"), "{text}");
     }
