@@ -23,7 +23,7 @@ BENCHES  := $(patsubst benches/%.rs,%,$(wildcard benches/*.rs))
 ONLY     ?= $(BENCHES)
 GUIDE    := $(filter-out lighting_transfer stylize,$(patsubst examples_c/%.c,%,$(wildcard examples_c/*.c)))
 
-TRADE    := segment vp warp emission:knobs relight render:kitchen error_control stylit:presets:knobs transfer:curves precision
+TRADE    := features:knobs segment vp warp emission:knobs relight render:kitchen error_control stylit:presets:knobs transfer:curves precision
 
 .PHONY: all lib demo test bench trade blender docs peers setup clean
 

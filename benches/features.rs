@@ -1,10 +1,11 @@
 //! Features: the time of a megapixel, normals against Open3D's, on rooms whose normals are known and on RGB-D pairs, and the
-//! room laid out from the lines of those pairs, and from strokes.
+//! room laid out from the lines of those pairs, and from strokes. `knobs` alone: normals over their window.
 
 mod harness;
 
 use glam::{DMat3, DVec2, Vec3};
 use harness::peer::Peer;
+use harness::plot::Plot;
 use harness::{Clock, Table, absent, figure, interleaved, median, time};
 use luxfer::exec::Pool;
 use luxfer::features::{self, DepthKind, DepthMap, Input, Params, PlaneStroke, RoomView};
@@ -21,6 +22,8 @@ const SIZE: [usize; 2] = [1152, 868];
 /// Open3D's usual number of neighbours, and more: its accuracy with noise rises with them, its time too.
 const NEIGHBOURS: [usize; 2] = [30, 100];
 const ROUNDS: usize = 5;
+/// Half-widths of the windows that normals are fitted in.
+const RADII: [usize; 7] = [1, 2, 4, 8, 16, 32, 64];
 
 /// A depth map with its camera and, where they are known, the true normals.
 struct Case {
@@ -35,8 +38,13 @@ struct Case {
 
 fn main() {
     let pool = Pool::new(2).unwrap();
+    let rooms = [0.0, 0.002, 0.01].map(room);
+    pool.run(|| knobs(&rooms));
+    if std::env::args().any(|arg| arg == "knobs") {
+        return;
+    }
     pool.run(megapixel);
-    let cases: Vec<Case> = [0.0, 0.002, 0.01].map(room).into_iter().chain(pairs()).collect();
+    let cases: Vec<Case> = rooms.into_iter().chain(pairs()).collect();
     if let Err(reason) = pool.run(|| normals(&cases)) {
         absent("normals.vs_open3d", &reason);
     }
@@ -70,7 +78,6 @@ fn layouts(pairs: &[&Case]) {
             features::run(&input, &Params::default(), monitor.job()).unwrap()
         };
         let map = DepthMap { image: &case.depth, kind: DepthKind::AlongZ };
-        let normal = |image: &Image, i: usize| Vec3::from_slice(&image.data[i * 10 + 7..i * 10 + 10]);
         let measured = of(Some(map), &view.segments, &[]).image;
         let sources = [
             ("lines", &view.segments[..], &[][..]),
@@ -194,11 +201,11 @@ fn pairs() -> Vec<Case> {
 }
 
 impl Case {
-    fn features(&self) -> Image {
+    fn features(&self, params: &Params) -> Image {
         let room = RoomView { perspective: &self.camera, segments: &[], strokes: &[] };
         let depth = DepthMap { image: &self.depth, kind: DepthKind::AlongZ };
         let input = Input { photo: &self.photo, depth: Some(depth), room: Some(room) };
-        features::run(&input, &Params::default(), Monitor::default().job()).unwrap().image
+        features::run(&input, params, Monitor::default().job()).unwrap().image
     }
 
     /// Pixels with a measured depth.
@@ -216,21 +223,49 @@ impl Case {
         self.measured().into_iter().map(point).collect()
     }
 
-    /// Median angle in degrees to the truth; where there is none, between normals eight pixels apart, which mostly share a
+    /// Angles in degrees to the truth; where there is none, between normals eight pixels apart, which mostly share a
     /// surface: a bound of the noise, but not of what is wrong alike.
-    fn error(&self, normal_of: &dyn Fn(usize) -> Vec3) -> f64 {
+    fn angles(&self, normal_of: &dyn Fn(usize) -> Vec3) -> Vec<f64> {
         let angle = |a: Vec3, b: Vec3| f64::from(a.cross(b).length().atan2(a.dot(b).abs()).to_degrees());
         let measured = self.measured();
-        let angles: Vec<f64> = match &self.truth {
+        match &self.truth {
             Some(truth) => measured.iter().map(|&i| angle(normal_of(i), truth[i])).collect(),
             None => measured
                 .iter()
                 .filter(|&&i| i % self.depth.width + 8 < self.depth.width && self.depth.data[i + 8] > 0.0)
                 .map(|&i| angle(normal_of(i), normal_of(i + 8)))
                 .collect(),
-        };
-        median(&angles)
+        }
     }
+}
+
+/// The last three of a pixel's ten features.
+fn normal(features: &Image, pixel: usize) -> Vec3 {
+    Vec3::from_slice(&features.data[pixel * 10 + 7..pixel * 10 + 10])
+}
+
+/// All features over the window of the normals, which is their only setting and costs next to no time: sums run along with it. The mean
+/// angle, not the median: what wide windows round off are few pixels.
+fn knobs(rooms: &[Case]) {
+    let mut plot = Plot::new("Normals of a megapixel", "half-width of the window, pixels", "mean error, degrees");
+    let mut table = Table::new(["half-width of the windows of normals", "ms, all features"]);
+    let mut times = vec![Vec::new(); RADII.len()];
+    for case in rooms {
+        let mut points = Vec::new();
+        for (normal_radius, times) in RADII.into_iter().zip(&mut times) {
+            let params = Params { normal_radius, ..Params::default() };
+            let runs: Vec<_> = (0..ROUNDS).map(|_| time(Clock::Wall, || case.features(&params))).collect();
+            times.extend(runs.iter().map(|run| run.0));
+            let angles = case.angles(&|i| normal(&runs[0].1, i));
+            points.push([normal_radius as f64, angles.iter().sum::<f64>() / angles.len() as f64]);
+        }
+        plot.add(&case.name, points);
+    }
+    for (radius, times) in RADII.iter().zip(&times) {
+        table.row([radius.to_string(), format!("{:.0}", 1e3 * median(times))]);
+    }
+    table.print("The time of a window");
+    plot.write("features_normals").expect("out/bench can be written");
 }
 
 fn megapixel() {
@@ -274,10 +309,10 @@ fn normals(cases: &[Case]) -> Result<(), String> {
         let (mut ours, mut theirs) = (Vec::new(), [Vec::new(), Vec::new()]);
         let mut errors = [0.0; 3];
         for round in 0..if case.truth.is_some() { ROUNDS } else { 1 } {
-            let (seconds, image) = time(Clock::Wall, || case.features());
+            let (seconds, image) = time(Clock::Wall, || case.features(&Params::default()));
             ours.push(seconds);
             if round == 0 {
-                errors[0] = case.error(&|i| Vec3::from_slice(&image.data[i * 10 + 7..i * 10 + 10]));
+                errors[0] = median(&case.angles(&|i| normal(&image, i)));
             }
             for (k, neighbours) in NEIGHBOURS.iter().enumerate() {
                 if k > 0 && round > 0 {
@@ -294,7 +329,7 @@ fn normals(cases: &[Case]) -> Result<(), String> {
                             f32::from_le_bytes(std::array::from_fn(|b| bytes[4 * c + b]))
                         }));
                     }
-                    errors[k + 1] = case.error(&|i| of_pixel[i]);
+                    errors[k + 1] = median(&case.angles(&|i| of_pixel[i]));
                 }
             }
         }
