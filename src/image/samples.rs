@@ -1,7 +1,7 @@
 //! The samples of an OpenEXR layer, in memory that is asked for, and each line where a picture has it. (The reader of the crate
 //! itself ends the process where there is no room, and takes the file's word for which resolution a tile is of.)
 
-use crate::reserve;
+use crate::image::try_vec;
 use exr::block::chunk::TileCoordinates;
 use exr::block::lines::LineRef;
 use exr::error::{Error, IoError, Result, UnitResult};
@@ -35,9 +35,7 @@ impl ReadSamples for Largest {
 }
 
 fn zeros<T: Clone>(len: usize, zero: T) -> Result<Vec<T>> {
-    let mut samples = reserve::list(len).ok_or_else(|| IoError::from(ErrorKind::OutOfMemory))?;
-    samples.resize(len, zero);
-    Ok(samples)
+    try_vec(len, zero).map_err(|_| IoError::from(ErrorKind::OutOfMemory).into())
 }
 
 impl SamplesReader for Samples {
