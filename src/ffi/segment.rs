@@ -14,7 +14,7 @@ use super::stage::{Stage, need};
 use super::status::luxfer_status;
 use crate::error::{Error, Result};
 use crate::image::Image;
-use crate::segment::{self, Segmentation, Stroke, StrokeSet, strokes};
+use crate::segment::{self, Segmentation, Stroke, StrokeSet, Subject, strokes};
 use glam::DVec2;
 use std::ffi::{c_char, c_void};
 use std::sync::Arc;
@@ -40,6 +40,17 @@ pub const LUXFER_SEGMENT_CONFIDENCE: luxfer_segment_image = 1;
 /// How far a pixel is from anything that strokes have shown, in [0, 1]: where it is high one more stroke helps; 1 channel.
 pub const LUXFER_SEGMENT_UNSEEN: luxfer_segment_image = 2;
 
+/// What is segmented: a LUXFER_SUBJECT_ value.
+pub type luxfer_subject = i32;
+/// Lamps where luxfer_segment_set_within gave a mask and the features are those of luxfer_features; else a surface.
+pub const LUXFER_SUBJECT_AUTO: luxfer_subject = 0;
+/// A surface, such as the plane that carries the lamps: each pixel is judged by its features.
+pub const LUXFER_SUBJECT_SURFACE: luxfer_subject = 1;
+/// Lamps: compact regions with a sharp contour, brighter than their surroundings. Each positive stroke marks one or more; regions
+/// without a stroke that look like them and lie in the mask of luxfer_segment_set_within are found as well. Negative strokes are
+/// not needed. The first three channels of the features must be CIELAB.
+pub const LUXFER_SUBJECT_LAMPS: luxfer_subject = 2;
+
 /// Settings of a segmentation. Fill them with luxfer_segment_params_init.
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -62,36 +73,56 @@ pub struct luxfer_segment_params {
     /// Differences of those channels, in their own units (for colour those of CIELAB), below which neighbours are taken for one
     /// surface by the refinement, in [1e-3, 1e6]; default 8.
     pub refine_tolerance: f64,
+    /// What the positive strokes lie on: a LUXFER_SUBJECT_ value; default LUXFER_SUBJECT_AUTO. Of lamps the settings above do not
+    /// matter.
+    pub subject: luxfer_subject,
+    /// Must be 0.
+    pub reserved: u32,
 }
 
 // SAFETY: plain numbers.
 unsafe impl Versioned for luxfer_segment_params {
     const NAME: &'static str = "luxfer_segment_params";
-    const SIZES: &'static [usize] = &[40];
+    const SIZES: &'static [usize] = &[40, 48];
     fn defaults() -> Self {
         let defaults = segment::Params::default();
         Self {
-            struct_size: 40,
+            struct_size: 48,
             samples_per_class: defaults.samples_per_class as u32,
             channels: defaults.channels,
             refine_radius: defaults.refine_radius as u32,
             ridge: defaults.ridge,
             seed: defaults.seed,
             refine_tolerance: defaults.refine_tolerance,
+            subject: LUXFER_SUBJECT_AUTO,
+            reserved: 0,
         }
     }
 }
 
 impl luxfer_segment_params {
-    pub(super) fn params(&self) -> segment::Params {
-        segment::Params {
+    pub(super) fn params(&self) -> Result<segment::Params> {
+        if self.reserved != 0 {
+            return Err(Error::argument(format!("segment.reserved is {}; it must be 0", self.reserved)));
+        }
+        Ok(segment::Params {
             samples_per_class: self.samples_per_class as usize,
             channels: self.channels,
             ridge: self.ridge,
             seed: self.seed,
             refine_radius: self.refine_radius as usize,
             refine_tolerance: self.refine_tolerance,
-        }
+            subject: subject(self.subject)?,
+        })
+    }
+}
+
+fn subject(value: luxfer_subject) -> Result<Subject> {
+    match value {
+        LUXFER_SUBJECT_AUTO => Ok(Subject::Auto),
+        LUXFER_SUBJECT_SURFACE => Ok(Subject::Surface),
+        LUXFER_SUBJECT_LAMPS => Ok(Subject::Lamps),
+        _ => Err(Error::argument(format!("segment.subject is {value}; it must be a LUXFER_SUBJECT_ value"))),
     }
 }
 
@@ -316,7 +347,7 @@ pub unsafe extern "C" fn luxfer_segment_start(
     job: *mut *mut luxfer_job,
 ) -> luxfer_status {
     enter(segment, |stage| {
-        let params = params::read(params)?.params();
+        let params = params::read(params)?.params()?;
         need(&stage.inputs().features, "luxfer_segment_set_features")?;
         stage.start(job, move |inputs, _, job| {
             let input = segment::Input {

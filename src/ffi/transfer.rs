@@ -137,11 +137,11 @@ impl luxfer_transfer_params {
             rectify,
             unwarp,
             features: params::read(self.features)?.params(),
-            plane: params::read(self.plane)?.params(),
+            plane: params::read(self.plane)?.params()?,
             lights: if self.lights.is_null() {
                 segment::Params::for_lights()
             } else {
-                params::read_required(self.lights)?.params()
+                params::read_required(self.lights)?.params()?
             },
             emission: params::read(self.emission)?.params()?,
             pattern: params::read(self.pattern)?.pattern()?,
