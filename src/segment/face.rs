@@ -15,10 +15,19 @@ const SAME_FACE: f32 = std::f32::consts::FRAC_1_SQRT_2;
 /// Share of the positive strokes' pixels that must lie on one face before the room is believed. [judged on 28 photos]
 const AGREEMENT: f64 = 0.9;
 
+/// Cosine between normals that are equal but for rounding: those of a room laid out as a box, and not of a depth map. [rounding]
+const EQUAL: f32 = 1.0 - 1e-4;
+
+/// Whether the positive strokes lie on one face of a room laid out as a box. Position then says no more than the face does, and a
+/// classifier that looks at it cuts off parts of the face that no stroke has touched.
+pub fn is_laid_out(input: &Input) -> bool {
+    stroked_normal(input, EQUAL).is_some()
+}
+
 /// Takes pixels out of the mask that lie on another face of the room than the positive strokes; where the strokes agree on no
 /// face, connected parts that no positive stroke touches.
 pub fn restrict(input: &Input, classified: &mut Classified) -> Result<()> {
-    let is_kept: Box<dyn Fn(usize) -> bool> = match stroked_normal(input) {
+    let is_kept: Box<dyn Fn(usize) -> bool> = match stroked_normal(input, SAME_FACE) {
         Some(normal) => Box::new(move |i| normal_at(input.features, i).dot(normal) >= SAME_FACE),
         None => {
             let touched = touched(input, &classified.mask)?;
@@ -38,18 +47,21 @@ fn normal_at(features: &Image, pixel: usize) -> Vec3 {
     Vec3::new(n[0], n[1], n[2])
 }
 
-/// The normal that the positive strokes agree on.
-fn stroked_normal(input: &Input) -> Option<Vec3> {
+/// The normal that the positive strokes agree on, up to an angle with the given cosine.
+fn stroked_normal(input: &Input, cosine: f32) -> Option<Vec3> {
     if input.features.channels != CHANNELS {
         return None;
     }
     let count = input.features.width * input.features.height;
-    let pixels = || input.strokes.iter().filter(|s| s.positive).flat_map(|s| &s.pixels).filter(|p| (**p as usize) < count);
+    let pixels =
+        || input.strokes.iter().filter(|s| s.positive).flat_map(|s| &s.pixels).filter(|p| (**p as usize) < count);
     let normals = || pixels().map(|&p| normal_at(input.features, p as usize));
-    let mean = normals().fold(Vec3::ZERO, |sum, n| sum + n).try_normalize()?;
+    let middle = normals().fold(Vec3::ZERO, |sum, n| sum + n).try_normalize()?;
+    // Without the strokes' pixels on other faces, which draw the mean aside.
+    let mean = normals().filter(|n| n.dot(middle) >= SAME_FACE).fold(Vec3::ZERO, |sum, n| sum + n).try_normalize()?;
     let (mut agree, mut total) = (0usize, 0usize);
     for normal in normals() {
-        agree += usize::from(normal.dot(mean) >= SAME_FACE);
+        agree += usize::from(normal.dot(mean) >= cosine);
         total += 1;
     }
     (agree as f64 >= AGREEMENT * total as f64).then_some(mean)
@@ -68,8 +80,7 @@ fn touched(input: &Input, mask: &Image) -> Result<Vec<bool>> {
     }
     while let Some(i) = next.pop() {
         let x = i % width;
-        let beside =
-            [(x > 0).then(|| i - 1), (x + 1 < width).then_some(i + 1), i.checked_sub(width), Some(i + width)];
+        let beside = [(x > 0).then(|| i - 1), (x + 1 < width).then_some(i + 1), i.checked_sub(width), Some(i + width)];
         for n in beside.into_iter().flatten().filter(|&n| n < count) {
             if mask.data[n] > 0.5 && !std::mem::replace(&mut touched[n], true) {
                 try_push(&mut next, n)?;

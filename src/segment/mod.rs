@@ -100,9 +100,20 @@ pub enum Subject {
 /// better: what does not tell the classes apart still leads astray where no stroke is.
 pub const SUBSETS: [u32; 4] = [0b111, 0b111_0_111, 0b111_000_0_111, (1 << CHANNELS) - 1];
 
+/// The channels of depth and position.
+const POSITION: u32 = 0b111_1000;
+
 impl Default for Params {
     fn default() -> Self {
-        Self { samples_per_class: 1000, channels: 0, ridge: 1e-3, seed: 1, refine_radius: 0, refine_tolerance: 8.0, subject: Subject::Auto }
+        Self {
+            samples_per_class: 1000,
+            channels: 0,
+            ridge: 1e-3,
+            seed: 1,
+            refine_radius: 0,
+            refine_tolerance: 8.0,
+            subject: Subject::Auto,
+        }
     }
 }
 
@@ -205,7 +216,7 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Segmentation> {
     let features = input.features;
     params.check()?;
     check_range("the number of feature channels", features.channels, 1, MOST_CHANNELS)?;
-    let subsets = subsets(features.channels, params.channels)?;
+    let mut subsets = subsets(features.channels, params.channels)?;
     if let Some(within) = input.within {
         features.check_same_size("features", within, "within")?;
         check_range("the number of channels of within", within.channels, 1, 1)?;
@@ -221,6 +232,9 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Segmentation> {
         return instances::run(input, job);
     }
 
+    if params.channels == 0 && input.within.is_none() && face::is_laid_out(input) {
+        subsets.retain(|subset| subset & POSITION == 0);
+    }
     let channels: Vec<usize> = (0..features.channels).filter(|c| subsets.iter().any(|s| s >> c & 1 == 1)).collect();
     // Making room for the answers takes a while, which learning can share.
     let blank = || classify::Blank::new(features.width, features.height);

@@ -18,6 +18,8 @@ mod regions;
 mod similar;
 mod soft;
 mod surroundings;
+#[cfg(test)]
+mod tests;
 mod tree;
 
 use super::samples::{self, Ownership};
@@ -54,16 +56,20 @@ pub fn run(input: &Input, job: Job) -> Result<Segmentation> {
         )));
     }
 
+    if let Some(bad) =
+        input.features.data.chunks_exact(input.features.channels).find(|p| !p[..3].iter().all(|v| v.is_finite()))
+    {
+        return Err(Error::argument(format!("features holds a colour of {:?}; all must be finite", &bad[..3])));
+    }
     let photo = Brightness::new(input.features, job.part(0.0, 0.2))?;
     let floor = floor(&photo, &paint)?;
-    let tree = Tree::new(&photo.levels, floor, width, height, job.part(0.2, 0.6))?;
+    let tree = Tree::new(&photo.levels, floor, width, job.part(0.2, 0.6))?;
     let regions = Regions::new(&tree, &photo, job.part(0.6, 0.8))?;
     let mut negatives = try_vec(tree.len(), 0f64)?;
     paint.negative.iter().for_each(|&p| negatives[tree.node_of[p as usize] as usize] += 1.0);
     tree.accumulate(&mut negatives);
 
-    let painted =
-        painted::find(&tree, &regions, &Paint { width, positive: &paint.positive, negatives: &negatives })?;
+    let painted = painted::find(&tree, &regions, &Paint { width, positive: &paint.positive, negatives: &negatives })?;
     let plane = input.within;
     let search = Search { tree: &tree, regions: &regions, photo: &photo, plane, negatives: &negatives };
     let similar = search.run(&painted, job.part(0.8, 0.95))?;

@@ -74,6 +74,16 @@ impl Bounds {
         }
     }
 
+    /// Width and height.
+    pub fn size(&self) -> [usize; 2] {
+        [self.x1 - self.x0, self.y1 - self.y0]
+    }
+
+    /// The rectangle's index of a pixel of the image within it.
+    pub fn index(&self, pixel: u32, width: usize) -> usize {
+        (pixel as usize / width - self.y0) * (self.x1 - self.x0) + pixel as usize % width - self.x0
+    }
+
     /// The image's index of the rectangle's `k`-th pixel.
     pub fn pixel(&self, k: usize, width: usize) -> usize {
         let across = self.x1 - self.x0;
@@ -83,11 +93,10 @@ impl Bounds {
     /// Distance of each pixel of the rectangle from the given ones along rows and columns, up to 255 (two passes, Rosenfeld and
     /// Pfaltz 1966).
     pub fn distance(&self, pixels: &[u32], width: usize) -> Result<Vec<u8>> {
-        let (across, down) = (self.x1 - self.x0, self.y1 - self.y0);
+        let [across, down] = self.size();
         let mut distance = try_vec(across * down, u8::MAX)?;
         for &p in pixels {
-            let (x, y) = (p as usize % width - self.x0, p as usize / width - self.y0);
-            distance[y * across + x] = 0;
+            distance[self.index(p, width)] = 0;
         }
         for k in 0..distance.len() {
             let left = if k % across > 0 { distance[k - 1] } else { u8::MAX };

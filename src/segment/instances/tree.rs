@@ -8,12 +8,8 @@ use crate::image::{try_collect, try_push, try_vec};
 use crate::job::Job;
 
 pub struct Tree {
-    pub width: usize,
-    pub height: usize,
     /// Parent of each node; the root's is itself.
     pub parent: Vec<u32>,
-    /// The level from which on the pixels of each node are counted.
-    pub level: Vec<u16>,
     /// The smallest node that holds each pixel.
     pub node_of: Vec<u32>,
     /// The pixels, those of a node side by side.
@@ -27,7 +23,7 @@ const UNSEEN: u32 = u32::MAX;
 
 impl Tree {
     /// The tree of the pixels above `floor`; the rest belongs to the root alone. Neighbours share a side.
-    pub fn new(levels: &[u16], floor: u16, width: usize, height: usize, job: Job) -> Result<Self> {
+    pub fn new(levels: &[u16], floor: u16, width: usize, job: Job) -> Result<Self> {
         let order = sorted(levels, floor)?;
         let mut parent = try_vec(levels.len(), UNSEEN)?;
         let mut set = try_vec(levels.len(), UNSEEN)?;
@@ -40,8 +36,12 @@ impl Tree {
             let i = p as usize;
             (parent[i], set[i]) = (p, p);
             let x = i % width;
-            let beside =
-                [(x > 0, 1usize.wrapping_neg()), (x + 1 < width, 1), (i >= width, width.wrapping_neg()), (i + width < levels.len(), width)];
+            let beside = [
+                (x > 0, 1usize.wrapping_neg()),
+                (x + 1 < width, 1),
+                (i >= width, width.wrapping_neg()),
+                (i + width < levels.len(), width),
+            ];
             for (_, step) in beside.into_iter().filter(|(inside, _)| *inside) {
                 let n = i.wrapping_add(step);
                 if set[n] != UNSEEN {
@@ -61,12 +61,12 @@ impl Tree {
                 parent[p as usize] = parent[up];
             }
         }
-        Self::numbered(levels, &order, &parent, width, height)
+        Self::numbered(levels, &order, &parent)
     }
 
     /// Numbers the nodes, and sorts the pixels by them.
-    fn numbered(levels: &[u16], order: &[u32], parents: &[u32], width: usize, height: usize) -> Result<Self> {
-        let (mut parent, mut level, mut own) = (vec![0u32], vec![0u16], vec![0u32]);
+    fn numbered(levels: &[u16], order: &[u32], parents: &[u32]) -> Result<Self> {
+        let (mut parent, mut own) = (vec![0u32], vec![0u32]);
         let mut node_of = try_vec(levels.len(), 0u32)?;
         for &p in order {
             let (i, up) = (p as usize, parents[p as usize] as usize);
@@ -75,7 +75,6 @@ impl Tree {
             } else {
                 node_of[i] = parent.len() as u32;
                 try_push(&mut parent, if up == i { 0 } else { node_of[up] })?;
-                try_push(&mut level, levels[i])?;
                 try_push(&mut own, 0)?;
             }
             own[node_of[i] as usize] += 1;
@@ -101,7 +100,7 @@ impl Tree {
             pixels[free[node as usize] as usize] = p as u32;
             free[node as usize] += 1;
         }
-        Ok(Self { width, height, parent, level, node_of, pixels, range })
+        Ok(Self { parent, node_of, pixels, range })
     }
 
     pub fn len(&self) -> usize {
@@ -166,7 +165,8 @@ mod tests {
         let mut next = 0;
         while let Some(&p) = reached.get(next) {
             next += 1;
-            let near = |n: u32| n.abs_diff(p) == width as u32 || n.abs_diff(p) == 1 && n / width as u32 == p / width as u32;
+            let near =
+                |n: u32| n.abs_diff(p) == width as u32 || n.abs_diff(p) == 1 && n / width as u32 == p / width as u32;
             let more = |&n: &u32| levels[n as usize] >= level && near(n) && !reached.contains(&n);
             let more: Vec<u32> = (0..levels.len() as u32).filter(more).collect();
             reached.extend(more);
@@ -179,11 +179,11 @@ mod tests {
     fn nodes_are_the_connected_regions_of_every_level() {
         let (width, height) = (17, 11);
         let levels = noise(width, height);
-        let tree = Tree::new(&levels, 0, width, height, Monitor::default().job()).unwrap();
+        let tree = Tree::new(&levels, 0, width, Monitor::default().job()).unwrap();
         for node in 1..tree.len() as u32 {
-            let (level, up) = (tree.level[node as usize], tree.parent[node as usize]);
-            assert!(up < node && tree.level[up as usize] < level);
+            assert!(tree.parent[node as usize] < node);
             let mut by_tree = tree.pixels(node).to_vec();
+            let level = by_tree.iter().map(|&p| levels[p as usize]).min().unwrap();
             by_tree.sort_unstable();
             assert!(by_tree.iter().all(|&p| tree.ancestors(tree.node_of[p as usize]).any(|n| n == node)));
             // By definition: the pixels that a walk over pixels of the level and above reaches.
@@ -196,7 +196,7 @@ mod tests {
     fn sums_over_nodes_are_sums_over_their_pixels() {
         let (width, height) = (13, 9);
         let levels = noise(width, height);
-        let tree = Tree::new(&levels, 1, width, height, Monitor::default().job()).unwrap();
+        let tree = Tree::new(&levels, 1, width, Monitor::default().job()).unwrap();
         let mut area = vec![0.0; tree.len()];
         tree.node_of.iter().for_each(|&n| area[n as usize] += 1.0);
         tree.accumulate(&mut area);
@@ -209,8 +209,8 @@ mod tests {
     #[test]
     fn flat_and_empty_images_have_a_root_alone() {
         let job = Monitor::default();
-        assert_eq!(Tree::new(&[3; 12], 3, 4, 3, job.job()).unwrap().len(), 1);
-        assert_eq!(Tree::new(&[3; 12], 2, 4, 3, job.job()).unwrap().len(), 2);
-        assert_eq!(Tree::new(&[], 0, 0, 0, job.job()).unwrap().len(), 1);
+        assert_eq!(Tree::new(&[3; 12], 3, 4, job.job()).unwrap().len(), 1);
+        assert_eq!(Tree::new(&[3; 12], 2, 4, job.job()).unwrap().len(), 2);
+        assert_eq!(Tree::new(&[], 0, 0, job.job()).unwrap().len(), 1);
     }
 }
