@@ -1,23 +1,23 @@
-//! What Tukey's biweight makes of normal noise: means over the residuals `r` within its limit, which is 1.
+//! Expectations under normal noise of Tukey's biweight: means over the residuals `r` within its limit, which is 1.
 
 use std::sync::LazyLock;
 
-/// Means over a residual with normal noise of a known variance, of those within the limit. All are 1 for little noise and fall
-/// with it.
+/// Means over normally distributed residuals of known variance, conditional on being within the limit. All three tend
+/// to 1 as the noise vanishes and fall as it grows.
 #[derive(Clone, Copy, Debug)]
 pub struct Biweight {
-    /// Of `r²`, as a share of the variance.
+    /// Mean of `r²`, as a share of the variance.
     pub square: f64,
-    /// Of `ψ′(r)` where `ψ(r) = r (1 - r²)²`.
+    /// Mean of `ψ′(r)`, where `ψ(r) = r (1 - r²)²`.
     pub slope: f64,
-    /// Of `ψ²(r)`, as a share of the variance.
+    /// Mean of `ψ²(r)`, as a share of the variance.
     pub influence: f64,
 }
 
-/// Intervals of the table, equal in `d / (1 + d)` of the standard deviation `d`.
+/// Intervals of the lookup table, uniform in `d / (1 + d)` for a standard deviation `d`.
 const INTERVALS: usize = 64;
 
-/// Least deviation that is integrated over, and steps of that.
+/// Smallest standard deviation that is integrated, and the number of integration steps.
 const LEAST: f64 = 1e-3;
 const STEPS: usize = 256;
 

@@ -1,5 +1,6 @@
-//! The paper's lines (§5.1): a Hough transform in which each edge pixel votes only for the lines within a few degrees of
-//! the one across its gradient, the maxima of the accumulator, and the pieces of each line that edges cover.
+//! The paper's line detector (§5.1): a Hough transform in which each edge pixel votes only for lines within a few
+//! degrees of the normal to its gradient. The maxima of the accumulator are the lines; each is cut into the pieces
+//! that edge pixels cover.
 
 use super::gradient::Gradients;
 use crate::error::Result;
@@ -9,17 +10,17 @@ use crate::job::Job;
 use glam::DVec2;
 use std::f64::consts::PI;
 
-/// Directions of the accumulator over half a turn: half a degree each.
+/// Angles of the accumulator over half a turn: one every half degree.
 const ANGLES: usize = 360;
 
-/// Least votes of a maximum, as a share of the image's shorter side, and the most maxima taken.
+/// Minimum votes of a maximum, as a share of the image's shorter side, and the maximum number of lines returned.
 const LEAST_VOTES: f64 = 0.06;
 const MOST_LINES: usize = 600;
 
-/// Cells around a maximum in which no other counts: angle and distance.
+/// Half-size, in angle and distance cells, of the neighbourhood for non-maximum suppression.
 const APART: (usize, usize) = (4, 4);
 
-/// Distance of an edge pixel from its line, gap bridged in a piece, least length of a piece, in pixels.
+/// Maximum distance of an edge pixel from its line, and maximum gap bridged within a piece, both in pixels.
 const REACH: f64 = 1.5;
 const GAP: f64 = 6.0;
 
@@ -54,7 +55,7 @@ pub fn peaks(gradients: &Gradients, edges: &[u32], band: f64, job: Job) -> Resul
         }
     }
 
-    // Maxima over their neighbourhood; the accumulator closes on itself with the sign of rho changed.
+    // Find the maxima over their neighbourhoods. The accumulator wraps around in angle with the sign of rho flipped.
     let least = ((LEAST_VOTES * width.min(height) as f64) as u32).max(8);
     let mut found: Vec<(u32, usize, usize)> = Vec::new();
     for k in 0..ANGLES {
@@ -74,7 +75,7 @@ pub fn peaks(gradients: &Gradients, edges: &[u32], band: f64, job: Job) -> Resul
                     let Some(&other) = (0..rows as isize).contains(&nr).then(|| &votes[nk * rows + nr as usize]) else {
                         return true;
                     };
-                    // Of equals the first in memory wins.
+                    // Break ties in favour of the first in memory.
                     other < v || (other == v && nk * rows + nr as usize >= k * rows + r)
                 })
             });
@@ -93,8 +94,8 @@ pub fn peaks(gradients: &Gradients, edges: &[u32], band: f64, job: Job) -> Resul
     Ok(found.into_iter().map(peak).collect())
 }
 
-/// The pieces of the lines that edge pixels of a like gradient cover, each refitted by least squares. An edge pixel
-/// belongs to the strongest line that claims it.
+/// The pieces of the lines that edge pixels of similar gradient direction cover, each refitted by least squares. An
+/// edge pixel belongs to the strongest line that covers it.
 pub fn pieces(gradients: &Gradients, edges: &[u32], peaks: &[Peak], band: f64, job: Job) -> Result<Vec<Segment>> {
     let centre = DVec2::new(gradients.width as f64, gradients.height as f64) / 2.0;
     let least_agreement = (2.0 * band).max(5f64.to_radians()).cos();
@@ -120,7 +121,7 @@ pub fn pieces(gradients: &Gradients, edges: &[u32], peaks: &[Peak], band: f64, j
         support.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         for run in support.chunk_by(|a, b| b.0 - a.0 <= GAP) {
             let length = run[run.len() - 1].0 - run[0].0;
-            // At least two thirds of a piece are edge.
+            // Require edge pixels along at least two thirds of a piece.
             if length < least_length || (run.len() as f64) < length * 2.0 / 3.0 {
                 continue;
             }
@@ -132,7 +133,7 @@ pub fn pieces(gradients: &Gradients, edges: &[u32], peaks: &[Peak], band: f64, j
     Ok(segments)
 }
 
-/// The whole visible part of each line, as the paper has it.
+/// The whole visible part of each line, as in the paper.
 pub fn whole_lines(gradients: &Gradients, peaks: &[Peak]) -> Vec<Segment> {
     let size = DVec2::new(gradients.width as f64, gradients.height as f64);
     let line = |peak: &Peak| {
@@ -147,7 +148,8 @@ fn position(width: usize, index: u32) -> DVec2 {
     DVec2::new((index as usize % width) as f64 + 0.5, (index as usize / width) as f64 + 0.5)
 }
 
-/// An edge pixel moved along the nearer axis of its gradient to the vertex of a parabola through three magnitudes.
+/// Sub-pixel position of an edge pixel: the vertex of the parabola through three magnitudes along the image axis
+/// nearest to its gradient.
 fn refined_position(gradients: &Gradients, index: u32) -> DVec2 {
     let i = index as usize;
     let [dx, dy] = gradients.derivative[i];

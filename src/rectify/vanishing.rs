@@ -1,5 +1,5 @@
-//! Vanishing points from line segments (§5.2): up to three directions, orthogonal where the search is Manhattan's, each
-//! then refined freely with its own covariance.
+//! Vanishing points from line segments (§5.2): up to three directions, orthogonal in the Manhattan search, each then
+//! refined freely with its own covariance.
 
 use super::sphere::{Evidence, Frame, Refined, RightAngle, project, refine, refine_near, round_covariance, unproject};
 use super::{Params, Search, VanishingPoint, manhattan, successive};
@@ -8,39 +8,41 @@ use crate::geometry::Segment;
 use crate::job::Job;
 use glam::{DMat3, DVec2, DVec3};
 
-/// Lines used to search and refine; further ones, the shortest, are only assigned.
+/// Maximum number of lines used to search and refine; further (shorter) lines are only assigned.
 const MOST_LINES: usize = 2500;
 
-/// A direction less certain than this, in radians, is none.
+/// Directions with a larger error, in radians, are rejected.
 const WORST_ERROR: f64 = 0.2;
 
-/// How far from a right angle two directions of a room are, in radians, and by how much the logarithm of the focal length
-/// is off while they are refined.
+/// Prior standard deviations: of the angle between two room directions about a right angle, in radians, and of the
+/// logarithm of the focal length during their refinement.
 const SQUARENESS: f64 = 0.04;
 const FOCAL_SPREAD: f64 = 0.05;
 
 /// The vanishing points of a set of segments.
 #[derive(Clone, Debug)]
 pub struct Vanishing {
-    /// The first three at most are near orthogonal; best supported first among them.
+    /// At most the first three are nearly orthogonal; these are sorted by falling support.
     pub points: Vec<VanishingPoint>,
-    /// For each segment the point it runs to.
+    /// For each segment, the index of the point it runs to.
     pub members: Vec<Option<usize>>,
-    /// The direction of each as its own lines have it, without the right angles, in a camera of the focal length below.
+    /// Each direction estimated from its own lines without priors on right angles, for a camera of the focal length
+    /// below.
     pub(super) free: Vec<Refined>,
-    /// Focal length in pixels under which the points are most nearly orthogonal; a weak guess from one finite point.
+    /// Focal length in pixels for which the points are most nearly orthogonal; a weak guess if there is one finite
+    /// point only.
     pub focal: f64,
 }
 
-/// A direction with the right angles that the others lead one to expect, and without.
+/// A direction refined with priors on right angles to the others (`expected`), and without (`free`).
 #[derive(Clone, Copy)]
 struct Found {
     expected: Refined,
     free: Refined,
 }
 
-/// Finds at most `count` vanishing points of segments in an image of the given size. Segments without length or with
-/// coordinates that are not finite take no part. An error if no point can be found.
+/// Finds at most `count` vanishing points of segments in an image of the given size. Segments of zero length or with
+/// non-finite coordinates are ignored. Returns an error if no point can be found.
 pub fn from_segments(
     segments: &[Segment],
     width: usize,
@@ -66,7 +68,7 @@ pub fn from_segments(
                 let axes = [0, 1, 2].map(|k| triplet.axes.col(k));
                 found = refine_freely(&lines, &axes, focal);
             }
-            // Directions beside the three, from the lines that run along none of them.
+            // Find further directions from the lines that run along none of the three.
             while found.len() < count && !found.is_empty() {
                 let points: Vec<DVec3> = found.iter().map(|r| project(r.expected.direction, focal)).collect();
                 let rest: Vec<Evidence> =
@@ -88,7 +90,7 @@ pub fn from_segments(
         }
     }
 
-    // Assign every segment to the point it agrees with best, and count.
+    // Assign every segment to the point it agrees with best, and count the support of each point.
     let points: Vec<DVec3> = found.iter().map(|r| project(r.expected.direction, focal)).collect();
     let mut members = vec![None; segments.len()];
     let mut support = vec![(0usize, 0.0f64); points.len()];
@@ -100,7 +102,7 @@ pub fn from_segments(
         }
     }
 
-    // Keep what at least two lines support; the longest support comes first within the orthogonal three.
+    // Keep points with at least two lines; sort by falling support within the orthogonal three.
     let mut order: Vec<usize> = (0..points.len()).filter(|&k| support[k].0 >= 2).collect();
     order.sort_by(|&a, &b| (a >= 3).cmp(&(b >= 3)).then(support[b].1.total_cmp(&support[a].1)));
     order.truncate(count);
@@ -128,9 +130,9 @@ pub fn from_segments(
     Ok(Vanishing { points, members, free, focal: focal * frame.scale })
 }
 
-/// Refines each direction on the lines that run along it more nearly than along the others, then once more with the
-/// right angles that the others, as their own lines have them, lead one to expect: those help where a direction has few
-/// lines. Directions that no two lines fix, or that drift into another, are dropped.
+/// Refines each direction on the lines that agree with it better than with the others; then once more with priors on
+/// right angles to the others' own estimates, which help where a direction has few lines. Drops directions that no two
+/// lines determine and directions that drift into another.
 fn refine_freely(lines: &[Evidence], axes: &[DVec3], focal: f64) -> Vec<Found> {
     let mut current: Vec<Refined> =
         axes.iter().map(|&direction| Refined { direction, covariance: DMat3::ZERO }).collect();
@@ -164,7 +166,7 @@ fn refine_freely(lines: &[Evidence], axes: &[DVec3], focal: f64) -> Vec<Found> {
     kept
 }
 
-/// For each direction the lines that agree with it, and with none better.
+/// For each direction, the lines that agree with it better than with any other.
 fn nearest(lines: &[Evidence], directions: &[Refined], focal: f64) -> Vec<Vec<Evidence>> {
     let points: Vec<DVec3> = directions.iter().map(|r| project(r.direction, focal)).collect();
     let mut groups = vec![Vec::new(); points.len()];
