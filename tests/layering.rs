@@ -57,7 +57,7 @@ const UNSAFE: &[&str] = &[
     "reserve.rs",
     "simd.rs",
     "image/pages.rs",
-    "rectify/four.rs",
+    "rectify/lanes.rs",
     "rectify/gather.rs",
     "scene/accel/cluster.rs",
     "scene/accel/lanes.rs",

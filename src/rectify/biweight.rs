@@ -17,19 +17,19 @@ pub struct Biweight {
 /// Intervals of the lookup table, uniform in `d / (1 + d)` for a standard deviation `d`.
 const INTERVALS: usize = 64;
 
-/// Smallest standard deviation that is integrated, and the number of integration steps.
-const LEAST: f64 = 1e-3;
+/// Smallest standard deviation that is integrated, and the number of integration steps [rounding].
+const MIN_DEVIATION: f64 = 1e-3;
 const STEPS: usize = 256;
 
 static TABLE: LazyLock<[Biweight; INTERVALS + 1]> = LazyLock::new(|| {
     std::array::from_fn(|i| {
         let place = i as f64 / INTERVALS as f64;
-        if i < INTERVALS { integrate((place / (1.0 - place)).max(LEAST)) } else { Biweight::NOTHING_KNOWN }
+        if i < INTERVALS { integrate((place / (1.0 - place)).max(MIN_DEVIATION)) } else { Biweight::INFINITE_NOISE }
     })
 });
 
 impl Biweight {
-    const NOTHING_KNOWN: Self = Self { square: 0.0, slope: 0.0, influence: 0.0 };
+    const INFINITE_NOISE: Self = Self { square: 0.0, slope: 0.0, influence: 0.0 };
 
     pub fn of_noise(variance: f64) -> Self {
         let deviation = variance.max(0.0).sqrt();

@@ -10,11 +10,11 @@ use crate::geometry::{FocalSource, Perspective};
 use glam::{DMat3, DVec2, DVec3};
 
 /// Prior of the focal length over photos of rooms: its typical value as a share of the image width, and the standard
-/// deviation of its logarithm.
+/// deviation of its logarithm [origin not recorded].
 const USUAL_FOCAL: f64 = 0.85;
 pub const USUAL_SPREAD: f64 = 0.35;
 
-/// The error in radians of an axis that is fixed by convention alone.
+/// The error in radians of an axis that is fixed by convention alone [convention].
 pub const FREE_ERROR: f64 = 0.5;
 
 /// A camera with the vanishing point of each of its axes.
@@ -106,7 +106,7 @@ fn focal_length(points: &[VanishingPoint], principal: DVec2, given: Option<f64>,
 }
 
 /// Re-estimates the camera from the vanishing points of its axes, ignoring points without support.
-pub fn again(camera: &Perspective, points: &[VanishingPoint; 3], usual: f64) -> Perspective {
+pub fn reestimate(camera: &Perspective, points: &[VanishingPoint; 3], usual: f64) -> Perspective {
     let known: Vec<VanishingPoint> = points.iter().filter(|v| v.support > 0).cloned().collect();
     let given = (camera.focal_source == FocalSource::Given).then_some(camera.focal);
     let (focal, _) = focal_length(&known, camera.principal, given, usual);

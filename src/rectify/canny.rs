@@ -6,7 +6,7 @@ use crate::image::{try_collect, try_push, try_vec};
 use crate::job::Job;
 
 /// Hysteresis thresholds of the gradient magnitude, in encoded luma per pixel: each edge pixel must exceed `WEAK`, and
-/// at least one pixel of each edge `STRONG`.
+/// at least one pixel of each edge `STRONG` [origin not recorded].
 const WEAK: f32 = 0.015;
 const STRONG: f32 = 0.04;
 

@@ -23,38 +23,39 @@ pub struct Distortion {
 }
 
 /// Minimum segment length that is used, and the length at each end that is left out because corners bend edges there,
-/// both in pixels.
-const SHORTEST: f64 = 30.0;
-const END: f64 = 4.0;
+/// both in pixels [origin not recorded].
+const MIN_LENGTH: f64 = 30.0;
+const TRIM: f64 = 4.0;
 /// Pixels on each side of a segment in which its edge is searched for.
-const ACROSS: i32 = 4;
-/// Minimum share of a segment's length along which its edge must be found.
-const FOUND: f64 = 0.7;
+const SEARCH_WIDTH: i32 = 4;
+/// Minimum share of a segment's length along which its edge must be found [origin not recorded].
+const MIN_COVERAGE: f64 = 0.7;
 /// Minimum number of lines for an estimate.
-const FEWEST: usize = 12;
-/// Floor of the position error of an edge in pixels, which averaging does not reduce.
-const FLOOR: f64 = 0.01;
-/// Maximum root mean square residual, in pixels, of an edge about its parabola.
-const RAGGED: f64 = 0.25;
+const MIN_LINES: usize = 12;
+/// Floor of the position error of an edge in pixels, which averaging does not reduce [origin not recorded].
+const POSITION_FLOOR: f64 = 0.01;
+/// Maximum root mean square residual, in pixels, of an edge about its parabola [origin not recorded].
+const MAX_RESIDUAL: f64 = 0.25;
 /// Limit of Tukey's biweight in standard deviations (95 % efficiency) [convention].
-const LIMIT: f64 = 4.685;
-/// Segments per physical line: both sides of a frame, or the pieces of one line.
-const TWINS: f64 = 2.0;
+const BIWEIGHT_LIMIT: f64 = 4.685;
+/// Segments per physical line: both sides of a frame, or the pieces of one line [origin not recorded].
+const SEGMENTS_PER_LINE: f64 = 2.0;
 /// Deviation of real lenses from the model: the root mean square estimate over views cut out of panoramas, which have
 /// no lens distortion apart from stitching, where their lines agree [bench: `tests/real_rectify.rs`].
-const MODEL: f64 = 0.009;
+const MODEL_ERROR: f64 = 0.009;
 
 /// Estimates the distortion of a lens whose optical axis meets the image in `centre`; `None` if there are too few
 /// lines.
 pub fn measure(gradients: &Gradients, segments: &[Segment], centre: DVec2) -> Option<Distortion> {
     let diagonal = 0.5 * DVec2::new(gradients.width as f64, gradients.height as f64).length();
-    let said: Vec<Said> = segments.iter().filter_map(|s| Said::by(gradients, s, centre, diagonal)).collect();
-    combine(&said)
+    let estimates: Vec<LineEstimate> =
+        segments.iter().filter_map(|s| LineEstimate::by(gradients, s, centre, diagonal)).collect();
+    combine(&estimates)
 }
 
 /// The estimate from one line.
 #[derive(Clone, Copy, Debug)]
-struct Said {
+struct LineEstimate {
     /// Estimate of k that neglects the quadratic term of the curvature.
     corner: f64,
     /// Inverse variance of the estimate.
@@ -63,14 +64,12 @@ struct Said {
     place: f64,
 }
 
-impl Said {
+impl LineEstimate {
     /// The estimate of k with the quadratic term evaluated at an approximate k.
-    fn given(&self, nearly: f64) -> f64 {
+    fn at_corner(&self, nearly: f64) -> f64 {
         self.corner * (1.0 - 3.0 * nearly * self.place)
     }
-}
 
-impl Said {
     fn by(gradients: &Gradients, segment: &Segment, centre: DVec2, diagonal: f64) -> Option<Self> {
         let along = (segment.b - segment.a).try_normalize()?;
         let distance = along.perp().dot(0.5 * (segment.a + segment.b) - centre);
@@ -87,17 +86,17 @@ impl Said {
 /// that agrees with the edge's polarity, so that neighbouring edges do not bias it.
 fn places(gradients: &Gradients, segment: &Segment) -> Option<Vec<DVec2>> {
     let length = segment.length();
-    if length < SHORTEST {
+    if length < MIN_LENGTH {
         return None;
     }
     let along = (segment.b - segment.a) / length;
     let across = along.perp();
-    let steps = (length - 2.0 * END) as usize;
-    let profile = |t: f64| (-ACROSS..=ACROSS).map(move |o| segment.a + along * t + across * f64::from(o));
+    let steps = (length - 2.0 * TRIM) as usize;
+    let profile = |t: f64| (-SEARCH_WIDTH..=SEARCH_WIDTH).map(move |o| segment.a + along * t + across * f64::from(o));
     // Determine the polarity of the edge from the gradient along its middle.
-    let sense: f64 = (0..steps).map(|i| slope(gradients, segment.a + along * (END + i as f64), across)).sum();
+    let sense: f64 = (0..steps).map(|i| slope(gradients, segment.a + along * (TRIM + i as f64), across)).sum();
     let mut places = Vec::new();
-    for t in (0..steps).map(|i| END + i as f64) {
+    for t in (0..steps).map(|i| TRIM + i as f64) {
         let slopes: Vec<f64> = profile(t).map(|at| slope(gradients, at, across) * sense.signum()).collect();
         let Some(best) = (0..slopes.len()).max_by(|&i, &k| slopes[i].total_cmp(&slopes[k])) else { continue };
         // Skip positions where the edge leaves the strip or has the wrong polarity; refine to sub-pixel precision by a
@@ -107,11 +106,11 @@ fn places(gradients: &Gradients, segment: &Segment) -> Option<Vec<DVec2>> {
             && let [a, b, c] = slopes[best - 1..=best + 1]
             && a + c < 2.0 * b
         {
-            let offset = best as f64 - f64::from(ACROSS) + 0.5 * (a - c) / (a - 2.0 * b + c);
+            let offset = best as f64 - f64::from(SEARCH_WIDTH) + 0.5 * (a - c) / (a - 2.0 * b + c);
             places.push(DVec2::new(t, offset));
         }
     }
-    (places.len() as f64 >= FOUND * steps as f64).then_some(places)
+    (places.len() as f64 >= MIN_COVERAGE * steps as f64).then_some(places)
 }
 
 /// Directional derivative of the encoded luma, interpolated between pixels.
@@ -153,40 +152,44 @@ fn parabola(points: &[DVec2]) -> Option<(f64, f64)> {
     let noise = points.iter().map(|p| residual(p).powi(2)).sum::<f64>() / (count - 3.0);
     // Neighbouring samples are correlated by the Gaussian smoothing; this is its correlation length.
     let shared = 2.0 * std::f64::consts::PI.sqrt() * f64::from(SIGMA);
-    let variance = (noise + FLOOR * FLOOR) * shared / square;
-    (noise < RAGGED * RAGGED && variance > 0.0 && variance.is_finite()).then_some((bend, variance))
+    let variance = (noise + POSITION_FLOOR * POSITION_FLOOR) * shared / square;
+    (noise < MAX_RESIDUAL * MAX_RESIDUAL && variance > 0.0 && variance.is_finite()).then_some((bend, variance))
 }
 
 /// Iterations of the M-estimate.
 const ROUNDS: usize = 20;
 
 /// The value of k that most lines support: an M-estimate started at the weighted median.
-fn combine(said: &[Said]) -> Option<Distortion> {
-    if said.len() < FEWEST {
+fn combine(estimates: &[LineEstimate]) -> Option<Distortion> {
+    if estimates.len() < MIN_LINES {
         return None;
     }
-    let median = weighted_median(said.iter().map(|s| (s.corner, s.weight.sqrt())).collect());
+    let median = weighted_median(estimates.iter().map(|s| (s.corner, s.weight.sqrt())).collect());
     let start = Distortion { corner: median, error: f64::INFINITY, lines: 0 };
-    let found = (0..ROUNDS).fold(start, |found, _| agreed(said, found.corner));
-    (found.lines >= FEWEST && found.corner.is_finite() && found.error.is_finite()).then_some(found)
+    let found = (0..ROUNDS).fold(start, |found, _| m_estimate_step(estimates, found.corner));
+    (found.lines >= MIN_LINES && found.corner.is_finite() && found.error.is_finite()).then_some(found)
 }
 
 /// One step of the M-estimate: the mean of the lines within the biweight limit around `corner`, with an error derived
 /// from their scatter.
-fn agreed(said: &[Said], corner: f64) -> Distortion {
-    let off = said.iter().map(|s| ((s.corner - corner).abs() * s.weight.sqrt(), 1.0)).collect();
-    let limit = LIMIT * (1.4826 * weighted_median(off)).max(1.0);
+fn m_estimate_step(estimates: &[LineEstimate], corner: f64) -> Distortion {
+    let off = estimates.iter().map(|s| ((s.corner - corner).abs() * s.weight.sqrt(), 1.0)).collect();
+    let limit = BIWEIGHT_LIMIT * (1.4826 * weighted_median(off)).max(1.0);
     let (mut weights, mut sum, mut squares, mut lines) = (0.0, 0.0, 0.0, 0);
-    for s in said {
-        let off = s.given(corner) - corner;
+    for s in estimates {
+        let off = s.at_corner(corner) - corner;
         let residual = off * s.weight.sqrt() / limit;
         let agreement = (1.0 - residual * residual).max(0.0).powi(2);
         weights += agreement * s.weight;
-        sum += agreement * s.weight * s.given(corner);
+        sum += agreement * s.weight * s.at_corner(corner);
         squares += (agreement * s.weight * off).powi(2).max(agreement.powi(2) * s.weight);
         lines += usize::from(agreement > 0.0);
     }
-    Distortion { corner: sum / weights, error: ((TWINS * squares).sqrt() / weights).hypot(MODEL), lines }
+    Distortion {
+        corner: sum / weights,
+        error: ((SEGMENTS_PER_LINE * squares).sqrt() / weights).hypot(MODEL_ERROR),
+        lines,
+    }
 }
 
 fn weighted_median(mut values: Vec<(f64, f64)>) -> f64 {

@@ -7,8 +7,8 @@ pub const RUN: usize = 128;
 /// than the position.
 const SHARED: usize = 8;
 
-/// Bound of the derivatives; larger ones occur only at the horizon.
-const STEEPEST: f32 = 1e8;
+/// Bound of the derivatives; larger ones occur only at the horizon [rounding].
+const MAX_DERIVATIVE: f32 = 1e8;
 
 /// Source positions of a run of pixels, each with its footprint: the sheared rectangle with the same second moments as
 /// the parallelogram that the pixel covers, widened to at least one source pixel in every direction.
@@ -61,7 +61,7 @@ pub fn locate(map: &[f64; 9], front: f64, size: [f64; 2], row: usize, first: usi
         let per_z = 1.0 / (map[2] * x + from_z);
         let (qx, qy) = ((map[0] * x + from_x) * per_z, (map[1] * x + from_y) * per_z);
         // Compute the Jacobian J and the squared axes of its ellipse, which are the eigenvalues of J Jᵀ.
-        let part = |v: f64| ((v * per_z) as f32).max(-STEEPEST).min(STEEPEST);
+        let part = |v: f64| ((v * per_z) as f32).max(-MAX_DERIVATIVE).min(MAX_DERIVATIVE);
         let (a, b) = (part(map[0] - qx * map[2]), part(map[3] - qx * map[5]));
         let (c, d) = (part(map[1] - qy * map[2]), part(map[4] - qy * map[5]));
         let (xx, xy, yy, determinant) = (a * a + b * b, a * c + b * d, c * c + d * d, a * d - b * c);

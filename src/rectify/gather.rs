@@ -1,7 +1,7 @@
 //! Weighted sums of the taps of a run of pixels.
 
 use super::footprint::RUN;
-use super::four::{Four, One, Three};
+use super::lanes::{GreyLanes, PixelLanes, RgbLanes};
 use super::taps::{TAPS, Taps};
 use crate::image::Image;
 use crate::simd::Level;
@@ -14,11 +14,11 @@ pub type Sums = [Vec4; RUN];
 #[inline(always)]
 pub fn sum(level: Level, source: &Image, channel: usize, taps: &Taps, is_seen: &[bool; RUN], to: &mut Sums) {
     match (source.channels, level) {
-        (1, _) => gather::<One>(source, taps, to),
+        (1, _) => gather::<GreyLanes>(source, taps, to),
         // SAFETY: `level` is a level that the processor supports.
         #[cfg(target_arch = "x86_64")]
         (3, Level::Avx512) => unsafe { gather_wide(source, taps, to) },
-        (3, _) => gather::<Three>(source, taps, to),
+        (3, _) => gather::<RgbLanes>(source, taps, to),
         _ => {
             for i in (0..RUN).filter(|&i| is_seen[i]) {
                 one_by_one(source, channel..channel + 1, taps, i, to);
@@ -36,12 +36,12 @@ pub fn sum(level: Level, source: &Image, channel: usize, taps: &Taps, is_seen: &
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
 fn gather_wide(source: &Image, taps: &Taps, to: &mut Sums) {
-    gather::<super::four::Wide>(source, taps, to);
+    gather::<super::lanes::RgbLanesAvx512>(source, taps, to);
 }
 
 /// Processes the pixels whose taps all lie inside the source.
 #[inline(always)]
-fn gather<F: Four>(source: &Image, taps: &Taps, to: &mut Sums) {
+fn gather<F: PixelLanes>(source: &Image, taps: &Taps, to: &mut Sums) {
     match (taps.is_sharp, taps.is_sheared) {
         (true, true) => gather_as::<F>(source, taps, true, true, to),
         (true, false) => gather_as::<F>(source, taps, true, false, to),
@@ -53,7 +53,7 @@ fn gather<F: Four>(source: &Image, taps: &Taps, to: &mut Sums) {
 // Plain loops without closures: a closure is a separate function, which the compiler does not inline into code
 // compiled for other instruction sets.
 #[inline(always)]
-fn gather_as<F: Four>(source: &Image, taps: &Taps, is_sharp: bool, is_sheared: bool, to: &mut Sums) {
+fn gather_as<F: PixelLanes>(source: &Image, taps: &Taps, is_sharp: bool, is_sheared: bool, to: &mut Sums) {
     let (samples, stride) = (&source.data[..], source.row_len());
     assert!(source.channels == F::CHANNELS && samples.len() == source.height * stride);
     for i in 0..RUN {
@@ -83,7 +83,7 @@ fn gather_as<F: Four>(source: &Image, taps: &Taps, is_sharp: bool, is_sheared: b
             sum = sum.mul(F::spread(&taps.across[0][i]));
         }
         let value = sum.sum();
-        to[i] += if is_sharp { within(value, low.least(), high.greatest()) } else { value };
+        to[i] += if is_sharp { within(value, low.min_over_pixels(), high.max_over_pixels()) } else { value };
     }
 }
 

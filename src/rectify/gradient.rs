@@ -6,13 +6,15 @@ use crate::image::{Image, colour, pyramid};
 use crate::job::Job;
 
 /// Standard deviation of the Gaussian in pixels: large enough to suppress JPEG blocks and sensor noise, small enough
-/// to keep thin lines.
+/// to keep thin lines [bench lines].
 pub const SIGMA: f32 = 1.2;
 
-/// Offset inside the square root that encodes luma: it limits the slope near black, as the linear toe of sRGB does.
+/// Offset inside the square root that encodes luma: it limits the slope near black, as the linear toe of sRGB does
+/// [origin not recorded].
 const TOE: f32 = 0.003;
 
-/// Upper bound of encoded luminance relative to white. Brighter pixels are lamps; only their outlines matter here.
+/// Upper bound of encoded luminance relative to white. Brighter pixels are lamps; only their outlines matter here
+/// [origin not recorded].
 const CLIP: f32 = 4.0;
 
 /// Gradients of a photo; they are zero near pixels that are not finite.

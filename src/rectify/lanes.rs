@@ -5,12 +5,12 @@
 use super::taps::TAPS;
 use glam::{Vec4, Vec4Swizzles};
 
-/// Most samples that [`Four::load`] reads with three channels: four pixels and the samples after them that fill the
+/// Most samples that [`PixelLanes::load`] reads with three channels: four pixels and the samples after them that fill the
 /// register.
-pub const MOST_READ: usize = 16;
+pub const MAX_READ: usize = 16;
 
 /// Four neighbouring pixels with one channel or three.
-pub trait Four: Copy {
+pub trait PixelLanes: Copy {
     const CHANNELS: usize;
     /// Number of samples that one load reads.
     const READ: usize;
@@ -31,15 +31,15 @@ pub trait Four: Copy {
     /// The sum over the four pixels for each channel; the remaining lanes are undefined. The same holds for the next
     /// two.
     fn sum(self) -> Vec4;
-    fn least(self) -> Vec4;
-    fn greatest(self) -> Vec4;
+    fn min_over_pixels(self) -> Vec4;
+    fn max_over_pixels(self) -> Vec4;
 }
 
 /// One channel.
 #[derive(Clone, Copy)]
-pub struct One(Vec4);
+pub struct GreyLanes(Vec4);
 
-impl One {
+impl GreyLanes {
     #[inline(always)]
     fn fold(self, f: impl Fn(Vec4, Vec4) -> Vec4) -> Vec4 {
         let pairs = f(self.0, self.0.zwxy());
@@ -47,7 +47,7 @@ impl One {
     }
 }
 
-impl Four for One {
+impl PixelLanes for GreyLanes {
     const CHANNELS: usize = 1;
     const READ: usize = 4;
 
@@ -93,21 +93,21 @@ impl Four for One {
     }
 
     #[inline(always)]
-    fn least(self) -> Vec4 {
+    fn min_over_pixels(self) -> Vec4 {
         self.fold(Vec4::min)
     }
 
     #[inline(always)]
-    fn greatest(self) -> Vec4 {
+    fn max_over_pixels(self) -> Vec4 {
         self.fold(Vec4::max)
     }
 }
 
 /// Three channels in three registers of four.
 #[derive(Clone, Copy)]
-pub struct Three([Vec4; 3]);
+pub struct RgbLanes([Vec4; 3]);
 
-impl Three {
+impl RgbLanes {
     #[inline(always)]
     fn zip(self, other: Self, f: impl Fn(Vec4, Vec4) -> Vec4) -> Self {
         Self(std::array::from_fn(|k| f(self.0[k], other.0[k])))
@@ -122,7 +122,7 @@ impl Three {
     }
 }
 
-impl Four for Three {
+impl PixelLanes for RgbLanes {
     const CHANNELS: usize = 3;
     const READ: usize = 12;
 
@@ -170,29 +170,29 @@ impl Four for Three {
     }
 
     #[inline(always)]
-    fn least(self) -> Vec4 {
+    fn min_over_pixels(self) -> Vec4 {
         self.fold(Vec4::min)
     }
 
     #[inline(always)]
-    fn greatest(self) -> Vec4 {
+    fn max_over_pixels(self) -> Vec4 {
         self.fold(Vec4::max)
     }
 }
 
 #[cfg(target_arch = "x86_64")]
-pub use avx512::Wide;
+pub use avx512::RgbLanesAvx512;
 
 #[cfg(target_arch = "x86_64")]
 mod avx512 {
-    use super::{Four, MOST_READ, TAPS};
+    use super::{MAX_READ, PixelLanes, TAPS};
     use glam::Vec4;
     use std::arch::x86_64::*;
 
     /// Three channels in one register of sixteen lanes. Use it only in code that runs on a processor with AVX-512:
     /// everything below is inlined into a function compiled for it.
     #[derive(Clone, Copy)]
-    pub struct Wide(__m512);
+    pub struct RgbLanesAvx512(__m512);
 
     // SAFETY of all blocks below: the processor supports AVX-512, as required above.
 
@@ -210,9 +210,9 @@ mod avx512 {
         };
     }
 
-    impl Four for Wide {
+    impl PixelLanes for RgbLanesAvx512 {
         const CHANNELS: usize = 3;
-        const READ: usize = MOST_READ;
+        const READ: usize = MAX_READ;
 
         #[inline(always)]
         unsafe fn load(from: *const f32) -> Self {
@@ -264,12 +264,12 @@ mod avx512 {
         }
 
         #[inline(always)]
-        fn least(self) -> Vec4 {
+        fn min_over_pixels(self) -> Vec4 {
             fold!(self, _mm256_min_ps, _mm_min_ps)
         }
 
         #[inline(always)]
-        fn greatest(self) -> Vec4 {
+        fn max_over_pixels(self) -> Vec4 {
             fold!(self, _mm256_max_ps, _mm_max_ps)
         }
     }

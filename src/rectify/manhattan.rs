@@ -10,14 +10,17 @@ use crate::job::Job;
 use crate::rng::Rng;
 use glam::{DMat3, DQuat, DVec3};
 
-/// Focal lengths tried where the candidates imply none, in half image sides: 20 to 110 degrees of view.
+/// Focal lengths tried where the candidates imply none, in half image sides: 20 to 110 degrees of view [origin not
+/// recorded].
 const FOCALS: [f64; 7] = [0.7, 0.95, 1.3, 1.7, 2.2, 3.2, 5.5];
 
-/// Prior of the focal length in half image sides (0.85 of the width), and the standard deviation of its logarithm.
+/// Prior of the focal length in half image sides (0.85 of the width), and the standard deviation of its logarithm
+/// [origin not recorded].
 pub const USUAL_FOCAL: f64 = 1.7;
 pub const USUAL_SPREAD: f64 = 0.4;
 
-/// Share of the total weight that a focal length one standard deviation from the prior must gain to be preferred.
+/// Share of the total weight that a focal length one standard deviation from the prior must gain to be preferred
+/// [origin not recorded].
 const FOCAL_COST: f64 = 0.004;
 
 /// Pairs of lines drawn, candidates kept, lines paired with a candidate, triplets rescored, and triplets refined.

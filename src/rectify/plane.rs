@@ -8,10 +8,10 @@ use crate::image::{Image, try_collect};
 use glam::{DMat3, DVec2, DVec3};
 
 /// Maximum number of mask pixels used; larger masks are subsampled evenly.
-const MOST_PIXELS: usize = 1 << 18;
+const MAX_PIXELS: usize = 1 << 18;
 
-/// Minimum median over the mask of the sine of the angle between the plane and the viewing rays.
-const LEAST_INCIDENCE: f64 = 0.02;
+/// Minimum median over the mask of the sine of the angle between the plane and the viewing rays [origin not recorded].
+const MIN_INCIDENCE: f64 = 0.02;
 
 /// A plane at distance 1 from the camera, parallel to two room axes.
 #[derive(Clone, Debug)]
@@ -53,7 +53,7 @@ pub fn marked_pixels(mask: &Image) -> Result<Vec<DVec2>> {
             "the plane's mask is empty: paint a stroke on the plane that carries the lights",
         ));
     }
-    let step = marked.len().div_ceil(MOST_PIXELS);
+    let step = marked.len().div_ceil(MAX_PIXELS);
     let centre = |i: u32| DVec2::new((i as usize % mask.width) as f64 + 0.5, (i as usize / mask.width) as f64 + 0.5);
     try_collect(marked.into_iter().step_by(step).map(centre))
 }
@@ -71,13 +71,13 @@ pub fn choose(view: &View, mask: &Image, pixels: &[DVec2], axes: Option<[usize; 
     let mut incidence = try_collect(pixels.iter().map(|&p| plane.normal.dot(view.perspective.ray(p).normalize())))?;
     let half = incidence.len() / 2;
     let median = *incidence.select_nth_unstable_by(half, f64::total_cmp).1;
-    if !(median >= LEAST_INCIDENCE) {
+    if !(median >= MIN_INCIDENCE) {
         return Err(Error::degenerate(format!(
-            "the camera sees the plane along axes {} and {} edge-on (half of the mask at less than {:.1} degrees): choose \
-             other axes, or mark a plane that the photo shows from further off it",
+            "the camera sees the plane along axes {} and {} edge-on (half of the mask at less than {:.1} degrees): \
+             choose other axes, or mark a plane that the photo shows less obliquely",
             pair[0],
             pair[1],
-            LEAST_INCIDENCE.asin().to_degrees()
+            MIN_INCIDENCE.asin().to_degrees()
         )));
     }
     Ok(plane)

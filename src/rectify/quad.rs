@@ -9,7 +9,7 @@ use glam::DVec2;
 /// Cells along each side of the grid on which the rectangle is searched for.
 const GRID: usize = 96;
 /// Cost of a cell outside the mask relative to the gain of a cell inside it. Low, because later stages ignore holes,
-/// whereas a lamp at the rim is lost if the rim is cut off.
+/// whereas a lamp at the rim is lost if the rim is cut off [origin not recorded].
 const HOLE: f64 = 0.25;
 
 /// A rectangle in plane coordinates.

@@ -7,7 +7,7 @@
 
 use super::footprint::{Footprints, RUN, extent, locate};
 use super::gather::{store, sum};
-use super::taps::{LONGEST_SIDE, Part, Taps, weigh};
+use super::taps::{MAX_SIDE, Part, Taps, weigh};
 use crate::error::{Error, Result};
 use crate::exec;
 use crate::geometry::Homography;
@@ -19,7 +19,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Maximum number of parts of a footprint before a coarser level is used, and maximum number along a side at the
 /// coarsest level.
-const MOST_PARTS: usize = 16;
+const MAX_PARTS: usize = 16;
 
 /// Rows per unit of work. One row of each band is examined to find the number of pyramid levels needed.
 const BAND: usize = 8;
@@ -81,7 +81,7 @@ widest! {
         let mut highest = 0;
         for x in (0..map.width).step_by(RUN) {
             locate(&map.to_source, map.front, map.size, row, x, &mut footprints);
-            highest = highest.max(plan(&footprints, usize::MAX).map_or(0, |p| p.level));
+            highest = highest.max(choose_sampling(&footprints, usize::MAX).map_or(0, |p| p.level));
         }
         highest
     }
@@ -98,7 +98,7 @@ widest! {
                 let out = &mut row[x * channels..(x + count) * channels];
                 locate(&map.to_source, map.front, map.size, first_row + y, x, &mut footprints);
                 footprints.is_seen[count..].fill(false);
-                let Some(Plan { level, parts: [across, down] }) = plan(&footprints, levels.len()) else { continue };
+                let Some(Sampling { level, parts: [across, down] }) = choose_sampling(&footprints, levels.len()) else { continue };
                 let (seen, source) = (&footprints.is_seen, levels[level]);
                 let scale = 1.0 / (1u64 << level) as f32;
                 for channel in 0..if channels == 3 { 1 } else { channels } {
@@ -116,20 +116,20 @@ widest! {
 }
 
 /// The pyramid level that a run samples, and the number of parts of each footprint along x and y.
-struct Plan {
+struct Sampling {
     level: usize,
     parts: [usize; 2],
 }
 
 /// `None` if no pixel is visible.
 #[inline(always)]
-fn plan(footprints: &Footprints, levels: usize) -> Option<Plan> {
+fn choose_sampling(footprints: &Footprints, levels: usize) -> Option<Sampling> {
     let [shortest, width, height] = extent(footprints)?;
     let (mut level, mut scale) = (0, 1.0);
     loop {
-        let parts = [width, height].map(|side| ((side * scale / LONGEST_SIDE).ceil() as usize).max(1));
-        if shortest * scale <= LONGEST_SIDE && parts[0].saturating_mul(parts[1]) <= MOST_PARTS || level + 1 >= levels {
-            return Some(Plan { level, parts: parts.map(|n| n.min(MOST_PARTS)) });
+        let parts = [width, height].map(|side| ((side * scale / MAX_SIDE).ceil() as usize).max(1));
+        if shortest * scale <= MAX_SIDE && parts[0].saturating_mul(parts[1]) <= MAX_PARTS || level + 1 >= levels {
+            return Some(Sampling { level, parts: parts.map(|n| n.min(MAX_PARTS)) });
         }
         (level, scale) = (level + 1, 0.5 * scale);
     }

@@ -8,23 +8,23 @@ use crate::image::{try_collect, try_vec};
 use crate::job::Job;
 use glam::DVec2;
 
-/// Weakest gradient that is used, in encoded luma per pixel: an edge of about 9 of 255 grey levels.
-const WEAKEST: f32 = 0.01;
+/// Weakest gradient that is used, in encoded luma per pixel: an edge of about 9 of 255 grey levels [bench vp].
+const MIN_GRADIENT: f32 = 0.01;
 
 /// Half-angle within which a pixel joins a region, π / 8 [convention: LSD].
 const TOLERANCE: f64 = std::f64::consts::FRAC_PI_8;
 
-/// Length in pixels at each end of a region that the fit leaves out.
-const END: f64 = 2.0;
+/// Length in pixels at each end of a region that the fit leaves out [origin not recorded].
+const TRIM: f64 = 2.0;
 
-/// Minimum share of a region's bounding rectangle that its pixels cover; regions of noise have gaps.
-const DENSITY: f64 = 0.6;
+/// Minimum share of a region's bounding rectangle that its pixels cover; regions of noise have gaps [bench lines].
+const MIN_DENSITY: f64 = 0.6;
 
 /// The straight edges of a photo: statistically significant regions of similar gradient direction.
 pub fn detect(gradients: &Gradients, job: Job) -> Result<Vec<Segment>> {
     let Gradients { width, height, magnitude, .. } = gradients;
     let seeds = by_falling_magnitude(magnitude)?;
-    let used = try_collect(magnitude.iter().map(|m| !(*m >= WEAKEST)))?;
+    let used = try_collect(magnitude.iter().map(|m| !(*m >= MIN_GRADIENT)))?;
     let mut grower = Grower { gradients, used, region: Vec::new() };
     let log_tests = 2.5 * ((width * height) as f64).ln();
     let mut segments = Vec::new();
@@ -50,17 +50,17 @@ pub fn detect(gradients: &Gradients, job: Job) -> Result<Vec<Segment>> {
 /// two pixels of an edge share one: within a class the order is that of the rows.
 fn by_falling_magnitude(magnitude: &[f32]) -> Result<Vec<u32>> {
     const CLASSES: usize = 1 << 16;
-    let top = magnitude.iter().fold(WEAKEST, |m, &v| m.max(v));
+    let top = magnitude.iter().fold(MIN_GRADIENT, |m, &v| m.max(v));
     let class = |m: f32| CLASSES - 1 - ((m / top * CLASSES as f32) as usize).min(CLASSES - 1);
     let mut start = vec![0usize; CLASSES + 1];
-    for &m in magnitude.iter().filter(|&&m| m >= WEAKEST) {
+    for &m in magnitude.iter().filter(|&&m| m >= MIN_GRADIENT) {
         start[class(m) + 1] += 1;
     }
     for c in 0..CLASSES {
         start[c + 1] += start[c];
     }
     let mut order = try_vec(start[CLASSES], 0u32)?;
-    for (i, &m) in magnitude.iter().enumerate().filter(|(_, m)| **m >= WEAKEST) {
+    for (i, &m) in magnitude.iter().enumerate().filter(|(_, m)| **m >= MIN_GRADIENT) {
         let slot = &mut start[class(m)];
         order[*slot] = i as u32;
         *slot += 1;
@@ -121,14 +121,14 @@ impl Grower<'_> {
     fn straight_region(&mut self, seed: u32) -> Option<Found> {
         self.grow(seed, TOLERANCE);
         let mut found = self.fit()?;
-        if found.density() < DENSITY {
+        if found.density() < MIN_DENSITY {
             self.release();
             self.grow(seed, TOLERANCE / 2.0);
             found = self.fit()?;
         }
         let origin = Pixel::new(self.gradients.width, seed).centre();
         let mut radius = found.segment.a.distance(origin).max(found.segment.b.distance(origin));
-        while found.density() < DENSITY {
+        while found.density() < MIN_DENSITY {
             radius *= 0.75;
             let Self { used, region, .. } = self;
             region.retain(|p| {
@@ -151,7 +151,7 @@ impl Grower<'_> {
     /// ring and compares each ring with the mean before it, so that the result does not depend on the order of pixels.
     fn grow(&mut self, seed: u32, tolerance: f64) {
         let Gradients { width, derivative, magnitude, .. } = self.gradients;
-        let least = tolerance.cos() as f32;
+        let min_cos = tolerance.cos() as f32;
         self.region.clear();
         self.region.push(Pixel::new(*width, seed));
         self.used[seed as usize] = true;
@@ -162,7 +162,7 @@ impl Grower<'_> {
                 let i = p.index as usize;
                 sum = [sum[0] + derivative[i][0] / magnitude[i], sum[1] + derivative[i][1] / magnitude[i]];
             }
-            let least_along = least * (sum[0] * sum[0] + sum[1] * sum[1]).sqrt();
+            let min_along = min_cos * (sum[0] * sum[0] + sum[1] * sum[1]).sqrt();
             for next in ring.clone() {
                 let Pixel { index, column, row } = self.region[next];
                 for (row, first) in
@@ -173,7 +173,7 @@ impl Grower<'_> {
                             continue;
                         }
                         let d = derivative[n];
-                        if d[0] * sum[0] + d[1] * sum[1] >= least_along * magnitude[n] {
+                        if d[0] * sum[0] + d[1] * sum[1] >= min_along * magnitude[n] {
                             self.used[n] = true;
                             self.region.push(Pixel { index: n as u32, column, row });
                         }
@@ -193,7 +193,7 @@ impl Grower<'_> {
         }
         let (centre, direction) = self.axis(|_| true)?;
         let (low, high) = self.extent(centre, direction);
-        let trim = END.min((high.x - low.x) / 4.0);
+        let trim = TRIM.min((high.x - low.x) / 4.0);
         let inner = |p: DVec2| {
             let along = direction.dot(p - centre);
             along >= low.x + trim && along <= high.x - trim

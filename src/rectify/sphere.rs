@@ -9,34 +9,35 @@ use crate::geometry::{Segment, linear::symmetric_eigen};
 use glam::{DMat3, DVec2, DVec3};
 
 /// Largest distance of a segment's endpoints from the line to its vanishing point, in units of half the image's longer
-/// side: about 2 pixels of 640.
+/// side: about 2 pixels of 640 [origin not recorded].
 const ENDPOINT_LIMIT: f64 = 0.006;
 
 /// Largest sine of the angle between a segment and the line to its vanishing point: a second limit, which matters for
-/// short segments.
+/// short segments [origin not recorded].
 const SINE_LIMIT: f64 = 0.06;
 
-/// Squared distance between a point and the midpoint of a line below which they coincide up to rounding.
+/// Squared distance between a point and the midpoint of a line below which they coincide up to rounding [rounding].
 const COINCIDENT: f64 = 1e-18;
 
-/// Prior of the endpoint noise, in the same unit, and the number of segments that the prior counts as.
+/// Prior of the endpoint noise, in the same unit, and the number of segments that the prior counts as [origin not
+/// recorded].
 const PRIOR_NOISE: f64 = 0.001;
 const PRIOR_COUNT: f64 = 2.0;
 
 /// Segments found per independent observation: both sides of a bar, the pieces of one edge and rows of equal objects
-/// share their errors. Calibrated on photos with exactly known cameras, like the next constants.
+/// share their errors. Calibrated on photos with exactly known cameras, like the next constants [bench vp].
 const PER_OBSERVATION: f64 = 5.0;
 
 /// Iterations that estimate the noise and the share of it visible within the limit from each other; the minimum of
 /// that share; and the minimum slope of the biweight. Below these minima noise fills the whole limit and cannot be
 /// estimated. `MIN_SLOPE` is the smallest value that loses no vanishing point of the development sets, in which short
-/// lines are more precise than their residuals suggest.
+/// lines are more precise than their residuals suggest [bench vp].
 const NOISE_ROUNDS: usize = 5;
-const LEAST_SHOWN: f64 = 0.25;
-const LEAST_SLOPE: f64 = 0.3;
+const MIN_SHOWN: f64 = 0.25;
+const MIN_SLOPE: f64 = 0.3;
 
 /// Standard deviation in radians of the directions of the room's own edges, which no number of lines reduces: errors
-/// of lens, stitching and construction.
+/// of lens, stitching and construction [bench vp].
 pub const STRAIGHTNESS: f64 = 0.0035;
 
 /// Image coordinates relative to the principal point, in units of half the longer image side.
@@ -198,13 +199,13 @@ struct Row {
     /// Derivative of the line's sine with respect to the direction.
     gradient: DVec3,
     /// Weight of the line at zero residual, and after the biweight.
-    say: f64,
+    base_weight: f64,
     weight: f64,
     /// Variance of the sine under unit endpoint noise: of the segment's direction, plus that of its midpoint as seen
     /// from the point, which matters for segments near their vanishing point.
     variance: f64,
     /// Variance of the normalised residual (limit 1) under that noise.
-    spread: f64,
+    residual_variance: f64,
     sine: f64,
 }
 
@@ -219,14 +220,14 @@ fn row(evidence: &Evidence, direction: DVec3, focal: f64) -> Option<Row> {
     let nearness = (half * p.z / distance).powi(2);
     // Endpoint noise alone would justify the stiffness as weight. The exponent of the length is larger because long
     // segments are rarely false detections.
-    let say = evidence.weight.sqrt() * evidence.stiffness / (1.0 + nearness);
+    let base_weight = evidence.weight.sqrt() * evidence.stiffness / (1.0 + nearness);
     let variance = (1.0 + nearness) / (half * half);
     Some(Row {
         gradient: DVec3::new(l.x, l.y, l.z / focal) / distance,
-        say,
-        weight: bisquare * say,
+        base_weight,
+        weight: bisquare * base_weight,
         variance,
-        spread: evidence.stiffness * variance,
+        residual_variance: evidence.stiffness * variance,
         sine: evidence.line.sine(p),
     })
 }
@@ -258,8 +259,9 @@ fn endpoint_noise(rows: &[Row]) -> f64 {
     // Correct for the residuals that the limit truncates.
     let mut noise = seen;
     for _ in 0..NOISE_ROUNDS {
-        let shown = rows.iter().map(|row| Biweight::of_noise(noise * row.spread).square).sum::<f64>() / count;
-        noise = seen / shown.max(LEAST_SHOWN);
+        let shown =
+            rows.iter().map(|row| Biweight::of_noise(noise * row.residual_variance).square).sum::<f64>() / count;
+        noise = seen / shown.max(MIN_SHOWN);
     }
     noise
 }
@@ -276,9 +278,10 @@ fn covariance(lines: &[Evidence], direction: DVec3, focal: f64) -> Option<Covari
     }
     let noise = endpoint_noise(&rows);
     let (mut n, mut m) = ([0.0; 3], [0.0; 3]);
-    for Row { gradient, say, variance, spread, .. } in &rows {
-        let expected = Biweight::of_noise(noise * spread);
-        let (slope, square) = (say * expected.slope.max(LEAST_SLOPE), say * say * variance * expected.influence);
+    for Row { gradient, base_weight, variance, residual_variance, .. } in &rows {
+        let expected = Biweight::of_noise(noise * residual_variance);
+        let (slope, square) =
+            (base_weight * expected.slope.max(MIN_SLOPE), base_weight * base_weight * variance * expected.influence);
         let (u, v) = (gradient.dot(e1), gradient.dot(e2));
         for (i, product) in [u * u, u * v, v * v].into_iter().enumerate() {
             n[i] += slope * product;

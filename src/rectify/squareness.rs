@@ -38,7 +38,7 @@ impl Pair {
 
     /// The pair's constraint on the focal length if its angle is a right angle: the information, and the information
     /// times the required change of the logarithm of the focal length.
-    fn of_focal(&self) -> [f64; 2] {
+    fn focal_constraint(&self) -> [f64; 2] {
         let weight = 1.0 / self.variance.max(1e-24);
         [weight * self.slope * self.slope, -weight * self.cosine * self.slope]
     }
@@ -61,8 +61,9 @@ pub fn measure(directions: &[Option<Refined>; 3], focal: f64, is_given: bool, wi
         let [growth, variance] = if is_given {
             [0.0, 0.0]
         } else {
-            let others = pairs.iter().flatten().filter(|p| p.beside != pair.beside).map(Pair::of_focal);
-            let [information, pull] = others.fold(usual, |sum, said| [sum[0] + said[0], sum[1] + said[1]]);
+            let others = pairs.iter().flatten().filter(|p| p.beside != pair.beside).map(Pair::focal_constraint);
+            let [information, pull] =
+                others.fold(usual, |sum, constraint| [sum[0] + constraint[0], sum[1] + constraint[1]]);
             [pull / information, 1.0 / information]
         };
         let cosine = (pair.cosine + pair.slope * growth).clamp(-1.0, 1.0);

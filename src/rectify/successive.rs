@@ -87,9 +87,9 @@ fn regress(start: DVec3, origin: DVec2, loss: impl Fn(DVec3) -> f64) -> DVec3 {
     let mut point = start;
     let mut step = 0.2;
     while step > 1e-9 {
-        let reach = (1.0 - alpha).max(1e-9) * step;
+        let alpha_step = (1.0 - alpha).max(1e-9) * step;
         let turn = step * 0.3;
-        let tries = [(reach, 0.0), (-reach, 0.0), (0.0, turn), (0.0, -turn)];
+        let tries = [(alpha_step, 0.0), (-alpha_step, 0.0), (0.0, turn), (0.0, -turn)];
         let next = tries
             .iter()
             .map(|(da, dt)| ((alpha + da).clamp(0.0, 1.0), theta + dt))

@@ -6,17 +6,17 @@
 //! out in between.
 
 use super::footprint::{Footprints, RUN};
-use super::four::MOST_READ;
+use super::lanes::MAX_READ;
 use crate::image::Image;
 
 /// Taps along each side.
 pub const TAPS: usize = 4;
 
 /// Longest side of a rectangle that the taps cover at any sub-pixel position.
-pub const LONGEST_SIDE: f32 = 3.0;
+pub const MAX_SIDE: f32 = 3.0;
 
 /// Range of the squared major axis of a pixel's footprint, in source pixels, over which the cubic filter fades out:
-/// full weight up to `SHARP`, no weight from `SOFT` on.
+/// full weight up to `SHARP`, no weight from `SOFT` on [origin not recorded].
 const SHARP: f32 = 1.0;
 const SOFT: f32 = 1.5;
 
@@ -130,6 +130,7 @@ fn integer(whole: f64) -> i32 {
 /// As [`integer`], in single precision; the value is clamped to ±4 million.
 #[inline(always)]
 fn integer_of_single(whole: f32) -> i32 {
+    /// Adding it moves a whole number into the low bits of the mantissa [rounding].
     const SHIFT: f32 = 12_582_912.0;
     (whole.max(-4e6).min(4e6) + SHIFT).to_bits() as i32 - SHIFT.to_bits() as i32
 }
@@ -150,7 +151,7 @@ pub fn weigh(footprints: &Footprints, part: &Part, source: &Image, taps: &mut Ta
         let (column, line) = (at_x.floor(), at_y.floor());
         (x[i], y[i]) = ((at_x - column) as f32, (at_y - line) as f32);
         (left[i], taps.line[i]) = (integer(column) - 1, integer(line) - 1);
-        (width[i], height[i]) = ((w * share[0]).min(LONGEST_SIDE), (h * share[1]).min(LONGEST_SIDE));
+        (width[i], height[i]) = ((w * share[0]).min(MAX_SIDE), (h * share[1]).min(MAX_SIDE));
         sharp[i] = can_be_sharp * ((SOFT - footprints.longest[i]) / (SOFT - SHARP)).max(0.0).min(1.0);
     }
     let any = |values: &[f32; RUN]| values.iter().fold(0, |any, v| any | v.to_bits()) != 0;
@@ -195,12 +196,12 @@ pub fn weigh(footprints: &Footprints, part: &Part, source: &Image, taps: &mut Ta
     }
     // First columns grow or shrink monotonically from row to row, so checking the first row and the last suffices. A
     // load of three channels reads past the fourth pixel; in the last row that must stay inside the image.
-    let most = [source.width, source.height].map(|side| side as i32 - TAPS as i32);
-    let beyond = if channels == 3 { MOST_READ.div_ceil(3) - TAPS } else { 0 } as i32;
+    let last_start = [source.width, source.height].map(|side| side as i32 - TAPS as i32);
+    let beyond = if channels == 3 { MAX_READ.div_ceil(3) - TAPS } else { 0 } as i32;
     for i in 0..RUN {
         let (a, b, line) = (taps.column[0][i], taps.column[TAPS - 1][i], taps.line[i]);
-        let last = most[0] - if line == most[1] { beyond } else { 0 };
-        let is_inside = (a.min(b) >= 0) & (a.max(b) <= last) & (line >= 0) & (line <= most[1]);
+        let last = last_start[0] - if line == last_start[1] { beyond } else { 0 };
+        let is_inside = (a.min(b) >= 0) & (a.max(b) <= last) & (line >= 0) & (line <= last_start[1]);
         taps.is_inside[i] = footprints.is_seen[i] & is_inside;
     }
 }

@@ -68,7 +68,7 @@ fn uncertainty(plane: &Plane, view: &View, corners: [DVec2; 4], pixel_size: f64,
     let camera = &view.perspective;
     let usual = usual_focal(width);
     let points = &view.vanishing_points;
-    let nominal = camera::again(camera, points, usual);
+    let nominal = camera::reestimate(camera, points, usual);
     let flat = |found: &Perspective| {
         let turn = found.axes * nominal.axes.transpose();
         rectified(&plane.seen_by(turn, camera.focal * found.focal / nominal.focal), corners)
@@ -83,10 +83,10 @@ fn uncertainty(plane: &Plane, view: &View, corners: [DVec2; 4], pixel_size: f64,
             let mut points = points.clone();
             let ray = camera::direction(point.point, camera.principal, camera.focal);
             points[k].point = (camera.intrinsics() * (ray + step * SMALL)).normalize();
-            moved.push(flat(&camera::again(camera, &points, usual)));
+            moved.push(flat(&camera::reestimate(camera, &points, usual)));
         }
     }
-    moved.push(flat(&camera::again(camera, points, usual * (USUAL_SPREAD * SMALL).exp())));
+    moved.push(flat(&camera::reestimate(camera, points, usual * (USUAL_SPREAD * SMALL).exp())));
     // A single point leaves the rotation about it free: give that rotation the uncertainty of an axis fixed by
     // convention.
     if points.iter().filter(|p| p.support > 0).count() < 2 {
@@ -109,7 +109,7 @@ fn uncertainty(plane: &Plane, view: &View, corners: [DVec2; 4], pixel_size: f64,
     Uncertainty { aspect_confidence: 1.0 / (1.0 + aspect_variance / 0.01), corner_error: squares.map(f64::sqrt) }
 }
 
-/// Step of the finite differences as a share of a standard deviation.
+/// Step of the finite differences as a share of a standard deviation [rounding].
 const SMALL: f64 = 1e-3;
 
 /// Vectors whose outer products sum to the covariance.

@@ -9,13 +9,13 @@ use crate::job::Job;
 use glam::{DMat3, DVec2, DVec3};
 
 /// Maximum number of lines used to search and refine; further (shorter) lines are only assigned.
-const MOST_LINES: usize = 2500;
+const MAX_LINES: usize = 2500;
 
-/// Directions with a larger error, in radians, are rejected.
-const WORST_ERROR: f64 = 0.2;
+/// Directions with a larger error, in radians, are rejected [origin not recorded].
+const MAX_ERROR: f64 = 0.2;
 
 /// Prior standard deviations: of the angle between two room directions about a right angle, in radians, and of the
-/// logarithm of the focal length during their refinement.
+/// logarithm of the focal length during their refinement [bench vp].
 const SQUARENESS: f64 = 0.04;
 const FOCAL_SPREAD: f64 = 0.05;
 
@@ -56,7 +56,7 @@ pub fn from_segments(
     let frame = Frame::new(width, height, params.principal(width, height));
     let mut evidence = frame.evidence(segments);
     evidence.sort_by(|a, b| b.1.weight.total_cmp(&a.1.weight));
-    let lines: Vec<Evidence> = evidence.iter().take(MOST_LINES).map(|(_, e)| *e).collect();
+    let lines: Vec<Evidence> = evidence.iter().take(MAX_LINES).map(|(_, e)| *e).collect();
 
     let given = params.focal.map(|f| f / frame.scale);
     let mut focal = given.unwrap_or(manhattan::USUAL_FOCAL);
@@ -74,7 +74,7 @@ pub fn from_segments(
                 let rest: Vec<Evidence> =
                     lines.iter().filter(|e| points.iter().all(|&p| e.agreement(p) == 0.0)).copied().collect();
                 let Some(start) = manhattan::strongest(&rest, focal, params.seed, job.part(0.8, 0.9))? else { break };
-                let Some(point) = refine(&rest, start, focal).filter(|r| r.error() < WORST_ERROR) else { break };
+                let Some(point) = refine(&rest, start, focal).filter(|r| r.error() < MAX_ERROR) else { break };
                 found.push(Found { expected: point, free: point });
             }
         }
@@ -83,7 +83,7 @@ pub fn from_segments(
             found.extend(points.iter().map(|&p| {
                 let direction = unproject(frame.from_pixels(p), focal);
                 let covariance = refine(&lines, direction, focal)
-                    .map_or_else(|| round_covariance(direction, WORST_ERROR), |r| r.covariance);
+                    .map_or_else(|| round_covariance(direction, MAX_ERROR), |r| r.covariance);
                 let point = Refined { direction, covariance };
                 Found { expected: point, free: point }
             }));
@@ -108,8 +108,8 @@ pub fn from_segments(
     order.truncate(count);
     if order.is_empty() {
         return Err(Error::degenerate(format!(
-            "no lines found that meet in a vanishing point ({} usable segments): use a photo with straight edges of the \
-             room in focus",
+            "no lines found that meet in a vanishing point ({} usable segments): use a photo that shows straight edges \
+             of the room in focus",
             evidence.len()
         )));
     }
@@ -159,7 +159,7 @@ fn refine_freely(lines: &[Evidence], axes: &[DVec3], focal: f64) -> Vec<Found> {
     for found in squared {
         let r = &found.expected;
         let apart = kept.iter().all(|k| k.expected.direction.dot(r.direction).abs() < 0.9);
-        if apart && r.error() < WORST_ERROR {
+        if apart && r.error() < MAX_ERROR {
             kept.push(found);
         }
     }

@@ -59,7 +59,7 @@ fn warps_are_means_over_what_pixels_cover() {
     };
     // Rotations, tilts, and scales small enough to need pyramid levels and parts. The last number is the minimum peak
     // signal-to-noise ratio in dB; in the first case the reference's own discretisation limits it.
-    for (turn, scale, tilt, least) in [
+    for (turn, scale, tilt, min_decibels) in [
         (0.0, 1.0, DVec2::ZERO, 50.0),
         (0.4, 1.0, DVec2::ZERO, 38.0),
         (0.7, 2.2, DVec2::new(0.004, 0.006), 39.0),
@@ -81,7 +81,7 @@ fn warps_are_means_over_what_pixels_cover() {
         }
         let decibels = -10.0 * (squares / count + 1e-12).log10();
         println!("turned by {turn}, {scale} times, {tilt}: {decibels:.1} dB of {count} pixels");
-        assert!(count > 500.0 && decibels > least, "turned by {turn}, {scale} times, {tilt}: {decibels}");
+        assert!(count > 500.0 && decibels > min_decibels, "turned by {turn}, {scale} times, {tilt}: {decibels}");
     }
 }
 
