@@ -47,7 +47,7 @@ impl Pool {
 
 /// Starts a thread.
 pub fn spawn(name: &str, work: impl FnOnce() + Send + 'static) -> io::Result<JoinHandle<()>> {
-    if !reserve::has_room(STARTING) {
+    if !reserve::has_room(THREAD_OVERHEAD) {
         return Err(io::ErrorKind::OutOfMemory.into());
     }
     thread::Builder::new().name(name.into()).stack_size(STACK).spawn(work)
@@ -55,7 +55,7 @@ pub fn spawn(name: &str, work: impl FnOnce() + Send + 'static) -> io::Result<Joi
 
 /// Bytes of a thread's stack, and an upper bound of the other memory that starting a thread takes.
 const STACK: usize = 4 << 20;
-const STARTING: usize = 256 << 10;
+const THREAD_OVERHEAD: usize = 256 << 10;
 
 impl Drop for Pool {
     fn drop(&mut self) {
@@ -122,7 +122,7 @@ pub fn for_rows_of_three<T: Send>(
 /// that a reduction over them is reproducible to the bit.
 pub fn map<T: Send>(count: usize, job: Job, work: impl Fn(usize) -> T + Sync) -> Result<Vec<T>> {
     let done = AtomicUsize::new(0);
-    let mut places = room(count)?;
+    let mut places = list_with_capacity(count)?;
     places.resize_with(count, || None);
     places.par_iter_mut().enumerate().try_for_each(|(i, place)| {
         job.check()?;
@@ -130,13 +130,13 @@ pub fn map<T: Send>(count: usize, job: Job, work: impl Fn(usize) -> T + Sync) ->
         job.report((done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / count as f64);
         Ok(())
     })?;
-    let mut values = room(count)?;
+    let mut values = list_with_capacity(count)?;
     values.extend(places.into_iter().flatten());
     Ok(values)
 }
 
 /// An empty list with the given capacity, or an error.
-fn room<T>(count: usize) -> Result<Vec<T>> {
+fn list_with_capacity<T>(count: usize) -> Result<Vec<T>> {
     let none = || Error::new(ErrorKind::OutOfMemory, format!("could not allocate {count} results"));
     reserve::list(count).ok_or_else(none)
 }
@@ -147,12 +147,12 @@ pub fn both<A: Send, B: Send>(a: impl FnOnce() -> A + Send, b: impl FnOnce() -> 
 }
 
 /// Elements sorted between two checks for cancellation: a few milliseconds of work.
-const SORTED: usize = 1 << 16;
+const SERIAL_SORT: usize = 1 << 16;
 
 /// Sorts in parallel, checking for cancellation; the order of a cancelled sort is unspecified.
 pub fn sort<T: Ord + Send>(data: &mut [T], job: Job) -> Result<()> {
     job.check()?;
-    if data.len() <= SORTED {
+    if data.len() <= SERIAL_SORT {
         data.sort_unstable();
         return Ok(());
     }
@@ -192,7 +192,7 @@ mod tests {
     #[test]
     fn sorting_is_that_of_the_standard_library() {
         let monitor = Monitor::default();
-        let mut numbers: Vec<u64> = (0..3 * SORTED as u64).map(|i| crate::rng::mix(i) % 100_000).collect();
+        let mut numbers: Vec<u64> = (0..3 * SERIAL_SORT as u64).map(|i| crate::rng::mix(i) % 100_000).collect();
         let mut sorted = numbers.clone();
         sorted.sort();
         Pool::new(2).unwrap().run(|| sort(&mut numbers, monitor.job())).unwrap();

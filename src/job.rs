@@ -78,7 +78,7 @@ impl<'a> Job<'a> {
         } else if reserve::uses() != self.monitor.uses {
             Err(Error::new(
                 ErrorKind::OutOfMemory,
-                "for a moment at least the process had no memory left, not even for small things",
+                "the process ran out of memory, if only for a moment: even a small allocation failed",
             ))
         } else {
             Ok(())

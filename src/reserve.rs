@@ -20,7 +20,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 /// Size of the reserve in bytes, and the largest allocation it serves.
 const BYTES: usize = 8 << 20;
-const SMALL: usize = 256 << 10;
+const MAX_ALLOCATION: usize = 256 << 10;
 /// Allocation granularity.
 const BLOCK: usize = 64;
 const BLOCKS: usize = BYTES / BLOCK;
@@ -53,12 +53,12 @@ pub fn make_room<T>(items: &mut Vec<T>, more: usize) -> bool {
     if items.capacity() - items.len() >= more {
         return true;
     }
-    let most = items.len().saturating_add(more).max(2 * items.capacity()).max(4);
+    let capacity = items.len().saturating_add(more).max(2 * items.capacity()).max(4);
     // The system may move larger lists in place, which is faster.
-    if most.saturating_mul(size_of::<T>()) > SMALL {
+    if capacity.saturating_mul(size_of::<T>()) > MAX_ALLOCATION {
         return items.try_reserve(more).is_ok();
     }
-    let Some(mut grown) = list(most) else { return false };
+    let Some(mut grown) = list(capacity) else { return false };
     grown.append(items);
     *items = grown;
     true
@@ -72,7 +72,6 @@ pub fn has_room(bytes: usize) -> bool {
 }
 
 /// Allocates memory from the system, to be freed by the program's allocator; null on failure.
-///
 ///
 /// # Safety
 /// The layout must have a non-zero size.
@@ -143,10 +142,10 @@ unsafe impl GlobalAlloc for Allocator {
 }
 
 #[repr(C, align(4096))]
-struct Room([u8; BYTES]);
+struct Storage([u8; BYTES]);
 
 struct Reserve {
-    room: UnsafeCell<Room>,
+    storage: UnsafeCell<Storage>,
     /// Number of blocks of the allocation that begins at each block; 0 if none does.
     lengths: UnsafeCell<[u16; BLOCKS]>,
     /// Spin lock that guards `lengths`.
@@ -154,14 +153,14 @@ struct Reserve {
     uses: AtomicU64,
 }
 
-// SAFETY: `lengths` is accessed only in `with_lengths`, by one thread at a time; `room` only by the owners of
+// SAFETY: `lengths` is accessed only in `with_lengths`, by one thread at a time; `storage` only by the owners of
 // allocations.
 unsafe impl Sync for Reserve {}
 
 impl Reserve {
     const fn new() -> Self {
         Self {
-            room: UnsafeCell::new(Room([0; BYTES])),
+            storage: UnsafeCell::new(Storage([0; BYTES])),
             lengths: UnsafeCell::new([0; BLOCKS]),
             busy: AtomicBool::new(false),
             uses: AtomicU64::new(0),
@@ -170,7 +169,7 @@ impl Reserve {
 
     /// First-fit allocation from the reserve; null if the request is too large or no space is free.
     fn take(&self, layout: Layout) -> *mut u8 {
-        if layout.size() > SMALL || layout.align() > PAGE {
+        if layout.size() > MAX_ALLOCATION || layout.align() > PAGE {
             return null_mut();
         }
         self.uses.fetch_add(1, Ordering::Relaxed);
@@ -193,12 +192,12 @@ impl Reserve {
             })
         });
         // SAFETY: the block lies inside the reserve.
-        first.map_or(null_mut(), |first| unsafe { self.room.get().cast::<u8>().add(first * BLOCK) })
+        first.map_or(null_mut(), |first| unsafe { self.storage.get().cast::<u8>().add(first * BLOCK) })
     }
 
     /// The first block of an allocation, if it belongs to the reserve.
     fn block_of(&self, start: *mut u8) -> Option<usize> {
-        let offset = start.addr().wrapping_sub(self.room.get().addr());
+        let offset = start.addr().wrapping_sub(self.storage.get().addr());
         (offset < BYTES).then_some(offset / BLOCK)
     }
 
@@ -240,7 +239,7 @@ mod tests {
         // Under an interpreter (tests/miri.sh) each round takes a thousand times as long.
         let rounds = if cfg!(miri) { 600 } else { 20_000 };
         for _ in 0..rounds {
-            let size = 1 + (rng.next_f32().powi(4) * SMALL as f32) as usize;
+            let size = 1 + (rng.next_f32().powi(4) * MAX_ALLOCATION as f32) as usize;
             let align = 1 << (rng.next_f32() * 12.99) as u32;
             let start = RESERVE.take(layout(size, align));
             if start.is_null() {
@@ -260,7 +259,7 @@ mod tests {
         assert!(refused > 0 && refused < rounds / 2, "{refused} of {rounds}");
         // No block leaks: after everything is freed, all of the reserve can be allocated again.
         held.into_iter().for_each(|(_, start)| give_back(&RESERVE, start));
-        let all: Vec<_> = (0..BYTES / SMALL).map(|_| RESERVE.take(layout(SMALL, PAGE))).collect();
+        let all: Vec<_> = (0..BYTES / MAX_ALLOCATION).map(|_| RESERVE.take(layout(MAX_ALLOCATION, PAGE))).collect();
         assert!(all.iter().all(|start| !start.is_null()));
         assert!(RESERVE.take(layout(1, 1)).is_null());
     }
@@ -271,9 +270,9 @@ mod tests {
         assert!(items.capacity() >= 3 && items.is_empty());
         for item in 0..200_000 {
             assert!(make_room(&mut items, 1));
-            let room = items.as_ptr();
+            let storage = items.as_ptr();
             items.push(item);
-            assert_eq!(items.as_ptr(), room);
+            assert_eq!(items.as_ptr(), storage);
         }
         assert!(items.iter().zip(0..).all(|(item, i)| *item == i));
         assert!(list::<u32>(0).is_some() && list::<()>(9).is_some() && has_room(1 << 16));
@@ -286,9 +285,9 @@ mod tests {
     #[test]
     fn what_is_not_small_is_refused_and_no_use() {
         static RESERVE: Reserve = Reserve::new();
-        assert!(RESERVE.take(layout(SMALL + 1, 1)).is_null() && RESERVE.take(layout(1, 2 * PAGE)).is_null());
+        assert!(RESERVE.take(layout(MAX_ALLOCATION + 1, 1)).is_null() && RESERVE.take(layout(1, 2 * PAGE)).is_null());
         assert_eq!(RESERVE.uses.load(Ordering::Relaxed), 0);
-        assert!(!RESERVE.take(layout(SMALL, PAGE)).is_null());
+        assert!(!RESERVE.take(layout(MAX_ALLOCATION, PAGE)).is_null());
         assert_eq!(RESERVE.uses.load(Ordering::Relaxed), 1);
         assert_eq!(RESERVE.block_of((&raw const RESERVE).cast_mut().cast::<u8>().wrapping_sub(1)), None);
     }

@@ -22,7 +22,7 @@ impl Level {
     pub fn widest() -> Self {
         let level = Self::of_processor();
         #[cfg(test)]
-        let level = level.min(forced::most());
+        let level = level.min(forced::max_level());
         level
     }
 
@@ -93,11 +93,11 @@ pub mod forced {
     #[cfg(not(target_arch = "x86_64"))]
     const ALL: [Level; 1] = [Level::Baseline];
 
-    static MOST: AtomicU8 = AtomicU8::new(ALL.len() as u8 - 1);
+    static MAX_LEVEL: AtomicU8 = AtomicU8::new(ALL.len() as u8 - 1);
     static TURN: Mutex<()> = Mutex::new(());
 
-    pub(super) fn most() -> Level {
-        ALL[usize::from(MOST.load(Ordering::Relaxed))]
+    pub(super) fn max_level() -> Level {
+        ALL[usize::from(MAX_LEVEL.load(Ordering::Relaxed))]
     }
 
     /// The levels that this processor supports, narrowest first.
@@ -111,12 +111,12 @@ pub mod forced {
         struct Widest;
         impl Drop for Widest {
             fn drop(&mut self) {
-                MOST.store(ALL.len() as u8 - 1, Ordering::Relaxed);
+                MAX_LEVEL.store(ALL.len() as u8 - 1, Ordering::Relaxed);
             }
         }
         let _turn = TURN.lock().unwrap_or_else(|e| e.into_inner());
         let _widest = Widest;
-        MOST.store(level as u8, Ordering::Relaxed);
+        MAX_LEVEL.store(level as u8, Ordering::Relaxed);
         work()
     }
 }

@@ -7,12 +7,12 @@ use crate::job::Job;
 use std::borrow::Cow;
 
 /// Values above this count as infinite, because their squares would overflow [rounding].
-const LARGEST: f32 = 1e18;
+const MAX_VALUE: f32 = 1e18;
 
 /// Returns the photo with each invalid pixel replaced by the nearest valid one in its row or column (black if there is
 /// none), and the number of replaced pixels. Converts to RGB if there are any.
 pub fn clean<'a>(photo: &'a Image, job: Job) -> Result<(Cow<'a, Image>, usize)> {
-    let is_good = |p: &[f32]| p[..p.len().min(3)].iter().all(|v| (0.0..=LARGEST).contains(v));
+    let is_good = |p: &[f32]| p[..p.len().min(3)].iter().all(|v| (0.0..=MAX_VALUE).contains(v));
     let (width, channels) = (photo.width, if photo.channels < 3 { 1 } else { 3 });
     let bad_in_rows = exec::map(photo.height, job, |y| {
         let pixels = photo.row(y).chunks_exact(photo.channels);

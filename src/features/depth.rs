@@ -17,10 +17,10 @@ pub struct Surface {
     pub confidence: Image,
 }
 
-/// Confidence in the neutral prior.
+/// Confidence in the neutral prior [convention].
 const NEUTRAL_CONFIDENCE: f32 = 0.05;
-/// Depths are clamped to within this factor of the median; larger ratios are not meaningful.
-const LARGEST_RATIO: f32 = 1e4;
+/// Depths are clamped to within this factor of the median; larger ratios are not meaningful [origin not recorded].
+const MAX_RATIO: f32 = 1e4;
 /// Maximum number of depths from which quantiles are estimated.
 const QUANTILE_SAMPLES: usize = 1 << 16;
 
@@ -47,7 +47,7 @@ pub fn from_map(map: &DepthMap, frustum: &Frustum, radius: usize, job: Job) -> R
     let mut known = sample_known(depth, inverse_at, job.part(0.0, 0.15))?;
     if known.is_empty() {
         return Err(Error::degenerate(format!(
-            "depth has no positive finite value in its {width} x {height} pixels; leave it out to use the built-in layout"
+            "depth has no positive finite value in its {width} x {height} pixels; omit it to use the built-in layout"
         )));
     }
     let mut quantile = |q: f64| {
@@ -55,7 +55,7 @@ pub fn from_map(map: &DepthMap, frustum: &Frustum, radius: usize, job: Job) -> R
         *known.select_nth_unstable_by(k, f32::total_cmp).1
     };
     let (median, nearest) = (quantile(0.5), quantile(0.98));
-    let (low, high) = (median / LARGEST_RATIO, median.min(f32::MAX / LARGEST_RATIO) * LARGEST_RATIO);
+    let (low, high) = (median / MAX_RATIO, median.min(f32::MAX / MAX_RATIO) * MAX_RATIO);
     let nearest = nearest.clamp(low, high);
     let (inverse, confidence) = exec::both(|| Image::new(width, height, 1), || Image::new(width, height, 1));
     let (mut inverse, mut confidence) = (inverse?, confidence?);

@@ -35,7 +35,8 @@ impl Frustum {
             return Ok(frustum);
         }
         Err(Error::argument(format!(
-            "room.perspective has focal length {} px and principal point {}; the focal length must be positive and both finite",
+            "room.perspective has focal length {} px and principal point {}; both must be finite and \
+             the focal length > 0",
             camera.focal, camera.principal
         )))
     }

@@ -143,7 +143,7 @@ impl Layout {
             })
             .take(MAX_SEGMENTS)
             .collect();
-        let reach = 0.15 * DVec2::new(width as f64, height as f64).length();
+        let falloff = 0.15 * DVec2::new(width as f64, height as f64).length();
 
         // Evaluate on a coarse grid, then interpolate bilinearly.
         let (columns, rows) = (width.div_ceil(16).min(64), height.div_ceil(16).min(64));
@@ -155,7 +155,7 @@ impl Layout {
                 let face = self.hit(ray(centre)).0;
                 let on_face = support.iter().filter(|(f, _)| *f == face);
                 let distance = on_face.map(|(_, p)| p.distance(centre)).fold(f64::INFINITY, f64::min);
-                *out = (self.trust * (0.3 + 0.7 * (-distance / reach).exp())) as f32;
+                *out = (self.trust * (0.3 + 0.7 * (-distance / falloff).exp())) as f32;
             }
         })?;
         let mut confidence = Image::new(width, height, 1)?;

@@ -9,8 +9,8 @@
 //!
 //! | channel | meaning | range |
 //! |---|---|---|
-//! | 0-2 | CIELAB of the photo (D65), 1 = display white | L* in `[0, 100]` for display-referred photos |
-//! | 3 | screen-space depth `d_s` of Eq. 1: 0 on the near plane, 1 on the far plane | `[-far/near, far / (far - near)]` |
+//! | 0-2 | CIELAB of the photo (D65, display white = 1) | L* in `[0, 100]` for display-referred photos |
+//! | 3 | screen-space depth `d_s` of Eq. 1: 0 on the near, 1 on the far plane | `[-far/near, far / (far - near)]` |
 //! | 4-6 | position by Eq. 1, in units of the frustum; in room axes if the room is known | finite |
 //! | 7-9 | unit normal towards the camera, in the same axes | `[-1, 1]` |
 //!

@@ -45,8 +45,8 @@ pub struct DepthNetwork {
 const OPEN_SIDE: usize = 384;
 const MULTIPLE: usize = 32;
 /// Maximum side of a network's input.
-const MOST_SIDE: usize = 4096;
-/// Confidence in depth estimated by a network; measured depth has confidence 1.
+const MAX_INPUT_SIDE: usize = 4096;
+/// Confidence in depth estimated by a network; measured depth has confidence 1 [convention].
 const CONFIDENCE: f32 = 0.5;
 
 impl DepthNetwork {
@@ -62,7 +62,7 @@ impl DepthNetwork {
         let shape = self.network.input_shape();
         let is = |size: Option<usize>, wanted: usize| size.is_none_or(|n| n == wanted);
         let &[batch, channels, rows, columns] = shape else { return Err(not_an_image(shape)) };
-        let is_small = |size: Option<usize>| size.is_none_or(|n| n <= MOST_SIDE);
+        let is_small = |size: Option<usize>| size.is_none_or(|n| n <= MAX_INPUT_SIDE);
         if !(is(batch, 1) && is(channels, 3) && is_small(rows) && is_small(columns)) {
             return Err(not_an_image(shape));
         }
@@ -121,12 +121,12 @@ impl DepthNetwork {
             )));
         }
         let mut map = resize_cubic(values, 1, [map_height, map_width], [height, width], job.part(0.95, 1.0))?;
-        let least = map.iter().copied().fold(f32::INFINITY, f32::min);
-        let most = map.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+        let lowest = map.iter().copied().fold(f32::INFINITY, f32::min);
+        let highest = map.iter().copied().fold(f32::NEG_INFINITY, f32::max);
         // A map that is constant up to rounding becomes a wall on the near plane.
-        let range = most - least;
-        let says_nothing = range <= 1e-5 * (most.abs() + least.abs());
-        let normalised = |v: f32| if !says_nothing { ((v - least) / range).clamp(0.0, 1.0) } else { 1.0 };
+        let range = highest - lowest;
+        let is_constant = range <= 1e-5 * (highest.abs() + lowest.abs());
+        let normalised = |v: f32| if !is_constant { ((v - lowest) / range).clamp(0.0, 1.0) } else { 1.0 };
         map.iter_mut().for_each(|v| *v = 1.0 / (1.0 / far + normalised(*v) * (1.0 / near - 1.0 / far)));
         Ok(Image { width, height, channels: 1, data: map })
     }

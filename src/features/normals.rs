@@ -16,7 +16,8 @@ use crate::simd::widest;
 
 /// Rows processed together: the window sums slide from one row to the next.
 const BAND: usize = 64;
-/// Factor on the cost of the centred window: a shifted window must fit better by this factor to be preferred.
+/// Factor on the cost of the centred window: a shifted window must fit better by this factor to be preferred [origin
+/// not recorded].
 const PREFER_CENTRED: f32 = 0.5;
 /// Offsets, in radii, of the centres of the windows that contain a pixel; ties go to the first.
 const SHIFTS: [[isize; 2]; 9] = [[0, 0], [-1, -1], [1, -1], [-1, 1], [1, 1], [0, -1], [-1, 0], [1, 0], [0, 1]];

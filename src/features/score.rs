@@ -13,24 +13,25 @@ use glam::{DMat3, DVec2, DVec3};
 
 /// Number of longest segments used; more do not change the layout.
 pub const MAX_SEGMENTS: usize = 160;
-/// Sample points along each segment, as shares of its length.
+/// Sample points along each segment, as shares of its length [origin not recorded].
 const POINTS: [f64; 3] = [0.15, 0.5, 0.85];
-/// Penalty, relative to its weight, of a segment on a face that cannot contain it.
+/// Penalty, relative to its weight, of a segment on a face that cannot contain it [origin not recorded].
 const IMPOSSIBLE: f64 = 1.5;
-/// Additional reward of a segment on a seam, relative to one on a face.
+/// Additional reward of a segment on a seam, relative to one on a face [origin not recorded].
 const SEAM: f64 = 2.0;
-/// Relative difference of the distances to two faces at which a segment no longer lies on their seam.
+/// Relative difference of the distances to two faces at which a segment no longer lies on their seam [origin not
+/// recorded].
 const SEAM_WIDTH: f64 = 0.03;
 /// Reward if all strokes on the plane lie on one face of the box (`ON_PLANE`), and penalty if all other strokes lie on
 /// it too (`ELSEWHERE`). Lines seldom favour one box over another by as much, so a box that puts some strokes on the
-/// wrong face wins only if the lines rule out nearly all others.
+/// wrong face wins only if the lines rule out nearly all others [origin not recorded].
 const ON_PLANE: f64 = 2.0;
 const ELSEWHERE: f64 = 1.0;
 /// Sums run in lanes, whose order is independent of the processor.
 const LANES: usize = 8;
 
 /// A segment, which is consistent with some faces and not with others.
-struct Witness {
+struct RoomSegment {
     axis: usize,
     /// Ray through its midpoint, in room axes.
     middle: DVec3,
@@ -55,12 +56,12 @@ pub struct Quadrant {
     /// Sample points for each axis.
     points: [Points; 3],
     /// Absolute coordinates of the rays of stroke samples, and the weight of each if it lies on the plane's face.
-    spots: Vec<(DVec3, f64)>,
+    stroke_samples: Vec<(DVec3, f64)>,
 }
 
 /// The classified segments and the strokes of a view.
 pub struct Evidence {
-    witnesses: Vec<Witness>,
+    segments: Vec<RoomSegment>,
     /// Upper left, upper right, lower left, lower right.
     pub quadrants: [Quadrant; 4],
     /// Whether any stroke lies on the plane.
@@ -77,22 +78,22 @@ impl Evidence {
         let ray = |p: DVec2| to_room * room.perspective.ray(p);
         // Limit the weight of very long segments.
         let longest = 0.25 * DVec2::new(width as f64, height as f64).length();
-        let mut heard: Vec<(f64, usize, [DVec3; 3])> =
+        let mut used: Vec<(f64, usize, [DVec3; 3])> =
             try_collect(room.segments.iter().filter_map(|(segment, axis)| {
                 let axis = axis.filter(|&a| a < 3)?;
                 let rays = POINTS.map(|t| ray(segment.a.lerp(segment.b, t)));
                 let length = segment.length();
                 (length > 0.0 && rays.iter().all(|r| r.is_finite())).then_some((length, axis, rays))
             }))?;
-        heard.sort_by(|a, b| b.0.total_cmp(&a.0));
-        heard.truncate(MAX_SEGMENTS);
-        let total: f64 = heard.iter().map(|(length, ..)| length.min(longest)).sum();
+        used.sort_by(|a, b| b.0.total_cmp(&a.0));
+        used.truncate(MAX_SEGMENTS);
+        let total: f64 = used.iter().map(|(length, ..)| length.min(longest)).sum();
 
         let mut quadrants: [Quadrant; 4] = Default::default();
-        let mut witnesses = Vec::with_capacity(heard.len());
-        for (length, axis, rays) in heard {
+        let mut segments = Vec::with_capacity(used.len());
+        for (length, axis, rays) in used {
             let weight = length.min(longest) / total;
-            witnesses.push(Witness { axis, middle: rays[1], weight });
+            segments.push(RoomSegment { axis, middle: rays[1], weight });
             for ray in rays {
                 let (quadrant, size) = quadrant(ray);
                 let [p, q] = OTHERS[axis];
@@ -102,18 +103,18 @@ impl Evidence {
         quadrants.iter_mut().flat_map(|q| &mut q.points).for_each(Points::fill_up);
 
         // Strokes elsewhere are uninformative unless some stroke lies on the plane.
-        let spots = strokes::spots(room, &to_room, [width, height], job)?;
-        let has_plane = spots.iter().any(|s| s.positive);
-        for spot in spots.iter().filter(|_| has_plane) {
-            let (quadrant, size) = quadrant(spot.ray);
-            let worth = if spot.positive { ON_PLANE } else { -ELSEWHERE };
-            quadrants[quadrant].spots.push((size, worth * spot.weight));
+        let stroke_samples = strokes::stroke_samples(room, &to_room, [width, height], job)?;
+        let has_plane = stroke_samples.iter().any(|s| s.positive);
+        for sample in stroke_samples.iter().filter(|_| has_plane) {
+            let (quadrant, size) = quadrant(sample.ray);
+            let weight = if sample.positive { ON_PLANE } else { -ELSEWHERE };
+            quadrants[quadrant].stroke_samples.push((size, weight * sample.weight));
         }
-        Ok(Self { witnesses, quadrants, has_plane })
+        Ok(Self { segments, quadrants, has_plane })
     }
 
     pub fn len(&self) -> usize {
-        self.witnesses.len()
+        self.segments.len()
     }
 
     /// Agreement of the segments with a box: at most 1 if none lies on a seam, and `1 + SEAM` if all do.
@@ -129,7 +130,7 @@ impl Evidence {
         // wall.
         let (edge_axis, across) = if side < 2 { (VERTICAL, 0) } else { (HORIZONTAL_A, 1) };
         let sign = if side % 2 == 0 { -1.0 } else { 1.0 };
-        let mut values: Vec<(f64, f64)> = (self.witnesses.iter())
+        let mut values: Vec<(f64, f64)> = (self.segments.iter())
             .filter(|w| w.axis == edge_axis)
             .filter_map(|w| {
                 let value = sign * w.middle[across] / w.middle.z;
@@ -170,10 +171,10 @@ impl Quadrant {
     /// Score of its strokes if the plane is the side wall, the ceiling or floor, or the back wall.
     pub fn strokes(&self, wall: f64, level: f64) -> [f64; 3] {
         let mut counts = [0.0; 3];
-        for (size, worth) in &self.spots {
+        for (size, weight) in &self.stroke_samples {
             let inverse = [size.x * wall, size.y * level, size.z];
             let first = (1..3).fold(0, |first, i| if inverse[i] > inverse[first] { i } else { first });
-            counts[first] += worth;
+            counts[first] += weight;
         }
         counts
     }

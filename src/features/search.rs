@@ -18,31 +18,31 @@ use glam::{DMat3, DVec2, DVec3};
 
 /// Prior of a side (in units of the distance to the back wall) where nothing is seen of it, and the cost of the
 /// squared logarithm of its ratio to the prior. Equal for all sides, so that the result does not depend on the photo's
-/// orientation.
-const USUAL: f64 = 0.4;
-const UNUSUAL: f64 = 0.01;
-/// Sides tried regardless of the evidence: `MIN_SIDE × RATIO^k`.
-const LEAST: f64 = 0.06;
+/// orientation [origin not recorded].
+const PRIOR_SIDE: f64 = 0.4;
+const PRIOR_COST: f64 = 0.01;
+/// Sides tried regardless of the evidence: `MIN_SIDE × RATIO^k` [origin not recorded].
+const MIN_SIDE: f64 = 0.06;
 const RATIO: f64 = 1.068;
 const GRID: usize = 64;
 /// Candidates per side from segments.
 const PEAKS: usize = 24;
 /// Two boxes are clearly different if more than this share of the view meets different faces, or faces whose distances
-/// differ by more than this factor.
-const DIFFERENT_SHARE: f64 = 0.05;
-const DIFFERENT: f64 = 1.3;
+/// differ by more than this factor [origin not recorded].
+const MIN_DIFFERENT_SHARE: f64 = 0.05;
+const MIN_RATIO: f64 = 1.3;
 /// Rays along each side of the photo by which boxes are compared.
 const RAYS: usize = 9;
 /// Number of boxes that are refined; ratios of neighbouring values in the two refinements; and number of values on
-/// either side.
+/// either side [origin not recorded].
 const STARTS: usize = 6;
-const FINER: [f64; 2] = [1.006, 1.0008];
-const AROUND: i32 = 8;
+const REFINEMENTS: [f64; 2] = [1.006, 1.0008];
+const VALUES_EITHER_SIDE: i32 = 8;
 /// Sums run in lanes, whose order is independent of the processor.
 const LANES: usize = 8;
 
 /// The sides of a box, and its score.
-type Found = ([f64; 4], f64);
+type ScoredBox = ([f64; 4], f64);
 
 /// Finds the box that agrees best with the segments and strokes of a view.
 pub fn find(room: &RoomView, width: usize, height: usize, job: Job) -> Result<Layout> {
@@ -55,12 +55,12 @@ pub fn find(room: &RoomView, width: usize, height: usize, job: Job) -> Result<La
 
     let values: [Vec<f64>; 4] = std::array::from_fn(|side| {
         let mut all = evidence.candidates(side, PEAKS);
-        all.extend((0..GRID).map(|k| LEAST * RATIO.powi(k as i32)));
+        all.extend((0..GRID).map(|k| MIN_SIDE * RATIO.powi(k as i32)));
         all
     });
     let coarse = Tables::new(&evidence, values, job.part(0.1, 0.4))?.best(job.part(0.4, 0.7))?;
     let view = rays(room, &axes, [width, height]);
-    let mut starts: Vec<Found> = Vec::new();
+    let mut starts: Vec<ScoredBox> = Vec::new();
     for found in &coarse {
         if starts.len() < STARTS && starts.iter().all(|s| differ(&view, &s.0, &found.0)) {
             starts.push(*found);
@@ -71,8 +71,9 @@ pub fn find(room: &RoomView, width: usize, height: usize, job: Job) -> Result<La
     let mut tops = Vec::with_capacity(starts.len());
     for start in starts {
         let mut top = start;
-        for step in FINER {
-            let values = top.0.map(|side| (-AROUND..=AROUND).map(|k| side * step.powi(k)).collect());
+        for step in REFINEMENTS {
+            let values =
+                top.0.map(|side| (-VALUES_EITHER_SIDE..=VALUES_EITHER_SIDE).map(|k| side * step.powi(k)).collect());
             let found = Tables::new(&evidence, values, job.part(0.7, 0.7))?.best(job.part(0.7, 0.7))?;
             top = found[0];
         }
@@ -82,15 +83,19 @@ pub fn find(room: &RoomView, width: usize, height: usize, job: Job) -> Result<La
     let best = tops[0];
 
     // Compute the confidence from the lead over the best clearly different box.
-    let rival = |all: &[Found]| {
+    let runner_up = |all: &[ScoredBox]| {
         let other = all.iter().find(|other| differ(&view, &other.0, &best.0));
         other.map_or(f64::NEG_INFINITY, |other| other.1)
     };
-    let rival = rival(&tops).max(rival(&coarse));
-    let lead = (best.1 - rival).max(0.0);
-    let heard = 1.0 - (-(evidence.len() as f64) / 15.0).exp();
+    let runner_up = runner_up(&tops).max(runner_up(&coarse));
+    let lead = (best.1 - runner_up).max(0.0);
+    let evidence_weight = 1.0 - (-(evidence.len() as f64) / 15.0).exp();
     job.report(1.0);
-    Ok(Layout { sides: best.0, score: evidence.score(&best.0), trust: heard * (0.3 + 0.7 * lead / (lead + 0.03)) })
+    Ok(Layout {
+        sides: best.0,
+        score: evidence.score(&best.0),
+        trust: evidence_weight * (0.3 + 0.7 * lead / (lead + 0.03)),
+    })
 }
 
 /// Rays over the whole photo, in room axes.
@@ -104,9 +109,9 @@ fn rays(room: &RoomView, axes: &DMat3, [width, height]: [usize; 2]) -> Vec<DVec3
 fn differ(view: &[DVec3], a: &[f64; 4], b: &[f64; 4]) -> bool {
     let is_other = |ray: &&DVec3| {
         let ((face, there), (other, here)) = (faces(a, **ray)[0], faces(b, **ray)[0]);
-        face != other || there > here * DIFFERENT || here > there * DIFFERENT
+        face != other || there > here * MIN_RATIO || here > there * MIN_RATIO
     };
-    view.iter().filter(is_other).count() as f64 > DIFFERENT_SHARE * view.len() as f64
+    view.iter().filter(is_other).count() as f64 > MIN_DIFFERENT_SHARE * view.len() as f64
 }
 
 /// The faces that may be the plane of the strokes; each is tried.
@@ -125,7 +130,7 @@ impl Tables {
         // Fill one row of one part per task.
         let rows = [0, 1, 2, 3].map(|part| values[part % 2].len());
         let tasks: Vec<(usize, usize)> = (0..4).flat_map(|part| (0..rows[part]).map(move |row| (part, row))).collect();
-        let unusual = |value: f64| UNUSUAL * (value / USUAL).ln().powi(2);
+        let prior_cost = |value: f64| PRIOR_COST * (value / PRIOR_SIDE).ln().powi(2);
         let filled = exec::map(tasks.len(), job, |task| {
             let (part, row) = tasks[task];
             let (wall, level) = (part % 2, 2 + part / 2);
@@ -133,8 +138,8 @@ impl Tables {
             let at = values[wall][row];
             let entry = |&height: &f64| {
                 // Each side occurs in two parts: halve the cost of its prior.
-                let usual = -0.5 * (unusual(at) + unusual(height));
-                let lines = quadrant.lines(1.0 / at, 1.0 / height) + usual;
+                let prior = -0.5 * (prior_cost(at) + prior_cost(height));
+                let lines = quadrant.lines(1.0 / at, 1.0 / height) + prior;
                 let strokes = quadrant.strokes(1.0 / at, 1.0 / height);
                 let here = |face: Face| match face {
                     Face::Left | Face::Right if face as usize == wall => strokes[0],
@@ -156,9 +161,9 @@ impl Tables {
     }
 
     /// For every pair of left and right, the best box; sorted by falling score.
-    fn best(&self, job: Job) -> Result<Vec<Found>> {
+    fn best(&self, job: Job) -> Result<Vec<ScoredBox>> {
         let [lefts, rights, tops, bottoms] = self.values.each_ref().map(Vec::len);
-        let found = exec::map(lefts, job, |left| -> Vec<Found> {
+        let found = exec::map(lefts, job, |left| -> Vec<ScoredBox> {
             let of_right = |right: usize| {
                 let best = self.parts.iter().map(|[lt, rt, lb, rb]| {
                     let top = (&lt[left * tops..][..tops], &rt[right * tops..][..tops]);
@@ -183,9 +188,9 @@ fn largest_sum(a: &[f64], b: &[f64]) -> f64 {
     let mut largest = [f64::NEG_INFINITY; LANES];
     let (a, b) = (a.chunks(LANES), b.chunks(LANES));
     for (a, b) in a.zip(b) {
-        for ((most, a), b) in largest.iter_mut().zip(a).zip(b) {
+        for ((maximum, a), b) in largest.iter_mut().zip(a).zip(b) {
             let sum = a + b;
-            *most = if sum > *most { sum } else { *most };
+            *maximum = if sum > *maximum { sum } else { *maximum };
         }
     }
     largest.into_iter().fold(f64::NEG_INFINITY, f64::max)

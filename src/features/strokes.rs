@@ -12,7 +12,7 @@ use glam::{DMat3, DVec2, DVec3};
 const CELLS: usize = 15;
 
 /// The strokes of one kind within a cell.
-pub struct Spot {
+pub struct StrokeSample {
     /// Ray through the mean of their pixels, in room axes.
     pub ray: DVec3,
     /// Whether they lie on the plane or elsewhere.
@@ -22,7 +22,12 @@ pub struct Spot {
 }
 
 /// The samples of a view's strokes. Pixels outside the image are ignored; pixels covered by both kinds count for both.
-pub fn spots(room: &RoomView, to_room: &DMat3, [width, height]: [usize; 2], job: Job) -> Result<Vec<Spot>> {
+pub fn stroke_samples(
+    room: &RoomView,
+    to_room: &DMat3,
+    [width, height]: [usize; 2],
+    job: Job,
+) -> Result<Vec<StrokeSample>> {
     let mut cells = try_vec(2 * CELLS * CELLS, (DVec2::ZERO, 0.0))?;
     for stroke in room.strokes {
         job.check()?;
@@ -36,11 +41,11 @@ pub fn spots(room: &RoomView, to_room: &DMat3, [width, height]: [usize; 2], job:
     }
     let painted = |positive: bool| cells.iter().skip(usize::from(positive)).step_by(2).filter(|c| c.1 > 0.0);
     let counts = [false, true].map(|positive| painted(positive).count());
-    let spots = [false, true].into_iter().flat_map(|positive| {
+    let stroke_samples = [false, true].into_iter().flat_map(|positive| {
         painted(positive).map(move |(sum, count)| {
             let ray = *to_room * room.perspective.ray(sum / *count);
-            Spot { ray, positive, weight: 1.0 / counts[usize::from(positive)] as f64 }
+            StrokeSample { ray, positive, weight: 1.0 / counts[usize::from(positive)] as f64 }
         })
     });
-    Ok(spots.filter(|spot| spot.ray.is_finite()).collect())
+    Ok(stroke_samples.filter(|sample| sample.ray.is_finite()).collect())
 }

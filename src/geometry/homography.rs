@@ -15,10 +15,10 @@ impl Homography {
         let (nf, nt) = (normalisation(&from)?, normalisation(&to)?);
         let (f, t) = (from.map(|p| apply(nf, p)), to.map(|p| apply(nt, p)));
         for quad in [f, t] {
-            let least = (0..4)
+            let min_area = (0..4)
                 .map(|i| doubled_area(quad[i], quad[(i + 1) % 4], quad[(i + 2) % 4]).abs())
                 .fold(f64::MAX, f64::min);
-            if least < 1e-12 {
+            if min_area < 1e-12 {
                 return Err(Error::degenerate(
                     "three of the four corners lie on one line: no perspective maps them to a rectangle",
                 ));

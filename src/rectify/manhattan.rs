@@ -2,7 +2,7 @@
 //! lines, triplets from pairs of candidates or from a candidate and a line, then a joint refinement of rotation and
 //! focal length.
 
-use super::sphere::{Evidence, project, refine, unproject};
+use super::sphere::{WeightedLine, project, refine, unproject};
 use crate::error::Result;
 use crate::exec;
 use crate::geometry::linear;
@@ -43,7 +43,7 @@ pub struct Triplet {
 }
 
 /// The best triplet; `None` if no two distinct lines intersect. Lines must be sorted by falling length.
-pub fn search(lines: &[Evidence], focal: Option<f64>, seed: u64, job: Job) -> Result<Option<Triplet>> {
+pub fn search(lines: &[WeightedLine], focal: Option<f64>, seed: u64, job: Job) -> Result<Option<Triplet>> {
     let candidates = candidates(lines, focal.unwrap_or(USUAL_FOCAL), CANDIDATES, seed, job.part(0.0, 0.3))?;
     let hypotheses = hypotheses(lines, &candidates, focal);
     // Score all hypotheses on a few lines, the better ones on more, and after refinement the best on all lines.
@@ -63,7 +63,7 @@ pub fn search(lines: &[Evidence], focal: Option<f64>, seed: u64, job: Job) -> Re
 }
 
 /// Sorts triplets by falling score on the longest lines.
-fn ranked(lines: &[Evidence], longest: usize, triplets: Vec<Triplet>, job: Job) -> Result<Vec<Triplet>> {
+fn ranked(lines: &[WeightedLine], longest: usize, triplets: Vec<Triplet>, job: Job) -> Result<Vec<Triplet>> {
     let longest = &lines[..lines.len().min(longest)];
     let scores = exec::map(triplets.len(), job, |i| score(longest, &triplets[i]))?;
     let mut ranked: Vec<(f64, Triplet)> = scores.into_iter().zip(triplets).collect();
@@ -72,13 +72,13 @@ fn ranked(lines: &[Evidence], longest: usize, triplets: Vec<Triplet>, job: Job) 
 }
 
 /// The direction that agrees with the largest weight of lines.
-pub fn strongest(lines: &[Evidence], focal: f64, seed: u64, job: Job) -> Result<Option<DVec3>> {
+pub fn strongest(lines: &[WeightedLine], focal: f64, seed: u64, job: Job) -> Result<Option<DVec3>> {
     Ok(candidates(lines, focal, 1, seed, job)?.first().map(|&p| unproject(p, focal)))
 }
 
 /// Vanishing points of single pairs of lines, each refined, best first. Each further point is scored mainly on the
 /// lines that the points before it leave unexplained.
-fn candidates(lines: &[Evidence], focal: f64, count: usize, seed: u64, job: Job) -> Result<Vec<DVec3>> {
+fn candidates(lines: &[WeightedLine], focal: f64, count: usize, seed: u64, job: Job) -> Result<Vec<DVec3>> {
     let cumulative: Vec<f64> = lines
         .iter()
         .scan(0.0, |sum, e| {
@@ -125,7 +125,7 @@ fn candidates(lines: &[Evidence], focal: f64, count: usize, seed: u64, job: Job)
 }
 
 /// Generates the triplets to be scored.
-fn hypotheses(lines: &[Evidence], candidates: &[DVec3], focal: Option<f64>) -> Vec<Triplet> {
+fn hypotheses(lines: &[WeightedLine], candidates: &[DVec3], focal: Option<f64>) -> Vec<Triplet> {
     let mut out = Vec::new();
     let given = focal.map(|f| [f]);
     let focals: &[f64] = given.as_ref().map_or(&FOCALS, |f| f);
@@ -167,7 +167,7 @@ fn hypotheses(lines: &[Evidence], candidates: &[DVec3], focal: Option<f64>) -> V
 
 /// The weight of the lines that the triplet explains as a share of all weight, minus the penalty of the focal-length
 /// prior.
-fn score(lines: &[Evidence], triplet: &Triplet) -> f64 {
+fn score(lines: &[WeightedLine], triplet: &Triplet) -> f64 {
     let points = [0, 1, 2].map(|k| project(triplet.axes.col(k), triplet.focal));
     let (mut explained, mut total) = (0.0, 0.0);
     for e in lines {
@@ -184,7 +184,7 @@ fn similar(a: &Triplet, b: &Triplet) -> bool {
 }
 
 /// Joint Gauss-Newton refinement of a rotation vector and the logarithm of the focal length, iteratively reweighted.
-fn refine_jointly(lines: &[Evidence], start: Triplet, focal: Option<f64>) -> Triplet {
+fn refine_jointly(lines: &[WeightedLine], start: Triplet, focal: Option<f64>) -> Triplet {
     let mut best = Triplet { score: score(lines, &start), ..start };
     let mut current = best;
     for _ in 0..8 {

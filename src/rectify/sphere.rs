@@ -53,10 +53,10 @@ impl Frame {
     }
 
     /// Segments as evidence, each with its index; segments of zero length are left out.
-    pub fn evidence(&self, segments: &[Segment]) -> Vec<(usize, Evidence)> {
+    pub fn weighted_lines(&self, segments: &[Segment]) -> Vec<(usize, WeightedLine)> {
         let to_frame = |p: DVec2| (p - self.principal) / self.scale;
         let prepare = |s: &Segment| Line::new(&Segment { a: to_frame(s.a), b: to_frame(s.b) });
-        segments.iter().enumerate().filter_map(|(i, s)| prepare(s).map(|line| (i, Evidence::new(line)))).collect()
+        segments.iter().enumerate().filter_map(|(i, s)| prepare(s).map(|line| (i, WeightedLine::new(line)))).collect()
     }
 
     /// Converts a homogeneous point of the frame to homogeneous pixels of unit length.
@@ -73,14 +73,14 @@ impl Frame {
 
 /// A line in the frame, weighted by its length.
 #[derive(Clone, Copy, Debug)]
-pub struct Evidence {
+pub struct WeightedLine {
     pub line: Line,
     pub weight: f64,
     /// Factor from a squared sine to a squared residual whose limit is 1.
     pub stiffness: f64,
 }
 
-impl Evidence {
+impl WeightedLine {
     fn new(line: Line) -> Self {
         let stiffness = (line.half / ENDPOINT_LIMIT).powi(2) + SINE_LIMIT.powi(-2);
         Self { line, weight: 2.0 * line.half, stiffness }
@@ -151,13 +151,13 @@ pub struct RightAngle {
 /// The direction that fits the given lines best, from a nearby start: iteratively reweighted least squares of the sine
 /// between each line and the line to the point. Tukey's biweight rejects lines beyond its limit. `None` if fewer than
 /// two distinct lines remain.
-pub fn refine(lines: &[Evidence], start: DVec3, focal: f64) -> Option<Refined> {
+pub fn refine(lines: &[WeightedLine], start: DVec3, focal: f64) -> Option<Refined> {
     let direction = iterate(lines, start, focal, NO_MATRIX)?;
     Some(Refined { direction, covariance: covariance(lines, direction, focal)?.of_direction })
 }
 
 /// As [`refine`], with expected right angles as priors; the lines are weighted by their own covariance at the start.
-pub fn refine_near(lines: &[Evidence], start: DVec3, focal: f64, expected: &[RightAngle]) -> Option<Refined> {
+pub fn refine_near(lines: &[WeightedLine], start: DVec3, focal: f64, expected: &[RightAngle]) -> Option<Refined> {
     let own = covariance(lines, start, focal)?;
     // The normal matrix of the lines is the inverse of their covariance up to a factor; express the priors in its
     // unit.
@@ -170,7 +170,7 @@ pub fn refine_near(lines: &[Evidence], start: DVec3, focal: f64, expected: &[Rig
     Some(Refined { direction, covariance: covariance(lines, direction, focal)?.of_direction })
 }
 
-fn iterate(lines: &[Evidence], start: DVec3, focal: f64, prior: [[f64; 3]; 3]) -> Option<DVec3> {
+fn iterate(lines: &[WeightedLine], start: DVec3, focal: f64, prior: [[f64; 3]; 3]) -> Option<DVec3> {
     let mut direction = start;
     for _ in 0..20 {
         let last = direction;
@@ -209,30 +209,35 @@ struct Row {
     sine: f64,
 }
 
-fn row(evidence: &Evidence, direction: DVec3, focal: f64) -> Option<Row> {
+fn row(weighted: &WeightedLine, direction: DVec3, focal: f64) -> Option<Row> {
     let p = project(direction, focal);
-    let bisquare = evidence.agreement(p).powi(2);
-    let distance = (p.truncate() - evidence.line.centre * p.z).length();
+    let bisquare = weighted.agreement(p).powi(2);
+    let distance = (p.truncate() - weighted.line.centre * p.z).length();
     if !(bisquare > 0.0 && distance > 1e-9) {
         return None;
     }
-    let (l, half) = (evidence.line.line, evidence.line.half);
+    let (l, half) = (weighted.line.line, weighted.line.half);
     let nearness = (half * p.z / distance).powi(2);
     // Endpoint noise alone would justify the stiffness as weight. The exponent of the length is larger because long
     // segments are rarely false detections.
-    let base_weight = evidence.weight.sqrt() * evidence.stiffness / (1.0 + nearness);
+    let base_weight = weighted.weight.sqrt() * weighted.stiffness / (1.0 + nearness);
     let variance = (1.0 + nearness) / (half * half);
     Some(Row {
         gradient: DVec3::new(l.x, l.y, l.z / focal) / distance,
         base_weight,
         weight: bisquare * base_weight,
         variance,
-        residual_variance: evidence.stiffness * variance,
-        sine: evidence.line.sine(p),
+        residual_variance: weighted.stiffness * variance,
+        sine: weighted.line.sine(p),
     })
 }
 
-fn smallest_eigenvector(lines: &[Evidence], direction: DVec3, focal: f64, mut normal: [[f64; 3]; 3]) -> Option<DVec3> {
+fn smallest_eigenvector(
+    lines: &[WeightedLine],
+    direction: DVec3,
+    focal: f64,
+    mut normal: [[f64; 3]; 3],
+) -> Option<DVec3> {
     for Row { gradient, weight, .. } in lines.iter().filter_map(|e| row(e, direction, focal)) {
         add_square(&mut normal, gradient, weight);
     }
@@ -270,7 +275,7 @@ fn endpoint_noise(rows: &[Row]) -> f64 {
 /// with `A = Σ c ψ′ g gᵀ` and `B = Σ c² ψ² g gᵀ`, where `c` is a line's base weight and `g` its gradient. ψ′ and ψ²
 /// are replaced by their expectations under independent endpoint noise of the estimated size: the sample values of few
 /// lines vary too much, and the lines of largest weight have the smallest residuals because of their weight.
-fn covariance(lines: &[Evidence], direction: DVec3, focal: f64) -> Option<Covariance> {
+fn covariance(lines: &[WeightedLine], direction: DVec3, focal: f64) -> Option<Covariance> {
     let (e1, e2) = direction.any_orthonormal_pair();
     let rows: Vec<Row> = lines.iter().filter_map(|e| row(e, direction, focal)).collect();
     if rows.len() < 2 {

@@ -1,7 +1,9 @@
 //! Vanishing points from line segments (§5.2): up to three directions, orthogonal in the Manhattan search, each then
 //! refined freely with its own covariance.
 
-use super::sphere::{Evidence, Frame, Refined, RightAngle, project, refine, refine_near, round_covariance, unproject};
+use super::sphere::{
+    Frame, Refined, RightAngle, WeightedLine, project, refine, refine_near, round_covariance, unproject,
+};
 use super::{Params, Search, VanishingPoint, manhattan, successive};
 use crate::error::{Error, Result, check_range};
 use crate::geometry::Segment;
@@ -54,9 +56,9 @@ pub fn from_segments(
     params.check()?;
     check_range("count of vanishing points", count, 1, 64)?;
     let frame = Frame::new(width, height, params.principal(width, height));
-    let mut evidence = frame.evidence(segments);
-    evidence.sort_by(|a, b| b.1.weight.total_cmp(&a.1.weight));
-    let lines: Vec<Evidence> = evidence.iter().take(MAX_LINES).map(|(_, e)| *e).collect();
+    let mut weighted_lines = frame.weighted_lines(segments);
+    weighted_lines.sort_by(|a, b| b.1.weight.total_cmp(&a.1.weight));
+    let lines: Vec<WeightedLine> = weighted_lines.iter().take(MAX_LINES).map(|(_, e)| *e).collect();
 
     let given = params.focal.map(|f| f / frame.scale);
     let mut focal = given.unwrap_or(manhattan::USUAL_FOCAL);
@@ -71,7 +73,7 @@ pub fn from_segments(
             // Find further directions from the lines that run along none of the three.
             while found.len() < count && !found.is_empty() {
                 let points: Vec<DVec3> = found.iter().map(|r| project(r.expected.direction, focal)).collect();
-                let rest: Vec<Evidence> =
+                let rest: Vec<WeightedLine> =
                     lines.iter().filter(|e| points.iter().all(|&p| e.agreement(p) == 0.0)).copied().collect();
                 let Some(start) = manhattan::strongest(&rest, focal, params.seed, job.part(0.8, 0.9))? else { break };
                 let Some(point) = refine(&rest, start, focal).filter(|r| r.error() < MAX_ERROR) else { break };
@@ -94,7 +96,7 @@ pub fn from_segments(
     let points: Vec<DVec3> = found.iter().map(|r| project(r.expected.direction, focal)).collect();
     let mut members = vec![None; segments.len()];
     let mut support = vec![(0usize, 0.0f64); points.len()];
-    for (index, e) in &evidence {
+    for (index, e) in &weighted_lines {
         let best = points.iter().map(|&p| e.agreement(p)).enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
         if let Some((k, _)) = best.filter(|b| b.1 > 0.0) {
             members[*index] = Some(k);
@@ -110,7 +112,7 @@ pub fn from_segments(
         return Err(Error::degenerate(format!(
             "no lines found that meet in a vanishing point ({} usable segments): use a photo that shows straight edges \
              of the room in focus",
-            evidence.len()
+            weighted_lines.len()
         )));
     }
     for member in &mut members {
@@ -133,7 +135,7 @@ pub fn from_segments(
 /// Refines each direction on the lines that agree with it better than with the others; then once more with priors on
 /// right angles to the others' own estimates, which help where a direction has few lines. Drops directions that no two
 /// lines determine and directions that drift into another.
-fn refine_freely(lines: &[Evidence], axes: &[DVec3], focal: f64) -> Vec<Found> {
+fn refine_freely(lines: &[WeightedLine], axes: &[DVec3], focal: f64) -> Vec<Found> {
     let mut current: Vec<Refined> =
         axes.iter().map(|&direction| Refined { direction, covariance: DMat3::ZERO }).collect();
     for _ in 0..3 {
@@ -167,7 +169,7 @@ fn refine_freely(lines: &[Evidence], axes: &[DVec3], focal: f64) -> Vec<Found> {
 }
 
 /// For each direction, the lines that agree with it better than with any other.
-fn nearest(lines: &[Evidence], directions: &[Refined], focal: f64) -> Vec<Vec<Evidence>> {
+fn nearest(lines: &[WeightedLine], directions: &[Refined], focal: f64) -> Vec<Vec<WeightedLine>> {
     let points: Vec<DVec3> = directions.iter().map(|r| project(r.direction, focal)).collect();
     let mut groups = vec![Vec::new(); points.len()];
     for e in lines {
