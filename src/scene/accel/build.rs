@@ -1,4 +1,4 @@
-//! From triangles to the finished structure.
+//! Builds the acceleration structure from triangles.
 
 use super::costs::Source;
 use super::leaves::{self, Leaves};
@@ -12,7 +12,8 @@ use crate::job::Job;
 use crate::simd::Level;
 use glam::{Vec3, Vec4};
 
-/// Rounds of reinsertion: the share of all nodes, the largest, that each tries to move. More of either gain little.
+/// For each round of reinsertion, the share of nodes (largest first) that it tries to move. More rounds or larger
+/// shares gain little.
 const ROUNDS: [f32; 3] = [0.1, 0.1, 0.03];
 
 pub(super) fn build(triangles: &[[Vec3; 3]], job: Job) -> Result<Accel> {

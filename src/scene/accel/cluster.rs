@@ -1,13 +1,15 @@
-//! The binary tree, from its leaves up: hierarchical, parallel, locally-ordered clustering (Benthin, Meister, Barczak,
-//! Mehalwal, Tsakok and Kensler 2024, "H-PLOC").
+//! Bottom-up construction of the binary tree: hierarchical, parallel, locally-ordered clustering (Benthin, Meister,
+//! Barczak, Mehalwal, Tsakok and Kensler 2024, "H-PLOC").
 //!
-//! The list of leaves is halved, and halved again, where the curve they are sorted along leaves the largest cells of space.
-//! From the smallest ranges up, the clusters left of two halves are merged with their nearest neighbours until few are
-//! left: each with the one of those around it with which it has the smallest box, where that holds for both.
+//! The list of leaves, sorted along a space-filling curve, is split recursively where the curve leaves the largest
+//! cells of space. From the smallest ranges up, the remaining clusters of two halves are merged with their nearest
+//! neighbours until few are left. Two clusters merge if each is the neighbour with which the other forms the smallest
+//! box.
 //!
-//! On regular grids, which the walls of rooms are, all merges of neighbours cost the same. Of equal boxes a cluster prefers
-//! the one whose place differs from its own in the lowest bits: as both agree on that, a row of equal clusters is merged
-//! two by two. (Taken in order, hardly any two would choose each other, and those that did would lie anywhere.)
+//! On regular grids, such as the walls of rooms, all merges of neighbours cost the same. Among equal boxes, a cluster
+//! prefers the one whose index differs from its own in the lowest bits. The preference is mutual, so a row of equal
+//! clusters merges in pairs. (With a preference by order, hardly any two clusters would choose each other, and the
+//! merges would be irregular.)
 
 use super::lanes::{Baseline, Lanes};
 use super::leaves::Leaves;
@@ -18,20 +20,20 @@ use crate::job::Job;
 use crate::simd::Level;
 use obvhs::bvh2::node::Bvh2Node;
 
-/// Clusters that a range is merged down to before it is joined with its neighbour.
+/// Number of clusters to which a range is reduced before it is joined with its neighbour.
 const FEW: usize = 32;
-/// Neighbours on either side that a cluster chooses from.
+/// Neighbours on either side among which a cluster chooses.
 const REACH: usize = 8;
-/// Leaves of the ranges that are done by one thread.
+/// Maximum number of leaves in a range processed by one thread.
 const SERIAL: usize = 1024;
 const LANES: usize = 8;
-/// Bits of an area that tell the partner instead.
+/// Low bits of an area that are replaced by the index difference to the partner.
 const PARTNER: u32 = 2 * FEW as u32 - 1;
 
-/// The tree over all leaves, of which there is one at least.
+/// The tree over all leaves, of which there must be at least one.
 pub(super) fn binary_tree(leaves: &Leaves, level: Level, job: Job) -> Result<Tree> {
     let mut clusters = pages::filled(leaves.order.len(), Cluster::default(), job)?;
-    // The first pair is the root's.
+    // The first pair belongs to the root.
     let len = leaves.order.len() + 1;
     let mut tree =
         Tree { pairs: pages::filled(len, Pair::default(), job)?, parents: pages::filled(len, Tree::ROOT, job)? };
@@ -50,15 +52,15 @@ pub(super) fn binary_tree(leaves: &Leaves, level: Level, job: Job) -> Result<Tre
 #[derive(Clone, Copy, Default)]
 struct Cluster {
     node: Bvh2Node,
-    /// A pair of nodes that nothing below takes.
+    /// Index of an unused pair of nodes, reserved for this cluster's parent.
     pair: u32,
 }
 
-/// Pairs of nodes that are to be filled.
+/// Pairs of nodes still to be filled.
 struct New<'a> {
     pairs: &'a mut [Pair],
     parents: &'a mut [u32],
-    /// The first of them, counted from that of all.
+    /// Index of the first of them in the whole tree.
     first: u32,
 }
 
@@ -70,7 +72,7 @@ impl New<'_> {
         (left, New { pairs, parents, first: self.first + middle as u32 })
     }
 
-    /// Makes two clusters siblings. Of their free pairs they take one; the other one is their parent's.
+    /// Makes two clusters siblings. They use one of their two free pairs; the other passes to their parent.
     fn join(&mut self, a: &Cluster, b: &Cluster) -> Cluster {
         let (pair, free) = (a.pair.min(b.pair), a.pair.max(b.pair));
         self.pairs[(pair - self.first) as usize] = Pair([a.node, b.node]);
@@ -83,7 +85,8 @@ impl New<'_> {
     }
 }
 
-/// Some leaves in their order along the curve, and what is made of them. There are as many new pairs as leaves, one more than it takes to join all.
+/// A range of leaves along the curve, with its clusters. It owns as many new pairs as leaves, one more than joining
+/// them all requires.
 struct Range<'a> {
     leaves: &'a [Bvh2Node],
     order: &'a [(u64, u32)],
@@ -93,7 +96,7 @@ struct Range<'a> {
 }
 
 impl Range<'_> {
-    /// Leaves a few clusters at the front, and tells how many.
+    /// Merges the range to a few clusters, stored at the front, and returns their number.
     fn merge(&mut self, job: Job) -> Result<usize> {
         let len = self.order.len();
         if len <= FEW {
@@ -115,7 +118,7 @@ impl Range<'_> {
         Ok(merge_nearest(&mut self.clusters[..left + right], &mut self.new, FEW, self.level))
     }
 
-    /// Where the highest bit changes in which codes differ.
+    /// The split position: where the highest differing bit of the codes changes.
     fn middle(&self) -> usize {
         let (first, last) = (self.order[0].0, self.order[self.order.len() - 1].0);
         if first == last {
@@ -135,7 +138,7 @@ impl Range<'_> {
     }
 }
 
-/// Merges neighbours until few are left, at the front; tells how many.
+/// Merges neighbours until at most `few` are left, at the front; returns their number.
 fn merge_nearest(clusters: &mut [Cluster], new: &mut New, few: usize, level: Level) -> usize {
     let mut len = clusters.len();
     if len <= few {
@@ -164,13 +167,13 @@ fn merge_nearest(clusters: &mut [Cluster], new: &mut New, few: usize, level: Lev
 
 const ROOM: usize = 2 * FEW + 2 * REACH;
 
-/// Low and high ends of boxes side by side, with boxes around them that are too large to be chosen.
+/// Bounds of boxes in SoA layout, surrounded by sentinel boxes too large to be chosen.
 struct Boxes([[f32; ROOM]; 6]);
 
-/// Scenes are of unit size, though they may lie 2^24 times as far away.
+/// Larger than any box: scenes are scaled to unit size, though they may lie 2^24 times as far from the origin.
 const TOO_LARGE: f32 = 1e15;
 
-/// `[i][k]`: the bits in which places `i` and `i - REACH + k` differ.
+/// `[i][k]`: the bits in which the indices `i` and `i - SEARCH_RADIUS + k` differ.
 static DIFFER: [[[u32; LANES]; 2 * REACH + 1]; 2 * FEW / LANES] = {
     let mut table = [[[0; LANES]; 2 * REACH + 1]; 2 * FEW / LANES];
     let mut i = 0;
@@ -193,7 +196,7 @@ impl Boxes {
         boxes
     }
 
-    /// Takes the boxes of some clusters, where there were a number of them before.
+    /// Loads the boxes of some clusters and resets the rest of the `before` previous ones to sentinels.
     fn update(&mut self, clusters: &[Cluster], before: usize) {
         for (i, cluster) in clusters.iter().enumerate() {
             self.set(i, cluster.node.min.into(), cluster.node.max.into());
@@ -208,11 +211,11 @@ impl Boxes {
         }
     }
 
-    /// For each box the neighbour with which it has the smallest box together: bits of that box's area (as it is not
-    /// negative they sort as it does), the lowest of which are replaced by those in which the two places differ.
+    /// For each box, the neighbour with which it forms the smallest union: the bits of the union's area (non-negative
+    /// floats sort as their bits do), the lowest of which are replaced by the bits in which the two indices differ.
     fn choose(&self, len: usize, level: Level) -> [f32; 2 * FEW] {
         match level {
-            // SAFETY: the processor has the instructions of its level, and of those below.
+            // SAFETY: the processor supports its level and all levels below.
             #[cfg(target_arch = "x86_64")]
             Level::Avx2 | Level::Avx512 => unsafe { self.choose_avx2(len) },
             Level::Baseline => self.choose_with::<Baseline>(len),
@@ -264,7 +267,7 @@ mod tests {
 
     #[test]
     fn equal_merges_make_a_balanced_tree() {
-        // Every other square of a grid, so that no two triangles are made one leaf.
+        // Every other square of a grid, so that no two triangles share a leaf.
         let square = |i: u32, j: u32| {
             let corner = |x, y| Vec3::new((2 * i) as f32 + x, (2 * j) as f32 + y, 0.0);
             [corner(0.0, 0.0), corner(1.0, 0.0), corner(0.0, 1.0)]
