@@ -24,8 +24,8 @@ impl Aligned {
         // Zero times infinity or NaN is NaN.
         let is_finite = (origin * 0.0 + direction * 0.0).cmpeq(Vec4::ZERO).all();
         let is_dominant = size.cmpeq(Vec4::splat(along));
-        let most = finite(Vec4::splat(1e12 / along));
-        let inverse = (Vec4::ONE / direction).max(-most).min(most);
+        let limit = finite(Vec4::splat(1e12 / along));
+        let inverse = (Vec4::ONE / direction).max(-limit).min(limit);
         (is_finite && along > 0.0 && ray.t_max > 0.0).then_some(Self { origin, direction, inverse, is_dominant })
     }
 

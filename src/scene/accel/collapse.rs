@@ -21,7 +21,7 @@ use std::collections::{BinaryHeap, HashMap};
 /// Number of parts of a large tree; minimum number of leaves per part; and minimum number of parts worth cutting.
 const PARTS: usize = 256;
 const PART_LEAVES: usize = 128;
-const FEW_PARTS: usize = 8;
+const MIN_PARTS: usize = 8;
 /// Lines in a page of memory: a step to a node within it needs no new page-table lookup.
 const PAGE_LINES: usize = 64;
 
@@ -67,7 +67,7 @@ impl Source<'_> {
     /// Roots of the parts: the tree is opened repeatedly at the largest box. Empty for a small tree.
     fn cut(&self) -> Vec<u32> {
         let parts = (self.tree.pairs.len() / PART_LEAVES).min(PARTS);
-        if parts < FEW_PARTS {
+        if parts < MIN_PARTS {
             return Vec::new();
         }
         // Non-negative floats sort as their bits do.
@@ -147,7 +147,7 @@ impl Choice<'_> {
 
     /// The wide subtree of a branch; with `leave`, children in other parts are left to other tasks.
     fn widen(&self, root: Place, leave: bool) -> Result<Wide> {
-        let mut wide = Wide { lines: Draft::with_room(self.branch(root).lines())?, ..Wide::default() };
+        let mut wide = Wide { lines: Draft::with_capacity(self.branch(root).lines())?, ..Wide::default() };
         if self.is_packet(root) {
             wide.root = Child::of_packet(wide.lines.push(&self.packet(&self.triangles(root)))?);
             return Ok(wide);
@@ -182,7 +182,7 @@ impl Choice<'_> {
         let mut members = [root; 8];
         let len = self.members(this.place, &mut members);
         let mut ranked = members.map(|at| (0.0, at));
-        ranked[..len].iter_mut().for_each(|(promise, at)| *promise = self.promise(*at));
+        ranked[..len].iter_mut().for_each(|(benefit, at)| *benefit = self.benefit(*at));
         ranked[..len].sort_by(|a, b| a.0.total_cmp(&b.0));
         // Determine and prefetch all triangles before the first is used.
         let packets = ranked.map(|(_, at)| self.is_packet(at).then(|| self.triangles(at)));
@@ -206,7 +206,7 @@ impl Choice<'_> {
     }
 
     /// Expected benefit of a child to an any-hit query, which visits the last lane first: surface area hit per cost.
-    fn promise(&self, place: Place) -> f32 {
+    fn benefit(&self, place: Place) -> f32 {
         let branch = self.branch(place);
         branch.surface / branch.cost[0]
     }

@@ -15,7 +15,7 @@ use obvhs::bvh2::node::Bvh2Node;
 use std::collections::HashMap;
 use std::ops::Range;
 
-/// Expected cost of intersecting a packet of triangles, relative to that of a node.
+/// Expected cost of intersecting a packet of triangles, relative to that of a node [origin not recorded].
 const PACKET_COST: f32 = 1.0;
 
 /// Branches processed between two checks for cancellation: a part may hold nearly the whole tree.
@@ -108,14 +108,14 @@ impl Binary {
                 job.check()?;
             }
             if let Content::Halves(first) = this.branches[at].content {
-                this.weigh(at, first as usize);
+                this.compute_costs(at, first as usize);
             }
         }
         Ok(this)
     }
 
     /// Computes the costs of a branch from those of its halves.
-    fn weigh(&mut self, at: usize, first: usize) {
+    fn compute_costs(&mut self, at: usize, first: usize) {
         let (l, r) = (&self.branches[first], &self.branches[first + 1]);
         let (count, surface, area) = (l.count + r.count, l.surface + r.surface, self.branches[at].area);
         // A leaf costs the same for any number of subtrees.
@@ -126,10 +126,10 @@ impl Binary {
         };
         let mut cost = [area + halves[6]; 7];
         if count <= WIDTH as u32 {
-            cost[0] = least(cost[0], area * PACKET_COST);
+            cost[0] = min(cost[0], area * PACKET_COST);
         }
         for more in 1..7 {
-            cost[more] = least(cost[more - 1], halves[more - 1]);
+            cost[more] = min(cost[more - 1], halves[more - 1]);
         }
         let branch = &mut self.branches[at];
         (branch.count, branch.surface, branch.cost) = (count, surface, cost);
@@ -149,14 +149,14 @@ fn combine(left: &[f32; 7], right: &[f32; 7]) -> [f32; 7] {
     let mut best = [f32::INFINITY; 7];
     for l in 0..7 {
         for r in 0..7 - l {
-            best[l + r] = least(best[l + r], left[l] + right[r]);
+            best[l + r] = min(best[l + r], left[l] + right[r]);
         }
     }
     best
 }
 
 /// A single instruction, unlike `f32::min`; costs are never NaN.
-fn least(a: f32, b: f32) -> f32 {
+fn min(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 

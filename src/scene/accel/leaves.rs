@@ -19,7 +19,7 @@ const CHUNK: usize = 4096;
 /// Bits of each coordinate in a Morton code.
 const BITS: u32 = 21;
 /// Lower bound of the extent of a scene scaled to unit size; a flat scene has one layer of cells [rounding].
-const THINNEST: f64 = 1e-9;
+const MIN_EXTENT: f64 = 1e-9;
 
 pub(super) struct Leaves {
     /// Each holds one or two triangles, starting at its first index. Boxes are scaled by `scale`.
@@ -136,9 +136,9 @@ impl Grid {
     fn over(low: Vec3, high: Vec3) -> Self {
         let extent = high.as_dvec3() - low.as_dvec3();
         let scale = (-extent.max_element().max(f64::MIN_POSITIVE).log2().ceil()).clamp(-126.0, 126.0).exp2();
-        let most = DVec3::splat(f64::from((1 << BITS) - 1));
+        let max_cell = DVec3::splat(f64::from((1 << BITS) - 1));
         // A scene that is flat along an axis has one layer there.
-        let per_unit = (most / (extent * scale).max(DVec3::splat(THINNEST))).as_vec3a();
+        let per_unit = (max_cell / (extent * scale).max(DVec3::splat(MIN_EXTENT))).as_vec3a();
         Self { scale: scale as f32, low: Vec3A::from(low) * scale as f32, per_unit }
     }
 

@@ -39,7 +39,7 @@ const fn lines_of<T>() -> usize {
 }
 
 impl Draft {
-    pub fn with_room(len: usize) -> Result<Self> {
+    pub fn with_capacity(len: usize) -> Result<Self> {
         Ok(Self { list: try_with_capacity(len)? })
     }
 

@@ -125,9 +125,9 @@ pub(super) struct NodeRay<L> {
 impl<L: Lanes> NodeRay<L> {
     #[inline(always)]
     pub fn new(ray: &Aligned, largest: Vec4) -> Self {
-        let reach = ray.origin.abs() + largest;
-        let dominant = Vec4::select(ray.is_dominant, reach, Vec4::ZERO).max_element();
-        let margin = (reach + Vec4::splat(dominant)) * MARGIN;
+        let magnitude = ray.origin.abs() + largest;
+        let dominant = Vec4::select(ray.is_dominant, magnitude, Vec4::ZERO).max_element();
+        let margin = (magnitude + Vec4::splat(dominant)) * MARGIN;
         let scale = ray.inverse;
         // Keep the shifts finite for any ray: an infinity could give NaN for an empty box, and NaN counts as a hit.
         let (middle, margin) = (-ray.origin * scale, margin * scale.abs());

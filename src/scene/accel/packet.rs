@@ -7,7 +7,7 @@ use glam::Vec3;
 
 /// Hits nearer than this share of a triangle's depth along the ray are rounding errors: sixteen errors of 2^-24
 /// [rounding].
-const NEAREST: f32 = 1.0 / (1 << 20) as f32;
+const MIN_DISTANCE: f32 = 1.0 / (1 << 20) as f32;
 
 /// Maximum number of triangles in a packet.
 pub(super) const WIDTH: usize = 8;
@@ -59,7 +59,7 @@ impl Packet {
         let t = b0.mul(corner[0]).add(u.mul(corner[1])).add(v.mul(corner[2]));
         // A hit nearer than its own rounding error lies on the surface where the ray starts.
         let farthest = corner[0].abs().max(corner[1].abs()).max(corner[2].abs());
-        let far_enough = farthest.mul(L::splat(NEAREST)).lt(t);
+        let far_enough = farthest.mul(L::splat(MIN_DISTANCE)).lt(t);
         let hit = L::and(L::and(hit, far_enough), t.le(L::splat(t_max)));
         (L::bits(hit), PacketHits { t, u, v })
     }
@@ -114,9 +114,9 @@ fn edges<L: Lanes>(x: &[L; 3], y: &[L; 3]) -> [L; 3] {
 #[inline(always)]
 fn inside<L: Lanes>(edge: &[L; 3]) -> L::Mask {
     let zero = L::splat(0.0);
-    let least = edge[0].min(edge[1]).min(edge[2]);
-    let most = edge[0].max(edge[1]).max(edge[2]);
-    L::or(zero.le(least), most.le(zero))
+    let min = edge[0].min(edge[1]).min(edge[2]);
+    let max = edge[0].max(edge[1]).max(edge[2]);
+    L::or(zero.le(min), max.le(zero))
 }
 
 pub(super) struct PacketHits<L> {

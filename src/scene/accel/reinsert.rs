@@ -18,7 +18,7 @@ use std::cmp::Reverse;
 /// Pairs of nodes per unit of parallel work, and moves applied between two checks for cancellation.
 const CHUNK: usize = 256;
 /// Pairs counted per unit of parallel work.
-const COUNTED: usize = 1 << 15;
+const COUNT_CHUNK: usize = 1 << 15;
 /// Leading bits of an area used as its histogram bin: the exponent and a few bits of the mantissa.
 const SIZE_BITS: u32 = 8 + 4;
 
@@ -55,7 +55,7 @@ impl<'a> Reinsertion<'a> {
     }
 
     /// For each share of all nodes, the area that approximately (and at most) this share reaches.
-    pub fn areas_of_largest<const N: usize>(&self, shares: [f32; N]) -> [f32; N] {
+    pub fn area_thresholds<const N: usize>(&self, shares: [f32; N]) -> [f32; N] {
         let count = |pairs: &[Pair]| {
             let mut counts = vec![0; 1 << SIZE_BITS];
             pairs.iter().flat_map(|pair| &pair.0).for_each(|node| counts[size(half_area(node.aabb()))] += 1);
@@ -65,7 +65,7 @@ impl<'a> Reinsertion<'a> {
             a.iter_mut().zip(b).for_each(|(a, b)| *a += b);
             a
         };
-        let counts = self.tree.pairs.par_chunks(COUNTED).map(count).reduce_with(add).unwrap_or_default();
+        let counts = self.tree.pairs.par_chunks(COUNT_CHUNK).map(count).reduce_with(add).unwrap_or_default();
         let largest = size(half_area(self.aabb(Tree::ROOT)));
         shares.map(|share| {
             let mut left = (share * self.tree.len() as f32) as u32;
@@ -76,13 +76,13 @@ impl<'a> Reinsertion<'a> {
     }
 
     /// Tries to move all nodes of at least the given area.
-    pub fn round(&mut self, least: f32, job: Job) -> Result<()> {
+    pub fn round(&mut self, min_area: f32, job: Job) -> Result<()> {
         let search = |(i, pairs): (usize, &[Pair])| {
             job.check()?;
             let (mut moves, mut stack) = (Vec::new(), Vec::new());
             let first = (2 * CHUNK * i) as u32;
             for (from, node) in (first..).zip(pairs.iter().flat_map(|pair| &pair.0)) {
-                if from > Tree::ROOT && half_area(node.aabb()) >= least {
+                if from > Tree::ROOT && half_area(node.aabb()) >= min_area {
                     let this = self.best_move(from, &mut stack);
                     if this.gain > 0.0 {
                         moves.push(this);
@@ -272,8 +272,8 @@ mod tests {
         ReinsertionOptimizer::default().run(&mut peer, 0.5, Some(vec![1.0, 0.2, 0.1, 0.0]));
         let monitor = Monitor::default();
         let mut reinsertion = Reinsertion::new(&mut tree, monitor.job()).unwrap();
-        for least in reinsertion.areas_of_largest([0.5, 0.1, 0.05, 0.0]) {
-            reinsertion.round(least, monitor.job()).unwrap();
+        for min_area in reinsertion.area_thresholds([0.5, 0.1, 0.05, 0.0]) {
+            reinsertion.round(min_area, monitor.job()).unwrap();
         }
         let nodes: Vec<Bvh2Node> = tree.pairs.iter().flat_map(|pair| pair.0).collect();
         let (after, after_peer) = (area_of_all(&nodes), area_of_all(&peer.nodes));

@@ -13,15 +13,15 @@ pub(super) type Waiting = u64;
 pub(super) const SLACK: usize = 8;
 
 pub(super) struct Stack<'a> {
-    places: &'a mut [MaybeUninit<Waiting>],
+    entries: &'a mut [MaybeUninit<Waiting>],
     len: usize,
 }
 
 impl<'a> Stack<'a> {
-    /// `places` must hold the maximum depth plus `SLACK` entries.
+    /// `entries` must hold the maximum depth plus `SLACK` entries.
     #[inline(always)]
-    pub fn new(places: &'a mut [MaybeUninit<Waiting>]) -> Self {
-        Self { places, len: 0 }
+    pub fn new(entries: &'a mut [MaybeUninit<Waiting>]) -> Self {
+        Self { entries, len: 0 }
     }
 
     /// The last child pushed, and its entry distance.
@@ -41,9 +41,9 @@ impl<'a> Stack<'a> {
     /// Pushes the children in a mask in lane order.
     #[inline(always)]
     pub fn push_all<L: Lanes>(&mut self, children: &[u32; 8], mask: u32) {
-        debug_assert!(self.len + SLACK <= self.places.len());
+        debug_assert!(self.len + SLACK <= self.entries.len());
         // SAFETY: there are eight entries beyond the current depth.
-        unsafe { L::pick(children, mask, self.places.as_mut_ptr().add(self.len).cast()) };
+        unsafe { L::pick(children, mask, self.entries.as_mut_ptr().add(self.len).cast()) };
         self.len += mask.count_ones() as usize;
     }
 
@@ -59,28 +59,28 @@ impl<'a> Stack<'a> {
             let farther = nearest.max(other);
             nearest = nearest.min(other);
             // Insertion sort: sink below the nearer ones.
-            let mut place = self.len;
-            while place > bottom && self.read(place - 1) < farther {
-                self.write(place, self.read(place - 1));
-                place -= 1;
+            let mut index = self.len;
+            while index > bottom && self.read(index - 1) < farther {
+                self.write(index, self.read(index - 1));
+                index -= 1;
             }
-            self.write(place, farther);
+            self.write(index, farther);
             self.len += 1;
         }
         Child::from_bits(nearest as u32)
     }
 
     #[inline(always)]
-    fn read(&self, place: usize) -> Waiting {
-        debug_assert!(place < self.len);
+    fn read(&self, index: usize) -> Waiting {
+        debug_assert!(index < self.len);
         // SAFETY: every entry below `len` is in the list and was written.
-        unsafe { self.places.get_unchecked(place).assume_init() }
+        unsafe { self.entries.get_unchecked(index).assume_init() }
     }
 
     #[inline(always)]
-    fn write(&mut self, place: usize, entry: Waiting) {
-        debug_assert!(place < self.places.len());
-        // SAFETY: `places` holds the maximum depth.
-        unsafe { self.places.get_unchecked_mut(place).write(entry) };
+    fn write(&mut self, index: usize, entry: Waiting) {
+        debug_assert!(index < self.entries.len());
+        // SAFETY: `entries` holds the maximum depth.
+        unsafe { self.entries.get_unchecked_mut(index).write(entry) };
     }
 }

@@ -294,8 +294,8 @@ fn many_small_triangles_in_a_huge_scene_take_no_longer_than_elsewhere() {
 fn a_cancel_is_heard_within_50_ms_while_three_million_triangles_are_built() {
     /// CPU time of this thread in nanoseconds, to a few milliseconds; load on the machine does not count.
     fn now() -> u64 {
-        let told = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap();
-        told.split_whitespace().next().unwrap().parse().unwrap()
+        let schedstat = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap();
+        schedstat.split_whitespace().next().unwrap().parse().unwrap()
     }
     #[derive(Default)]
     struct Silence {

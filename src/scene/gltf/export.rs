@@ -43,7 +43,7 @@ pub fn export(scene: &Scene) -> Result<Vec<u8>> {
     for (i, light) in scene.lights.iter().enumerate() {
         writer.light(scene, i, light)?;
     }
-    writer.finish()
+    writer.into_glb()
 }
 
 /// An image as written: its texture, its encoding, and the divisor of its values.
@@ -314,7 +314,7 @@ impl Writer {
         Ok(number)
     }
 
-    fn finish(mut self) -> Result<Vec<u8>> {
+    fn into_glb(mut self) -> Result<Vec<u8>> {
         let samplers: Vec<Value> = self.textures.iter_mut().map(|texture| texture["sampler"].take()).collect();
         for (i, texture) in self.textures.iter_mut().enumerate() {
             texture["sampler"] = i.into();

@@ -1,8 +1,8 @@
 //! glTF 2.0 import and export: GLB, or JSON with embedded or external buffers and images.
 //!
-//! Specification: Khronos, glTF 2.0 (ISO/IEC 12113:2022), with `KHR_lights_punctual`, `KHR_materials_emissive_strength`,
-//! `_ior`, `_transmission`, `_unlit` (read as an ordinary material), `KHR_texture_transform`, `KHR_mesh_quantization` and
-//! `EXT_lights_ies` (type C).
+//! Specification: Khronos, glTF 2.0 (ISO/IEC 12113:2022), with `KHR_lights_punctual`, `KHR_texture_transform`,
+//! `KHR_materials_emissive_strength`, `_ior`, `_transmission`, `_unlit` (read as an ordinary material),
+//! `KHR_mesh_quantization` and `EXT_lights_ies` (type C).
 //!
 //! Import: every node × primitive becomes one mesh in world space, named after its node. Not imported: animation,
 //! skins and morph targets (the rest pose is used), vertex colours, tangents (the renderer derives them), occlusion

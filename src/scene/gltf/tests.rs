@@ -320,11 +320,11 @@ fn lying_files_are_errors_that_say_why() {
 fn a_budget_is_asked_for_all_that_will_be_made() {
     let glb = export(&scene()).unwrap();
     let asked = Cell::new(0);
-    let read = |most: u64| {
+    let read = |limit: u64| {
         asked.set(0);
         super::import(&glb, None, &|bytes| {
             asked.set(asked.get() + bytes);
-            if asked.get() <= most { Ok(()) } else { Err(Error::new(ErrorKind::OutOfMemory, "enough")) }
+            if asked.get() <= limit { Ok(()) } else { Err(Error::new(ErrorKind::OutOfMemory, "enough")) }
         })
     };
     let whole = read(u64::MAX).unwrap();
@@ -335,8 +335,8 @@ fn a_budget_is_asked_for_all_that_will_be_made() {
     let textures = whole.textures.iter().map(|t| size_of_val(&t.image.data[..]));
     let needed = meshes.chain(textures).sum::<usize>() as u64;
     assert_eq!(asked.get(), needed);
-    for most in [0, needed / 2, needed - 1] {
-        assert_eq!(read(most).unwrap_err().kind, ErrorKind::OutOfMemory, "{most} of {needed}");
+    for limit in [0, needed / 2, needed - 1] {
+        assert_eq!(read(limit).unwrap_err().kind, ErrorKind::OutOfMemory, "{limit} of {needed}");
     }
 }
 

@@ -5,8 +5,9 @@ use glam::{DVec2, DVec3};
 
 /// Axes within 1° of a world axis snap to it [convention].
 const COS_SNAP: f64 = 0.999_847_695;
-/// The rectangle along the world axes is preferred unless another has an area smaller by this share.
-const WORTH_TURNING: f64 = 1e-3;
+/// The rectangle along the world axes is preferred unless another has an area smaller by this share [origin not
+/// recorded].
+const MIN_SAVING: f64 = 1e-3;
 /// Planes at more than 45° to the horizontal are walls [convention].
 const WALL: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
@@ -25,7 +26,7 @@ pub fn fit(points: &[DVec3], centre: DVec3, normal: DVec3) -> Frame {
     let turned = smallest(points, centre, upright, normal);
     let (aligned_frame, turned_frame) = (bound(points, centre, upright, normal), bound(points, centre, turned, normal));
     let aligned = turned.dot(upright) >= COS_SNAP
-        || turned_frame.size.element_product() > (1.0 - WORTH_TURNING) * aligned_frame.size.element_product();
+        || turned_frame.size.element_product() > (1.0 - MIN_SAVING) * aligned_frame.size.element_product();
     if aligned { aligned_frame } else { turned_frame }
 }
 

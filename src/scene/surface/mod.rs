@@ -9,11 +9,11 @@
 //! Not modelled: curved surfaces. A vault is reduced to its largest planar part; [`Surface::bent`] reports the area
 //! that slopes away from it.
 
+mod facing;
 mod frame;
 mod name;
 mod patch;
 mod place;
-mod room;
 #[cfg(test)]
 mod tests;
 
@@ -106,7 +106,7 @@ fn check_triangles(scene: &Scene, triangles: &[(usize, usize)]) -> Result<()> {
 fn from_list(scene: &Scene, triangles: &[(usize, usize)]) -> Result<Surface> {
     // Group the triangles into planes; choose the plane, and the side of it, from which most of the room is visible.
     let patches = patch::planes(scene, triangles)?;
-    let (chosen, normal) = room::facing(scene, &patches)?;
+    let (chosen, normal) = facing::facing(scene, &patches)?;
     let chosen = &patches[chosen];
     let bent = patch::bent(scene, triangles, normal);
     let mut triangles = chosen.triangles.clone();

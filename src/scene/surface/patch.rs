@@ -6,20 +6,21 @@ use crate::scene::Scene;
 use glam::DVec3;
 use std::collections::BTreeMap;
 
-/// Maximum angle between a triangle and its plane: 2°.
+/// Maximum angle between a triangle and its plane: 2° [origin not recorded].
 const COS_ANGLE: f64 = 0.999_390_827;
-/// Maximum distance of its corners from the plane, relative to the diagonal of the object.
+/// Maximum distance of its corners from the plane, relative to the diagonal of the object [origin not recorded].
 const OFFSET: f64 = 5e-4;
-/// Side of a cell in the grid of directions: about 2°.
+/// Side of a cell in the grid of directions: about 2° [origin not recorded].
 const DIRECTION_CELL: f64 = 0.035;
 /// Maximum number of directions examined, largest area first.
 const DIRECTIONS: usize = 32;
-/// Maximum number of planes returned, and the minimum area of a plane relative to the largest.
+/// Maximum number of planes returned, and the minimum area of a plane relative to the largest [origin not recorded].
 const PLANES: usize = 16;
-const LEAST_AREA: f64 = 0.05;
+const MIN_AREA: f64 = 0.05;
 
-/// Cosines of 75 and 5 degrees: triangles between them belong neither to the plane nor to the edges of a slab.
-const BENT: [f64; 2] = [0.258_819_045, 0.996_194_698];
+/// Cosines of 75 and 5 degrees: triangles between them belong neither to the plane nor to the edges of a slab [origin
+/// not recorded].
+const SLOPED: [f64; 2] = [0.258_819_045, 0.996_194_698];
 
 /// Coplanar triangles.
 pub struct Patch {
@@ -77,7 +78,7 @@ pub fn planes(scene: &Scene, triangles: &[(usize, usize)]) -> Result<Vec<Patch>>
         while let Some(members) = heaviest(&facets, &free, direction, tolerance) {
             let largest = patches.iter().map(|p| p.area).fold(0.0, f64::max);
             let patch = gather(&facets, &members, tolerance);
-            if patch.area < LEAST_AREA * largest || patches.len() >= DIRECTIONS * PLANES {
+            if patch.area < MIN_AREA * largest || patches.len() >= DIRECTIONS * PLANES {
                 break;
             }
             members.iter().for_each(|&i| free[i] = false);
@@ -86,7 +87,7 @@ pub fn planes(scene: &Scene, triangles: &[(usize, usize)]) -> Result<Vec<Patch>>
     }
     patches.sort_by(|a, b| b.area.total_cmp(&a.area));
     let largest = patches.first().ok_or_else(no_area)?.area;
-    patches.retain(|p| p.area >= LEAST_AREA * largest);
+    patches.retain(|p| p.area >= MIN_AREA * largest);
     patches.truncate(PLANES);
     Ok(patches)
 }
@@ -95,7 +96,7 @@ pub fn planes(scene: &Scene, triangles: &[(usize, usize)]) -> Result<Vec<Patch>>
 pub fn bent(scene: &Scene, triangles: &[(usize, usize)], normal: DVec3) -> f64 {
     let slopes = |f: &Facet| {
         let cosine = f.area_vector.dot(normal).abs() / f.area;
-        BENT[0] < cosine && cosine < BENT[1]
+        SLOPED[0] < cosine && cosine < SLOPED[1]
     };
     // `sum` would start at -0.
     triangles.iter().filter_map(|&id| facet(scene, id)).filter(slopes).fold(0.0, |sum, f| sum + f.area)

@@ -7,10 +7,10 @@ use crate::scene::Scene;
 use glam::{DVec3, Vec3};
 
 /// Rays cast from each side of each plane.
-const PROBES: usize = 128;
+const RAYS: usize = 128;
 /// Triangles per bounding box.
 const CHUNK: usize = 64;
-/// Weight of the share of cameras in front of a side.
+/// Weight of the share of cameras in front of a side [origin not recorded].
 const CAMERA_WEIGHT: f64 = 4.0;
 
 /// The plane that faces the room, and its unit normal into the room.
@@ -25,7 +25,7 @@ pub fn facing(scene: &Scene, patches: &[Patch]) -> Result<(usize, DVec3)> {
     for (i, patch) in patches.iter().enumerate() {
         for normal in [wound(scene, patch), -wound(scene, patch)] {
             let score = patch.area
-                * sight(scene, &chunks, patch, normal)
+                * visibility(scene, &chunks, patch, normal)
                 * (1.0 + CAMERA_WEIGHT * cameras(scene, patch, normal));
             if best.is_none_or(|(b, ..)| score > b) {
                 best = Some((score, i, normal));
@@ -55,7 +55,7 @@ fn cameras(scene: &Scene, patch: &Patch, normal: DVec3) -> f64 {
 }
 
 /// Visibility of the scene from one side of a plane, in `[0, 1]`.
-fn sight(scene: &Scene, chunks: &[Chunk], patch: &Patch, normal: DVec3) -> f64 {
+fn visibility(scene: &Scene, chunks: &[Chunk], patch: &Patch, normal: DVec3) -> f64 {
     // Prefix sums of areas, to sample triangles in proportion to area.
     let mut sums = Vec::with_capacity(patch.triangles.len());
     let mut sum = 0.0;
@@ -64,13 +64,13 @@ fn sight(scene: &Scene, chunks: &[Chunk], patch: &Patch, normal: DVec3) -> f64 {
         sum += (b - a).cross(c - a).length();
         sums.push(sum);
     }
-    let reach = patch.area.sqrt();
+    let scale = patch.area.sqrt();
     let (u, v) = normal.any_orthonormal_pair();
     let mut seen = 0.0;
-    for probe in 0..PROBES {
+    for ray in 0..RAYS {
         // Sample a point uniformly by area, and a direction in proportion to its cosine to the normal (Malley's
         // method).
-        let mut rng = Rng::new(0, &[probe as u64]);
+        let mut rng = Rng::new(0, &[ray as u64]);
         let at = sums.partition_point(|s| *s < rng.next_f64() * sum).min(sums.len() - 1);
         let (mesh, triangle) = patch.triangles[at];
         let [a, b, c] = scene.meshes[mesh].corners(triangle).map(|p| p.as_dvec3());
@@ -82,10 +82,10 @@ fn sight(scene: &Scene, chunks: &[Chunk], patch: &Patch, normal: DVec3) -> f64 {
         // Start beyond the plane's own triangles, which lie within four tolerances of each other.
         let start = point + normal * (4.0 * patch.tolerance);
         if let Some(distance) = nearest(scene, chunks, start.as_vec3(), direction.as_vec3()) {
-            seen += (f64::from(distance) / reach).min(1.0);
+            seen += (f64::from(distance) / scale).min(1.0);
         }
     }
-    seen / PROBES as f64
+    seen / RAYS as f64
 }
 
 /// A run of triangles of one mesh with its bounding box; neighbours in a file are mostly neighbours in space.
