@@ -11,7 +11,7 @@
 //! blur of 3 pixels, it still has 113.6.) Its samples lie anywhere in the picture, so they fall into 44.3 % of its cells on
 //! average when all exemplar patches are used alike, and into fewer otherwise (`stylit.bound.used`): no picture reaches 45.
 //! Its `guide` has a standard error of 13, and most of it is that patches which look alike lie in different light: see
-//! `src/stylize/mod.rs`. Pictures go to `out/bench/`.
+//! `docs/notes/stylize.md`. Pictures go to `out/bench/`.
 
 mod harness;
 

@@ -1,4 +1,4 @@
-//! Edges of shapes: where the material changes, the surface folds, or one thing stands before another.
+//! Edges of shapes: changes of material, creases of the surface, and depth discontinuities.
 
 use crate::error::Result;
 use crate::exec;
@@ -6,11 +6,11 @@ use crate::image::{Image, pyramid};
 use crate::job::Job;
 use glam::Vec3;
 
-/// Normals that differ by more than this (1 - cosine; about 40°) between neighbouring pixels make a full edge.
+/// Difference between the normals of neighbouring pixels (1 - cosine; about 40°) that makes a full edge.
 const FOLD: f32 = 0.25;
-/// So does a step of depth, against the slope on either side, of this share of the depth.
+/// Second difference of depth, as a share of the depth, that makes a full edge.
 const STEP: f32 = 0.02;
-/// Edges are spread over this many pixels (standard deviation), so that patches beside them know of them.
+/// Standard deviation in pixels by which edges are blurred, so that patches beside an edge sense it.
 const SPREAD: f32 = 0.8;
 
 /// The strength of the edge at each pixel, in `[0, 1]`.
@@ -38,14 +38,14 @@ pub fn edges(normals: &Image, material: &Image, depth: &Image, job: Job) -> Resu
                     fold
                 });
             }
-            // The second difference of depth: a slope alone is no step.
+            // Use the second difference of depth: a constant slope is not a discontinuity.
             for pair in around.chunks_exact(2) {
                 let (d, a, b) =
                     (depth.pixel(x, y)[0], depth.pixel(pair[0].0, pair[0].1)[0], depth.pixel(pair[1].0, pair[1].1)[0]);
                 let step = (a + b - 2.0 * d).abs() / (STEP * d);
                 *edge = if step.is_finite() { edge.max(step) } else { *edge };
             }
-            // Faint ones are noise of curved surfaces.
+            // Suppress faint edges, which are noise on curved surfaces.
             *edge = ((*edge - 0.2) / 0.8).clamp(0.0, 1.0);
         }
     })?;

@@ -7,15 +7,15 @@ use crate::image::colour::luminance;
 use crate::job::Job;
 use glam::Vec3;
 
-/// Passes; the reach doubles in each.
+/// Number of passes; the step doubles in each.
 const PASSES: u32 = 3;
-/// The cubic B-spline that each pass applies along x and along y.
+/// The cubic B-spline that each pass applies along x and y [convention].
 const KERNEL: [f32; 5] = [1.0 / 16.0, 0.25, 0.375, 0.25, 1.0 / 16.0];
-/// Relative difference of brightness that counts little.
+/// Relative difference of brightness at which the weight has fallen to 1/e.
 const TOLERANCE: f32 = 0.25;
 
-/// The light averaged over neighbours of the same material, of like normal and of like brightness. Brightness is judged
-/// from means over 5 × 5 pixels: single ones are too noisy to tell light from shadow.
+/// The light averaged over neighbours of the same material, similar normal and similar brightness. Brightness is
+/// compared between means over 5 × 5 pixels, because single pixels are too noisy to distinguish light from shadow.
 pub fn along_surfaces(light: &Image, normals: &Image, material: &Image, job: Job) -> Result<Image> {
     let floor = 0.02 * mean_luminance(light);
     let surface = Surface { normals, material };
@@ -31,14 +31,15 @@ pub fn along_surfaces(light: &Image, normals: &Image, material: &Image, job: Job
     Ok(current)
 }
 
-/// What the light lies on.
+/// The surfaces that the light falls on.
 struct Surface<'a> {
     normals: &'a Image,
     material: &'a Image,
 }
 
 impl Surface<'_> {
-    /// Weighted means over 5 × 5 pixels `step` apart; `like` weighs the brightnesses that `guide` has in two places.
+    /// Weighted means over 5 × 5 pixels at distance `step`; `like` weights a pair of positions by their brightness in
+    /// `guide`.
     fn average(
         &self,
         light: &Image,

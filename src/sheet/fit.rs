@@ -1,4 +1,4 @@
-//! Which mark is which, and the map from the page to the photo.
+//! Identification of the marks, and the map from the page to the photo.
 
 use super::detect::{Candidate, refine};
 use super::layout::Layout;
@@ -9,20 +9,21 @@ use crate::image::Image;
 use crate::job::Job;
 use glam::DVec2;
 
-/// Fewer marks could be anything.
+/// Minimum number of marks: fewer could be a coincidence.
 const FEWEST: usize = 6;
-/// How far a mark may be from where a first guess puts it, and then the refined one, as shares of the sheet's size there.
+/// Maximum distance of a mark from its predicted position, under the first and the refined map, as shares of the
+/// sheet's size in the photo.
 const LOOSE: f64 = 0.02;
 const TIGHT: f64 = 0.004;
 
 pub struct Fit {
     /// From pixels of the page to pixels of the photo.
     pub to_photo: Homography,
-    /// Indices of the marks it rests on.
+    /// Indices of the marks used.
     pub marks: Vec<usize>,
-    /// Root mean square distance of marks from where it puts them, in pixels of the photo.
+    /// Root mean square distance between marks and their predicted positions, in pixels of the photo.
     pub residual: f64,
-    /// Pixels of the photo in a pixel of the page.
+    /// Pixels of the photo per pixel of the page.
     pub scale: f64,
 }
 
@@ -30,7 +31,7 @@ pub fn fit(layout: &Layout, grey: &Image, candidates: &[Candidate], job: Job) ->
     let first = guess(layout, candidates, job)?;
     let found = first.ok_or_else(|| too_few(candidates.len()))?;
 
-    // Each mark to a part of a pixel, in a window that stays inside it.
+    // Refine each mark to sub-pixel precision, in a window inside the mark.
     let mut pairs = Vec::new();
     for (mark, at) in found.pairs {
         let centre = layout.marks[mark];
@@ -42,7 +43,7 @@ pub fn fit(layout: &Layout, grey: &Image, candidates: &[Candidate], job: Job) ->
     }
     let extent = extent(layout, &found.map);
     let mut map = least_squares(layout, found.map, &pairs);
-    // What does not fit the others is no mark.
+    // Discard marks inconsistent with the others.
     pairs.retain(|&(mark, at)| map.apply(layout.marks[mark]).distance(at) < TIGHT * extent);
     if pairs.len() < FEWEST {
         return Err(too_few(pairs.len()));
@@ -56,8 +57,8 @@ pub fn fit(layout: &Layout, grey: &Image, candidates: &[Candidate], job: Job) ->
 
 fn too_few(count: usize) -> Error {
     Error::degenerate(format!(
-        "{count} places look like alignment marks, and no six of them lie as on the sheet; photograph the whole sheet, flat \
-         and sharp, and give the paper size it was printed with"
+        "{count} places look like alignment marks, and no six of them are arranged as on the sheet; photograph the whole \
+         sheet, flat and sharp, and give the paper size it was printed with"
     ))
 }
 
@@ -73,8 +74,8 @@ struct Guess {
     misfit: f64,
 }
 
-/// The map under which most marks lie on candidates: four candidates at a time are taken for the corners, or for the middles of
-/// the sides, since at least one of these quadruples is whole when a mark is missing.
+/// The map under which most marks coincide with candidates. Each quadruple of candidates is tried as the corners, and
+/// as the midpoints of the sides: if one mark is missing, at least one of these quadruples is complete.
 fn guess(layout: &Layout, candidates: &[Candidate], job: Job) -> Result<Option<Guess>> {
     let n = candidates.len();
     let mut best: Option<Guess> = None;
@@ -101,7 +102,7 @@ fn guess(layout: &Layout, candidates: &[Candidate], job: Job) -> Result<Option<G
     Ok(best)
 }
 
-/// Four points in the order of a convex quadrangle, clockwise as seen (y down).
+/// Orders four points as a convex quadrilateral, clockwise as seen (y down); `None` if they are not convex.
 fn around(points: [DVec2; 4]) -> Option<[DVec2; 4]> {
     let centre = points.iter().sum::<DVec2>() / 4.0;
     let mut ordered = points;
@@ -113,7 +114,7 @@ fn around(points: [DVec2; 4]) -> Option<[DVec2; 4]> {
     (0..4).all(|i| turns(i) > 1.0).then_some(ordered)
 }
 
-/// The marks that lie on candidates under a map.
+/// The marks that coincide with candidates under a map.
 fn agreement(layout: &Layout, map: Homography, candidates: &[Candidate]) -> Guess {
     let tolerance = LOOSE * extent(layout, &map);
     let (mut pairs, mut misfit) = (Vec::new(), 0.0);
@@ -129,9 +130,9 @@ fn agreement(layout: &Layout, map: Homography, candidates: &[Candidate]) -> Gues
     Guess { map, pairs, misfit }
 }
 
-/// The map with the least sum of squared distances in the photo: Gauss-Newton from a good start.
+/// The map of minimum squared distances in the photo, by Gauss-Newton from a good start.
 fn least_squares(layout: &Layout, start: Homography, pairs: &[(usize, DVec2)]) -> Homography {
-    // Coordinates of the page in about [-1, 1], so that the eight numbers are of a size.
+    // Scale page coordinates to about [-1, 1], so that the eight parameters have similar magnitude.
     let half = DVec2::new(layout.width as f64, layout.height as f64) / 2.0;
     let to_unit = glam::DMat3::from_scale(half.recip()) * glam::DMat3::from_translation(-half);
     let mut h = start.0 * to_unit.inverse();
@@ -154,7 +155,7 @@ fn least_squares(layout: &Layout, start: Homography, pairs: &[(usize, DVec2)]) -
             }
         }
         let Some(step) = solve(matrix, right) else { break };
-        // The numbers row by row, the last fixed to 1.
+        // The parameters row by row; the last entry is fixed to 1.
         for (i, s) in step.iter().enumerate() {
             h.col_mut(i % 3)[i / 3] += s;
         }

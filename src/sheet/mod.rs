@@ -1,14 +1,15 @@
-//! Print sheets (StyLit, section 4.2): the exemplar printed at low contrast between alignment marks, for an artist to paint
-//! over; and a photo or scan of the painted sheet brought back onto the exemplar by its marks.
+//! Print sheets (StyLit, section 4.2): the exemplar is printed at low contrast between alignment marks for an artist
+//! to paint over; a photo or scan of the painted sheet is registered to the exemplar by its marks.
 //!
-//! A mark is a disk of two black and two white quadrants. Where they meet is a saddle of brightness, which perspective leaves
-//! where it is and which is found to a small part of a pixel. Ten marks stand around the picture: at the corners, at the
-//! middles of the sides, and two more that tell which way up the sheet is. Six are enough.
+//! A mark is a disk of two black and two white quadrants. Their common corner is a saddle of brightness, which is
+//! invariant under perspective and can be located to a small fraction of a pixel. Ten marks surround the picture: at
+//! the corners, at the midpoints of the sides, and two more that determine the orientation of the sheet. Six marks
+//! suffice.
 //!
-//! `layout` says where things are on the page, [`print`] draws it, `detect` finds marks in a photo, `fit` tells which mark is
-//! which, and [`align`] resamples the photo and evens out its light by the white of the marks.
+//! `page` lays out the page, [`print`] draws it, `detect` finds marks in a photo, `fit` identifies them, and [`align`]
+//! resamples the photo and removes uneven illumination by the white of the marks.
 //!
-//! Not modelled: paper that is not flat, and lenses that bend lines; `Aligned::residual` shows both.
+//! Not modelled: curved paper and lens distortion; `Aligned::residual` reveals both.
 
 mod detect;
 mod fit;
@@ -33,11 +34,11 @@ pub struct Params {
     pub paper: DVec2,
     /// Dots per inch of the printed sheet, in `[20, 1200]`.
     pub dpi: f64,
-    /// Contrast of the printed picture, in `[0, 1]`; 1 prints it as it is.
+    /// Contrast of the printed picture, in `[0, 1]`; 1 prints it unchanged.
     pub contrast: f32,
-    /// Distance of the marks from the edge of the paper in millimetres, in `[0, 50]`: printers leave a margin.
+    /// Distance of the marks from the edge of the paper in millimetres, in `[0, 50]`: printers need a margin.
     pub margin: f64,
-    /// Whether to even out the light of the photo.
+    /// Whether to remove uneven illumination from the photo.
     pub even_light: bool,
 }
 
@@ -65,7 +66,7 @@ pub fn size(params: &Params) -> Result<(usize, usize)> {
     Ok((layout.width, layout.height))
 }
 
-/// Draws the sheet for a picture (linear, 1 is white; 1, 3 or 4 channels): linear RGB.
+/// Draws the sheet for a picture (linear, 1 is white; 1, 3 or 4 channels) in linear RGB.
 pub fn print(picture: &Image, params: &Params, job: Job) -> Result<Image> {
     params.check()?;
     let layout = Layout::new(params, picture.width, picture.height)?;
@@ -87,26 +88,26 @@ pub fn print(picture: &Image, params: &Params, job: Job) -> Result<Image> {
     Ok(sheet)
 }
 
-/// A painted sheet brought back onto its picture.
+/// A painted sheet registered to its picture.
 #[derive(Clone, Debug)]
 pub struct Aligned {
-    /// Linear RGB of the picture's size; where the light was evened out, paper is 1.
+    /// Linear RGB at the picture's size; after removal of uneven illumination, paper is 1.
     pub image: Image,
     /// From pixels of the picture to pixels of the photo.
     pub to_photo: Homography,
-    /// Number of marks it rests on.
+    /// Number of marks used.
     pub marks: usize,
-    /// Root mean square distance between marks and where the map puts them, in pixels of the photo.
+    /// Root mean square distance between marks and their predicted positions, in pixels of the photo.
     pub residual: f64,
     /// Expected alignment error in pixels of the picture.
     pub error: f64,
 }
 
-/// Finds the marks in a photo (linear RGB) of a sheet printed for a picture of `width × height` pixels with the same
-/// parameters, and resamples the photo onto the picture.
+/// Finds the marks in a photo (linear RGB) of a sheet that was printed for a picture of `width × height` pixels with
+/// the same parameters, and resamples the photo onto the picture.
 ///
 /// # Errors
-/// Degenerate if fewer than six marks are found where a sheet could have them.
+/// `Degenerate` if fewer than six marks are found in a consistent arrangement.
 pub fn align(photo: &Image, width: usize, height: usize, params: &Params, job: Job) -> Result<Aligned> {
     params.check()?;
     let layout = Layout::new(params, width, height)?;
@@ -124,14 +125,14 @@ pub fn align(photo: &Image, width: usize, height: usize, params: &Params, job: J
     if params.even_light {
         even_light(&mut image, photo, &layout, &found, width, height, job.part(0.95, 1.0))?;
     }
-    // A map from n points with two coordinates each is as uncertain as eight of its numbers.
+    // A map with eight parameters fitted to n points has the expected error residual · √(8 / 2n).
     let scale = layout.size[0] / width as f64 * found.scale;
     let error = found.residual * (8.0 / (2.0 * found.marks.len() as f64)).sqrt() / scale;
     job.report(1.0);
     Ok(Aligned { image, to_photo, marks: found.marks.len(), residual: found.residual, error })
 }
 
-/// Divides by the white of the paper beside each mark: its logarithm is taken to be bilinear over the sheet.
+/// Divides by the white of the paper in each mark; its logarithm is interpolated bilinearly over the sheet.
 fn even_light(
     image: &mut Image,
     photo: &Image,
@@ -150,7 +151,7 @@ fn even_light(
         let (mut matrix, mut right) = ([[0.0; 4]; 4], [0.0; 4]);
         for &mark in &found.marks {
             let centre = layout.marks[mark];
-            // The middles of the white quadrants.
+            // Sample the centres of the white quadrants.
             let places = [1.0, -1.0].map(|s| centre + s * DVec2::new(0.4, -0.4) * layout.radius);
             let value = places.map(|p| {
                 let at = found.to_photo.apply(p);

@@ -17,8 +17,8 @@ fn params() -> Params {
     Params { dpi: 100.0, ..Params::default() }
 }
 
-/// A photo of a sheet: its corners lie at `corners` of a photo of 1300 × 1000 pixels, on a dark table, the light falls
-/// off to one side, and there is noise.
+/// A photo of 1300 × 1000 pixels of a sheet whose corners lie at `corners`, on a dark table, with light that falls off
+/// to one side, and noise.
 fn photograph(sheet: &Image, corners: [[f64; 2]; 4]) -> (Image, Homography) {
     let (w, h) = (sheet.width as f64, sheet.height as f64);
     let page = [[0.0, 0.0], [w, 0.0], [w, h], [0.0, h]].map(DVec2::from);
@@ -39,7 +39,7 @@ fn photograph(sheet: &Image, corners: [[f64; 2]; 4]) -> (Image, Homography) {
     (photo, to_photo)
 }
 
-/// Largest distance in pixels of the picture between where corners of the picture are and where they were found.
+/// Maximum distance, in pixels of the picture, between true and estimated positions of points of the picture.
 fn misalignment(aligned: &Aligned, layout: &Layout, to_photo: Homography) -> f64 {
     let truth = to_photo.after(layout.from_picture(160, 120));
     let back = aligned.to_photo.inverse();
@@ -61,7 +61,7 @@ fn a_photo_of_the_sheet_is_aligned_whichever_way_up() {
         assert_eq!(aligned.marks, 10);
         let off = misalignment(&aligned, &layout, to_photo);
         assert!(off < 0.05 && aligned.residual < 0.3, "turned {turn}: {off} {}", aligned.residual);
-        // The light is even: what was white is white, everywhere.
+        // After removal of uneven illumination, white is white everywhere.
         let white = |x: usize, y: usize| aligned.image.rgb(x, y) - print_of(&picture, x, y, &params);
         for (x, y) in [(4, 4), (155, 4), (155, 115), (4, 115)] {
             assert!(white(x, y).abs().max_element() < 0.06, "{}", white(x, y));
@@ -69,7 +69,7 @@ fn a_photo_of_the_sheet_is_aligned_whichever_way_up() {
     }
 }
 
-/// What a pixel of the picture looks like printed.
+/// The printed value of a pixel of the picture.
 fn print_of(picture: &Image, x: usize, y: usize, params: &Params) -> Vec3 {
     let faded = |v: f32| srgb_to_linear(1.0 - params.contrast * (1.0 - linear_to_srgb(v)));
     Vec3::from_array(picture.rgb(x, y).to_array().map(faded))
@@ -132,7 +132,7 @@ fn what_is_no_sheet_is_an_error_that_says_so() {
     }
 }
 
-/// Paper that arches by four pixels of the sheet from its middle to its sides.
+/// Paper that curves by four pixels of the sheet from its middle to its sides.
 #[test]
 fn a_curled_sheet_shows_in_the_residual() {
     let params = params();

@@ -1,4 +1,4 @@
-//! What settings would take and leave, from runs at a part of the resolution.
+//! Predictions of time and energy for settings, from pilot runs at reduced resolution.
 
 use super::level::Problem;
 use super::{Input, Params, schedule};
@@ -7,46 +7,46 @@ use crate::image::Image;
 use crate::job::Job;
 use std::time::Duration;
 
-/// Most pixels that anything is tried on, of exemplar or target, whichever is smaller: a small exemplar has fewer patches for its
-/// pixels, so what is left at low resolutions would say too little of higher ones.
+/// Maximum number of pixels of the smaller of exemplar and target in a pilot run. The smaller one counts, because a
+/// small exemplar has few patches per pixel, so energies at low resolutions would predict those at higher ones poorly.
 const NEAR: usize = 128 << 10;
-/// How many resolutions are tried.
+/// Number of resolutions of the pilot runs.
 const RESOLUTIONS: usize = 3;
 
-/// What settings should take, and the energy that they should leave.
+/// Predicted time of settings, and the energy of their result.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Trial {
     pub seconds: f64,
-    /// As the last of [`super::LevelReport::energy`] on the finest level.
+    /// Like the last of [`super::LevelReport::energy`] on the finest level.
     pub energy: f64,
 }
 
-/// By which power of the number of pixels the time of one grows at most: patches settle more slowly where there are more.
+/// Maximum exponent by which the time per pixel grows with the number of pixels: larger fields converge more slowly.
 const MOST_GROWTH: f64 = 0.12;
 
-/// Trials of settings on one input.
+/// Pilot runs of settings on one input.
 pub struct Probe<'a> {
     input: Input<'a>,
     ladder: &'a [Params],
     usual: usize,
     clock: &'a (dyn Fn() -> Duration + Sync),
-    /// The problem, and its halves down to the lowest resolution that is tried.
+    /// The problem, and its successive halves down to the lowest resolution used.
     problems: Vec<Problem>,
     preparing: f64,
-    /// At the nearest resolution: the usual settings, and others once they are [`Self::refine`]d.
+    /// At the highest pilot resolution: the reference settings, and others after [`Self::refine`].
     near: Vec<Option<Trial>>,
-    /// At the next one.
+    /// At the next lower resolution.
     middle: Vec<Trial>,
-    /// Energy that the usual settings should leave.
+    /// Predicted energy of the reference settings.
     energy: f64,
 }
 
 impl<'a> Probe<'a> {
-    /// Tries each of `ladder`, all of the same [`Params::preview`], `input.previous` aside. The one at `usual` is tried at three
-    /// resolutions, the highest of 32 to 128 thousand pixels, the others at the middle one.
+    /// Runs each of `ladder`, all with the same [`Params::preview`]; ignores `input.previous`. The settings at `usual`
+    /// are run at three resolutions, the highest with 32 to 128 thousand pixels, the others at the middle one.
     ///
     /// # Errors
-    /// As those of [`super::run`].
+    /// Those of [`super::run`].
     pub fn new(
         input: &Input<'a>,
         ladder: &'a [Params],
@@ -57,7 +57,7 @@ impl<'a> Probe<'a> {
         ladder.iter().try_for_each(Params::check)?;
         let input = Input { previous: None, motion: None, ..*input };
 
-        // The problem, and all of its halves that are to be tried or lead there.
+        // Form the problem and all its halves down to the lowest resolution used.
         let start = clock();
         let mut problems = vec![Problem::new(&input, &ladder[usual], job.part(0.0, 0.05))?];
         let preparing = clock().saturating_sub(start).as_secs_f64();
@@ -84,7 +84,7 @@ impl<'a> Probe<'a> {
         Ok(probe)
     }
 
-    /// Which of the resolutions are tried, from the nearest to the one asked for.
+    /// The indices of the resolutions used, the highest first.
     fn tried(&self) -> [usize; RESOLUTIONS] {
         let lowest = self.problems.len() - 1;
         let nearest = self.problems.iter().position(is_near).unwrap_or(lowest);
@@ -98,10 +98,10 @@ impl<'a> Probe<'a> {
         Ok(Trial { seconds: (self.clock)().saturating_sub(start).as_secs_f64(), energy })
     }
 
-    /// Tries settings at the nearest resolution too, if they have not been.
+    /// Runs settings at the highest pilot resolution too, unless done before.
     ///
     /// # Errors
-    /// As those of [`super::run`].
+    /// Those of [`super::run`].
     pub fn refine(&mut self, settings: usize, job: Job) -> Result<()> {
         if self.near[settings].is_none() {
             self.near[settings] = Some(self.run(self.tried()[0], settings, job)?);
@@ -109,22 +109,22 @@ impl<'a> Probe<'a> {
         Ok(())
     }
 
-    /// Whether settings have been tried at the nearest resolution.
+    /// Whether settings have been run at the highest pilot resolution.
     pub fn is_refined(&self, settings: usize) -> bool {
         self.near[settings].is_some()
     }
 
-    /// What settings should take and leave at the full resolution.
+    /// Predicted time and energy of settings at the full resolution.
     ///
-    /// Work grows with the number of pixels, and with settings that settle slowly by a little more: by the power by which it grew between the two
-    /// resolutions that they were tried at. Energy falls with the size of pixels, since paint and guides differ less between
-    /// neighbours: from one resolution to the next by a power that falls itself, as between those tried. How many times as much one
-    /// setting leaves as another hardly depends on the resolution.
+    /// Time grows linearly with the number of pixels, and with slowly converging settings by a slightly higher power,
+    /// which is estimated from the two resolutions. Energy falls with the size of pixels, because neighbouring pixels
+    /// of paint and guides differ less: from one resolution to the next by a factor whose logarithm itself decays, as
+    /// extrapolated from the pilot runs. The ratio of energies between settings hardly depends on the resolution.
     pub fn trial(&self, settings: usize) -> Trial {
         let [all, tried, middle] =
             [0, self.tried()[0], self.tried()[1]].map(|at| pixels(&self.problems[at].guides.target) as f64);
         let of = |value: f64, usual: f64| if usual > 0.0 { value / usual } else { 1.0 };
-        // Settings that were tried at the middle resolution only take as many times as much there as the usual ones.
+        // Settings run at the middle resolution only: assume the ratio to the reference settings found there.
         let usual = self.near[self.usual].unwrap_or_default();
         let [here, its_usual] = [settings, self.usual].map(|i| self.middle[i]);
         let near = self.near[settings].unwrap_or(Trial {
@@ -146,8 +146,8 @@ fn is_near(problem: &Problem) -> bool {
     pixels(&problem.style).min(pixels(&problem.guides.target)) <= NEAR
 }
 
-/// The energy so many resolutions above the last of three: from each to the next its logarithm changes as many times as much
-/// as it changed the time before (Aitken 1926).
+/// Extrapolates the energy `steps` resolutions above the last of three: each step of its logarithm is a constant
+/// fraction of the previous step (Aitken 1926).
 fn continued([far, middle, near]: [f64; 3], steps: usize) -> f64 {
     let step = |from: f64, to: f64| if from > 0.0 && to > 0.0 { (to / from).ln() } else { 0.0 };
     let [before, mut last] = [step(far, middle), step(middle, near)];
@@ -166,7 +166,7 @@ mod tests {
 
     #[test]
     fn energies_go_on_as_they_have_begun() {
-        // By a power of the resolution; by one that falls; not at all.
+        // Constant steps; decaying steps; no change.
         assert!((continued([64.0, 32.0, 16.0], 3) - 2.0).abs() < 1e-12);
         let falling = 4.0 * (0.5 * (0.64f64).ln() + 0.25 * (0.64f64).ln()).exp();
         assert!((continued([4.0 / 0.64f64.powi(3), 4.0 / 0.64, 4.0], 2) - falling).abs() < 1e-12, "{falling}");
