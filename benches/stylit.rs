@@ -499,7 +499,7 @@ fn knobs(pair: &Pair, pool: &Pool) {
     knob("settle", &[0, 1, 2, 4], |p, v| p.settle = v);
     knob("coverage %", &[50, 70, 90, 95, 99], |p, v| p.coverage = v as f32 / 100.0);
     knob("patch", &[3, 5, 7], |p, v| p.patch = v);
-    let votes = [Vote::Plain, Vote::Weighted, Vote::Nearest, Vote::Most];
+    let votes = [Vote::Plain, Vote::Weighted, Vote::Nearest, Vote::Majority];
     let last = |&final_vote: &Vote| (format!("{final_vote:?}"), Params { final_vote, ..Params::default() });
     knobs.push(("last vote", votes.iter().map(last).collect()));
 

@@ -6,12 +6,14 @@ use crate::image::{Image, pyramid};
 use crate::job::Job;
 use glam::Vec3;
 
-/// Difference between the normals of neighbouring pixels (1 - cosine; about 40°) that makes a full edge.
-const FOLD: f32 = 0.25;
-/// Second difference of depth, as a share of the depth, that makes a full edge.
-const STEP: f32 = 0.02;
-/// Standard deviation in pixels by which edges are blurred, so that patches beside an edge sense it.
-const SPREAD: f32 = 0.8;
+/// Difference between the normals of neighbouring pixels (1 - cosine; about 40°) that makes a full edge [origin not
+/// recorded].
+const FULL_CREASE: f32 = 0.25;
+/// Second difference of depth, as a share of the depth, that makes a full edge [origin not recorded].
+const FULL_STEP: f32 = 0.02;
+/// Standard deviation in pixels by which edges are blurred, so that patches beside an edge sense it [origin not
+/// recorded].
+const BLUR: f32 = 0.8;
 
 /// The strength of the edge at each pixel, in `[0, 1]`.
 pub fn edges(normals: &Image, material: &Image, depth: &Image, job: Job) -> Result<Image> {
@@ -29,7 +31,7 @@ pub fn edges(normals: &Image, material: &Image, depth: &Image, job: Job) -> Resu
             let here = normal(x, y);
             for (i, j) in around {
                 let changes = material.pixel(i, j) != material.pixel(x, y);
-                let fold = (1.0 - here.dot(normal(i, j))) / FOLD;
+                let fold = (1.0 - here.dot(normal(i, j))) / FULL_CREASE;
                 *edge = edge.max(if changes {
                     1.0
                 } else if here == Vec3::ZERO {
@@ -42,12 +44,12 @@ pub fn edges(normals: &Image, material: &Image, depth: &Image, job: Job) -> Resu
             for pair in around.chunks_exact(2) {
                 let (d, a, b) =
                     (depth.pixel(x, y)[0], depth.pixel(pair[0].0, pair[0].1)[0], depth.pixel(pair[1].0, pair[1].1)[0]);
-                let step = (a + b - 2.0 * d).abs() / (STEP * d);
+                let step = (a + b - 2.0 * d).abs() / (FULL_STEP * d);
                 *edge = if step.is_finite() { edge.max(step) } else { *edge };
             }
             // Suppress faint edges, which are noise on curved surfaces.
             *edge = ((*edge - 0.2) / 0.8).clamp(0.0, 1.0);
         }
     })?;
-    pyramid::blur(&sharp, SPREAD, job)
+    pyramid::blur(&sharp, BLUR, job)
 }

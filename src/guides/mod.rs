@@ -193,7 +193,7 @@ pub fn pairs(source: &Guides, target: &Guides, extras: Extras) -> Result<Vec<Pai
     Ok(pairs)
 }
 
-/// Exposed value of the 90th percentile of luminance.
+/// Exposed value of the 90th percentile of luminance [convention].
 const BRIGHT: f32 = 0.8;
 
 /// The factor from cd/m² to the common exposure.

@@ -5,8 +5,8 @@ use crate::error::Result;
 use crate::image::Image;
 use glam::Vec3;
 
-/// Relative difference in depth above which a surface was occluded in the previous frame.
-const HIDDEN: f32 = 0.02;
+/// Relative difference in depth above which a surface was occluded in the previous frame [origin not recorded].
+const DEPTH_TOLERANCE: f32 = 0.02;
 
 /// Two channels: the position in the previous frame relative to the position in this one, in pixels; NaN where there
 /// is no surface, or where it was occluded or outside the picture.
@@ -32,7 +32,7 @@ pub fn motion(now: &Guides, before: &Guides) -> Result<Image> {
         let u = (offset.dot(right) / (depth * half * aspect) + 1.0) / 2.0 * size[0];
         let v = (1.0 - offset.dot(up) / (depth * half)) / 2.0 * size[1];
         let inside = depth > 0.0 && u >= 0.0 && v >= 0.0 && u < size[0] && v < size[1];
-        let seen = inside && depth <= before.depth.pixel(u as usize, v as usize)[0] * (1.0 + HIDDEN);
+        let seen = inside && depth <= before.depth.pixel(u as usize, v as usize)[0] * (1.0 + DEPTH_TOLERANCE);
         motion.copy_from_slice(&if seen { [u - x, v - y] } else { [f32::NAN; 2] });
     }
     Ok(out)

@@ -1,7 +1,7 @@
 //! Distance between two patches with early exit; the only file of this engine with `unsafe` code.
 //!
 //! Both versions add the same integers in 32 bits and stop after the same row, so they agree to the bit. [`Quantiser`]
-//! (see `features.rs`) keeps the sum below 2³¹.
+//! (see `quantised.rs`) keeps the sum below 2³¹.
 //!
 //! [`Quantiser`]: super::Quantiser
 

@@ -1,7 +1,7 @@
 //! Patch matching: the nearest-neighbour field between two multi-channel images, and operations on it.
 //!
 //! The engine of Fišer et al., "StyLit: Illumination-Guided Example-Based Stylization of 3D Renderings", §3.3-3.4. It
-//! is independent of the meaning of the channels: a [`Features`] image holds colour and guide channels multiplied by
+//! is independent of the meaning of the channels: a [`QuantisedImage`] image holds colour and guide channels multiplied by
 //! their weights, so that Eq. 1 is a single sum of squared integer differences, identical to the bit with and without
 //! SIMD. The search is PatchMatch (Barnes et al. 2009) on a fixed grid of tiles that exchange their borders between
 //! sweeps, with random numbers that depend on position only, so the field does not depend on the number of threads.
@@ -18,21 +18,21 @@
 //! Not modelled: rotated, mirrored, scaled or recoloured patches.
 
 mod domain;
-mod features;
 mod field;
 mod kernel;
 mod occurrence;
 mod pyramid;
+mod quantised;
 mod search;
 mod table;
 mod vote;
 
 pub use domain::Domain;
-pub use features::{Features, Quantiser};
 pub use field::{Field, NONE, pack, unpack};
 pub use kernel::{Kernel, Patch};
 pub use occurrence::Occurrence;
 pub use pyramid::{halve, halve_mask, level_count, level_size};
+pub use quantised::{QuantisedImage, Quantiser};
 pub use search::{Search, Sweep};
 pub use table::{Means, Table};
 pub use vote::{Vote, origin, vote};

@@ -4,10 +4,10 @@
 //! field as it was before the sweep, and writes all tiles back at the end.
 
 use super::domain::Domain;
-use super::features::Features;
 use super::field::{Field, NONE, pack, unpack};
 use super::kernel::{Kernel, Patch};
 use super::occurrence::Occurrence;
+use super::quantised::QuantisedImage;
 use crate::error::Result;
 use crate::exec;
 use crate::job::Job;
@@ -19,8 +19,8 @@ const TILE: usize = 48;
 /// The search for matches of patches of `query` among patches of `base`.
 #[derive(Clone, Copy)]
 pub struct Search<'a> {
-    pub query: &'a Features,
-    pub base: &'a Features,
+    pub query: &'a QuantisedImage,
+    pub base: &'a QuantisedImage,
     /// Patches of `base` that may be matches.
     pub allowed: &'a Domain,
     /// Width of a patch in pixels.
@@ -37,16 +37,16 @@ pub struct Sweep {
     /// Index of this sweep, which seeds its random numbers.
     pub index: u64,
     /// Initial radius in pixels of the random search around the best match; halved until it is 0.
-    pub reach: usize,
+    pub radius: usize,
     /// Number of uniformly random candidates for a patch without a match.
-    pub fresh: usize,
+    pub initial_samples: usize,
 }
 
 impl Search<'_> {
     /// Distance between a patch of the query and one of the base, with early exit at `limit`.
     #[inline]
     pub fn distance(&self, x: usize, y: usize, match_x: usize, match_y: usize, limit: u32) -> u32 {
-        fn at(image: &Features, x: usize, y: usize) -> Patch<'_> {
+        fn at(image: &QuantisedImage, x: usize, y: usize) -> Patch<'_> {
             Patch { samples: &image.data[(y * image.width + x) * image.lanes..], row_len: image.row_len() }
         }
         let run = self.patch * self.query.lanes;
@@ -212,19 +212,19 @@ impl Tile {
             if !backwards {
                 let mut rng = Rng::new(key, &[index as u64]);
                 if best.error == u32::MAX {
-                    for _ in 0..sweep.fresh {
+                    for _ in 0..sweep.initial_samples {
                         let members = search.allowed.members();
                         let (px, py) = unpack(members[rng.below(members.len())]);
                         best.try_at(search, px as isize, py as isize);
                     }
                 }
-                let mut reach = sweep.reach;
-                while reach > 0 && best.at != NONE {
+                let mut radius = sweep.radius;
+                while radius > 0 && best.at != NONE {
                     let (px, py) = unpack(best.at);
-                    let (bits, span) = (rng.next_u64(), 2 * reach as u64 + 1);
-                    let offset = |half: u64| ((half * span) >> 32) as isize - reach as isize;
+                    let (bits, span) = (rng.next_u64(), 2 * radius as u64 + 1);
+                    let offset = |half: u64| ((half * span) >> 32) as isize - radius as isize;
                     best.try_at(search, px as isize + offset(bits & 0xffff_ffff), py as isize + offset(bits >> 32));
-                    reach /= 2;
+                    radius /= 2;
                 }
             }
             if best.error == total && best.at == self.at[i] {
@@ -338,9 +338,9 @@ mod tests {
     use crate::image::Image;
     use crate::job::Monitor;
 
-    fn noise(width: usize, height: usize) -> Features {
+    fn noise(width: usize, height: usize) -> QuantisedImage {
         let image = Image::from_fn(width, height, |x, y| [Rng::new(4, &[x as u64, y as u64]).next_f32()]);
-        let mut out = Features::new(width, height, 1).unwrap();
+        let mut out = QuantisedImage::new(width, height, 1).unwrap();
         out.fill(0, &Quantiser::for_weights(&[1.0], 5), &image.unwrap(), Monitor::default().job()).unwrap();
         out
     }

@@ -5,8 +5,8 @@
 //! initial field are needed.
 
 use super::domain::Domain;
-use super::features::Features;
 use super::field::{Field, pack, unpack};
+use super::quantised::QuantisedImage;
 use super::search::{Best, Search};
 use crate::error::Result;
 use crate::exec;
@@ -24,7 +24,7 @@ pub struct Means {
 }
 
 impl Means {
-    pub fn new(image: &Features, patch: usize, job: Job) -> Result<Self> {
+    pub fn new(image: &QuantisedImage, patch: usize, job: Job) -> Result<Self> {
         let (width, height, lanes) = (image.width + 1 - patch, image.height + 1 - patch, image.lanes);
         let mut data = try_vec(width * height * lanes, 0i16)?;
         let area = (patch * patch) as i32;
@@ -82,7 +82,7 @@ impl Table {
     }
 
     /// Index in the order near which patches with similar means lie.
-    fn find(&self, means: &[i16]) -> usize {
+    fn leaf_of(&self, means: &[i16]) -> usize {
         let (mut low, mut high, mut node) = (0, self.order.len(), 0);
         while let Some(&(channel, value)) = self.splits.get(node) {
             let half = low + (high - low) / 2;
@@ -127,7 +127,7 @@ impl Search<'_> {
                 let i = y * width + x;
                 let mut best = Best { at: before.at[i], error: before.error[i], x, y };
                 if count > 0 && active(i) {
-                    let middle = table.find(query_means.of(pack(x, y))).min(count - 1);
+                    let middle = table.leaf_of(query_means.of(pack(x, y))).min(count - 1);
                     // Walk outwards on both sides, skipping patches that are not allowed, for a bounded number of
                     // steps.
                     let mut left = tries;
@@ -165,14 +165,14 @@ mod tests {
     fn patches_of_one_image_are_found_in_another_that_contains_them() {
         let quantisers = Quantiser::for_weights(&[1.0, 1.0], 5);
         let job = Monitor::default();
-        let mut base = Features::new(60, 50, 2).unwrap();
+        let mut base = QuantisedImage::new(60, 50, 2).unwrap();
         let noise = Image::from_fn(60, 50, |x, y| {
             let mut rng = Rng::new(1, &[x as u64, y as u64]);
             [rng.next_f32(), rng.next_f32()]
         });
         base.fill(0, &quantisers, &noise.unwrap(), job.job()).unwrap();
         // The query is a part of the base.
-        let mut query = Features::new(30, 20, 2).unwrap();
+        let mut query = QuantisedImage::new(30, 20, 2).unwrap();
         for y in 0..20 {
             let from = (y + 11) * base.row_len() + 7 * base.lanes;
             let row = base.data[from..from + query.row_len()].to_vec();

@@ -18,7 +18,7 @@ pub enum Vote {
     Nearest,
     /// The pixel placed most often (ties: the one closest to the mean): where two pieces of the exemplar meet, each
     /// stays intact up to the seam.
-    Most,
+    Majority,
 }
 
 /// A distinct exemplar pixel placed at a position, with its votes.
@@ -87,8 +87,8 @@ pub fn vote(
                 let sum: f64 = ballots.iter().map(|b| b.weight * f64::from(colour(b.offset)[c])).sum();
                 *value = (sum / total) as f32;
             }
-            if matches!(how, Vote::Nearest | Vote::Most) {
-                let count = |b: &Ballot| if how == Vote::Most { b.count } else { 0 };
+            if matches!(how, Vote::Nearest | Vote::Majority) {
+                let count = |b: &Ballot| if how == Vote::Majority { b.count } else { 0 };
                 let distance =
                     |b: &Ballot| -> f32 { colour(b.offset).iter().zip(&*pixel).map(|(s, m)| (s - m) * (s - m)).sum() };
                 let best = (ballots.iter())
@@ -141,6 +141,6 @@ mod tests {
             vote(&mut out, &field, &style, 5, how, Monitor::default().job(), |_| true).unwrap();
             out.pixel(4, 2)[0]
         };
-        assert_eq!([Vote::Plain, Vote::Weighted, Vote::Nearest, Vote::Most].map(middle), [0.5, 0.5, 0.5, 0.0]);
+        assert_eq!([Vote::Plain, Vote::Weighted, Vote::Nearest, Vote::Majority].map(middle), [0.5, 0.5, 0.5, 0.0]);
     }
 }

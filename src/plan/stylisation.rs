@@ -3,7 +3,7 @@
 use super::{Clock, Expected, Goal};
 use crate::error::Result;
 use crate::job::Job;
-use crate::stylize::{Input, Mode, Params, Probe};
+use crate::stylize::{Input, Mode, Params, PilotRuns};
 
 /// A stylisation as it is to be.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,17 +21,17 @@ pub struct Stylisation {
 pub fn stylisation(input: &Input, params: &Params, goal: Goal, clock: Clock, job: Job) -> Result<Stylisation> {
     goal.check()?;
     let (ladder, usual) = ladder(params);
-    let mut probe = Probe::new(input, &ladder, usual, clock, job.part(0.0, 0.6))?;
+    let mut pilot = PilotRuns::new(input, &ladder, usual, clock, job.part(0.0, 0.6))?;
     // What is chosen is tried at a higher resolution, and if it then no longer serves best, what does.
     loop {
-        let expected = (0..ladder.len()).map(|i| probe.trial(i));
+        let expected = (0..ladder.len()).map(|i| pilot.predict(i));
         let rungs: Vec<_> = expected.map(|t| Expected { seconds: t.seconds, error: t.energy.sqrt() }).collect();
         let best = chosen(&rungs, goal);
-        if probe.is_refined(best) {
+        if pilot.is_refined(best) {
             job.report(1.0);
             return Ok(Stylisation { params: ladder[best].clone(), expected: rungs[best] });
         }
-        probe.refine(best, job.part(0.6, 1.0))?;
+        pilot.refine(best, job.part(0.6, 1.0))?;
     }
 }
 

@@ -7,15 +7,16 @@ use crate::job::Job;
 use glam::{DMat2, DVec2};
 
 /// Maximum length of the longer side of the image in which marks are searched for.
-const SIDE: usize = 1400;
-/// Scales of the search in pixels of that image: marks of four to about forty pixels across.
+const MAX_SIDE: usize = 1400;
+/// Scales of the search in pixels of that image: marks of four to about forty pixels across [origin not recorded].
 const SCALES: [f32; 3] = [1.5, 3.0, 6.0];
 /// Maximum number of candidates.
-const MOST: usize = 24;
-/// Minimum share of the second harmonic in the brightness around a mark; two periods of a square wave have 0.81.
-const HARMONIC: f64 = 0.55;
-/// Minimum amplitude of that harmonic, which measures the (encoded) contrast of black and white.
-const CONTRAST: f64 = 0.06;
+const MAX_CANDIDATES: usize = 24;
+/// Minimum share of the second harmonic in the brightness around a mark; two periods of a square wave have 0.81
+/// [origin not recorded].
+const MIN_HARMONIC: f64 = 0.55;
+/// Minimum amplitude of that harmonic, which measures the (encoded) contrast of black and white [origin not recorded].
+const MIN_CONTRAST: f64 = 0.06;
 
 /// A position that looks like a mark.
 #[derive(Clone, Copy, Debug)]
@@ -28,7 +29,7 @@ pub struct Candidate {
 /// Positions that look like marks, strongest first.
 pub fn candidates(grey: &Image, job: Job) -> Result<Vec<Candidate>> {
     let longest = grey.width.max(grey.height);
-    let reduced = longest.min(SIDE) as f64 / longest as f64;
+    let reduced = longest.min(MAX_SIDE) as f64 / longest as f64;
     let side = |n: usize| ((n as f64 * reduced).round() as usize).max(1);
     let small = pyramid::resize(grey, side(grey.width), side(grey.height), job.part(0.0, 0.2))?;
     let scale = DVec2::new(grey.width as f64 / small.width as f64, grey.height as f64 / small.height as f64);
@@ -50,7 +51,7 @@ pub fn candidates(grey: &Image, job: Job) -> Result<Vec<Candidate>> {
     let apart = 6.0 * scale.max_element();
     let mut kept: Vec<Candidate> = Vec::new();
     for candidate in found {
-        if kept.iter().all(|k| k.at.distance(candidate.at) > apart) && kept.len() < MOST {
+        if kept.iter().all(|k| k.at.distance(candidate.at) > apart) && kept.len() < MAX_CANDIDATES {
             kept.push(candidate);
         }
     }
@@ -73,16 +74,18 @@ fn saddles(image: &Image, sigma: f32, job: Job) -> Result<Vec<(usize, usize)>> {
             row[x] = (xy * xy - xx * yy) * sigma.powi(4);
         }
     })?;
-    let reach = (1.5 * sigma).ceil() as usize;
+    let radius_in_pixels = (1.5 * sigma).ceil() as usize;
     let rows = exec::map(height, job, |y| {
         let mut row = Vec::new();
         for x in 0..width {
             let here = response.pixel(x, y)[0];
-            if here < LEAST {
+            if here < MIN_RESPONSE {
                 continue;
             }
-            let mut around = (y.saturating_sub(reach)..(y + reach + 1).min(height))
-                .flat_map(|j| response.row(j)[x.saturating_sub(reach)..(x + reach + 1).min(width)].iter());
+            let mut around =
+                (y.saturating_sub(radius_in_pixels)..(y + radius_in_pixels + 1).min(height)).flat_map(|j| {
+                    response.row(j)[x.saturating_sub(radius_in_pixels)..(x + radius_in_pixels + 1).min(width)].iter()
+                });
             if around.all(|v| *v <= here) {
                 row.push((x, y));
             }
@@ -92,8 +95,8 @@ fn saddles(image: &Image, sigma: f32, job: Job) -> Result<Vec<(usize, usize)>> {
     Ok(rows.into_iter().flatten().collect())
 }
 
-/// Minimum response of a saddle; the response of an ideal mark is about 0.01.
-const LEAST: f32 = 2e-4;
+/// Minimum response of a saddle; the response of an ideal mark is about 0.01 [origin not recorded].
+const MIN_RESPONSE: f32 = 2e-4;
 
 /// Strength of the pattern of two dark and two bright quadrants on a circle around a position; 0 if absent.
 fn quadrants(image: &Image, at: DVec2, radius: f64) -> f64 {
@@ -111,7 +114,7 @@ fn quadrants(image: &Image, at: DVec2, radius: f64) -> f64 {
     }
     let amplitude = 2.0 * second.length() / STEPS as f64;
     let share = amplitude * amplitude / 2.0 / power.max(1e-12);
-    if share > HARMONIC && amplitude > CONTRAST { amplitude * share } else { 0.0 }
+    if share > MIN_HARMONIC && amplitude > MIN_CONTRAST { amplitude * share } else { 0.0 }
 }
 
 /// Sub-pixel refinement of a saddle: the point to which all surrounding gradients are perpendicular (Förstner and
@@ -120,9 +123,9 @@ pub fn refine(grey: &Image, start: DVec2, radius: f64) -> Option<DVec2> {
     let mut at = start;
     for _ in 0..12 {
         let (mut matrix, mut right) = (DMat2::ZERO, DVec2::ZERO);
-        let reach = radius.ceil() as isize;
-        for j in -reach..=reach {
-            for i in -reach..=reach {
+        let radius_in_pixels = radius.ceil() as isize;
+        for j in -radius_in_pixels..=radius_in_pixels {
+            for i in -radius_in_pixels..=radius_in_pixels {
                 let offset = DVec2::new(i as f64, j as f64);
                 let weight = (-2.0 * offset.length_squared() / (radius * radius)).exp();
                 let p = at + offset;

@@ -1,7 +1,7 @@
 //! Identification of the marks, and the map from the page to the photo.
 
 use super::detect::{Candidate, refine};
-use super::layout::Layout;
+use super::page::Page;
 use crate::error::{Error, Result};
 use crate::geometry::Homography;
 use crate::geometry::linear::solve;
@@ -10,11 +10,11 @@ use crate::job::Job;
 use glam::DVec2;
 
 /// Minimum number of marks: fewer could be a coincidence.
-const FEWEST: usize = 6;
+const MIN_MARKS: usize = 6;
 /// Maximum distance of a mark from its predicted position, under the first and the refined map, as shares of the
-/// sheet's size in the photo.
-const LOOSE: f64 = 0.02;
-const TIGHT: f64 = 0.004;
+/// sheet's size in the photo [origin not recorded].
+const FIRST_TOLERANCE: f64 = 0.02;
+const FINAL_TOLERANCE: f64 = 0.004;
 
 pub struct Fit {
     /// From pixels of the page to pixels of the photo.
@@ -27,31 +27,32 @@ pub struct Fit {
     pub scale: f64,
 }
 
-pub fn fit(layout: &Layout, grey: &Image, candidates: &[Candidate], job: Job) -> Result<Fit> {
-    let first = guess(layout, candidates, job)?;
+pub fn fit(page: &Page, grey: &Image, candidates: &[Candidate], job: Job) -> Result<Fit> {
+    let first = guess(page, candidates, job)?;
     let found = first.ok_or_else(|| too_few(candidates.len()))?;
 
     // Refine each mark to sub-pixel precision, in a window inside the mark.
     let mut pairs = Vec::new();
     for (mark, at) in found.pairs {
-        let centre = layout.marks[mark];
-        let reach = |step: DVec2| found.map.apply(centre + step * layout.radius).distance(found.map.apply(centre));
-        let radius = (0.6 * reach(DVec2::X).min(reach(DVec2::Y))).max(2.0);
+        let centre = page.marks[mark];
+        let length_in_photo =
+            |step: DVec2| found.map.apply(centre + step * page.radius).distance(found.map.apply(centre));
+        let radius = (0.6 * length_in_photo(DVec2::X).min(length_in_photo(DVec2::Y))).max(2.0);
         if let Some(at) = refine(grey, at, radius) {
             pairs.push((mark, at));
         }
     }
-    let extent = extent(layout, &found.map);
-    let mut map = least_squares(layout, found.map, &pairs);
+    let extent = extent(page, &found.map);
+    let mut map = least_squares(page, found.map, &pairs);
     // Discard marks inconsistent with the others.
-    pairs.retain(|&(mark, at)| map.apply(layout.marks[mark]).distance(at) < TIGHT * extent);
-    if pairs.len() < FEWEST {
+    pairs.retain(|&(mark, at)| map.apply(page.marks[mark]).distance(at) < FINAL_TOLERANCE * extent);
+    if pairs.len() < MIN_MARKS {
         return Err(too_few(pairs.len()));
     }
-    map = least_squares(layout, map, &pairs);
-    let squares: f64 = pairs.iter().map(|&(m, at)| map.apply(layout.marks[m]).distance_squared(at)).sum();
+    map = least_squares(page, map, &pairs);
+    let squares: f64 = pairs.iter().map(|&(m, at)| map.apply(page.marks[m]).distance_squared(at)).sum();
     let residual = (squares / pairs.len() as f64).sqrt();
-    let scale = extent / DVec2::new(layout.width as f64, layout.height as f64).length();
+    let scale = extent / DVec2::new(page.width as f64, page.height as f64).length();
     Ok(Fit { to_photo: map, marks: pairs.iter().map(|p| p.0).collect(), residual, scale })
 }
 
@@ -63,8 +64,8 @@ fn too_few(count: usize) -> Error {
 }
 
 /// Length of the page's diagonal in the photo.
-fn extent(layout: &Layout, map: &Homography) -> f64 {
-    let [a, b, c, d] = [0, 1, 2, 3].map(|m| map.apply(layout.marks[m]));
+fn extent(page: &Page, map: &Homography) -> f64 {
+    let [a, b, c, d] = [0, 1, 2, 3].map(|m| map.apply(page.marks[m]));
     a.distance(c).max(b.distance(d))
 }
 
@@ -76,7 +77,7 @@ struct Guess {
 
 /// The map under which most marks coincide with candidates. Each quadruple of candidates is tried as the corners, and
 /// as the midpoints of the sides: if one mark is missing, at least one of these quadruples is complete.
-fn guess(layout: &Layout, candidates: &[Candidate], job: Job) -> Result<Option<Guess>> {
+fn guess(page: &Page, candidates: &[Candidate], job: Job) -> Result<Option<Guess>> {
     let n = candidates.len();
     let mut best: Option<Guess> = None;
     for a in 0..n {
@@ -86,12 +87,12 @@ fn guess(layout: &Layout, candidates: &[Candidate], job: Job) -> Result<Option<G
                 for d in c + 1..n {
                     let Some(quad) = around([a, b, c, d].map(|i| candidates[i].at)) else { continue };
                     for (first, turn) in (0..8).map(|k| (k / 4 * 4, k % 4)) {
-                        let from = [0, 1, 2, 3].map(|i| layout.marks[first + i]);
+                        let from = [0, 1, 2, 3].map(|i| page.marks[first + i]);
                         let to = [0, 1, 2, 3].map(|i| quad[(i + turn) % 4]);
                         let Ok(map) = Homography::from_corners(from, to) else { continue };
-                        let guess = agreement(layout, map, candidates);
+                        let guess = agreement(page, map, candidates);
                         let better = |b: &Guess| (guess.pairs.len(), -guess.misfit) > (b.pairs.len(), -b.misfit);
-                        if guess.pairs.len() >= FEWEST && best.as_ref().is_none_or(better) {
+                        if guess.pairs.len() >= MIN_MARKS && best.as_ref().is_none_or(better) {
                             best = Some(guess);
                         }
                     }
@@ -115,10 +116,10 @@ fn around(points: [DVec2; 4]) -> Option<[DVec2; 4]> {
 }
 
 /// The marks that coincide with candidates under a map.
-fn agreement(layout: &Layout, map: Homography, candidates: &[Candidate]) -> Guess {
-    let tolerance = LOOSE * extent(layout, &map);
+fn agreement(page: &Page, map: Homography, candidates: &[Candidate]) -> Guess {
+    let tolerance = FIRST_TOLERANCE * extent(page, &map);
     let (mut pairs, mut misfit) = (Vec::new(), 0.0);
-    for (mark, place) in layout.marks.iter().enumerate() {
+    for (mark, place) in page.marks.iter().enumerate() {
         let at = map.apply(*place);
         let distance = |c: &&Candidate| c.at.distance(at);
         let nearest = candidates.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
@@ -131,16 +132,16 @@ fn agreement(layout: &Layout, map: Homography, candidates: &[Candidate]) -> Gues
 }
 
 /// The map of minimum squared distances in the photo, by Gauss-Newton from a good start.
-fn least_squares(layout: &Layout, start: Homography, pairs: &[(usize, DVec2)]) -> Homography {
+fn least_squares(page: &Page, start: Homography, pairs: &[(usize, DVec2)]) -> Homography {
     // Scale page coordinates to about [-1, 1], so that the eight parameters have similar magnitude.
-    let half = DVec2::new(layout.width as f64, layout.height as f64) / 2.0;
+    let half = DVec2::new(page.width as f64, page.height as f64) / 2.0;
     let to_unit = glam::DMat3::from_scale(half.recip()) * glam::DMat3::from_translation(-half);
     let mut h = start.0 * to_unit.inverse();
     h *= 1.0 / h.z_axis.z;
     for _ in 0..10 {
         let (mut matrix, mut right) = ([[0.0; 8]; 8], [0.0; 8]);
         for &(mark, at) in pairs {
-            let p = (layout.marks[mark] - half) / half;
+            let p = (page.marks[mark] - half) / half;
             let q = h * p.extend(1.0);
             let image = q.truncate() / q.z;
             for axis in 0..2 {

@@ -13,7 +13,7 @@
 
 mod detect;
 mod fit;
-mod layout;
+mod page;
 
 #[cfg(test)]
 mod tests;
@@ -26,7 +26,7 @@ use crate::image::{Image, pyramid};
 use crate::job::Job;
 use crate::{exec, rectify};
 use glam::{DVec2, Vec3};
-use layout::Layout;
+use page::Page;
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Params {
@@ -62,21 +62,21 @@ impl Params {
 /// Width and height of a sheet in pixels.
 pub fn size(params: &Params) -> Result<(usize, usize)> {
     params.check()?;
-    let layout = Layout::new(params, 1, 1)?;
-    Ok((layout.width, layout.height))
+    let page = Page::new(params, 1, 1)?;
+    Ok((page.width, page.height))
 }
 
 /// Draws the sheet for a picture (linear, 1 is white; 1, 3 or 4 channels) in linear RGB.
 pub fn print(picture: &Image, params: &Params, job: Job) -> Result<Image> {
     params.check()?;
-    let layout = Layout::new(params, picture.width, picture.height)?;
-    let [left, top] = layout.corner.map(|v| v.round() as usize);
-    let [width, height] = layout.size.map(|v| (v.round() as usize).max(1));
+    let page = Page::new(params, picture.width, picture.height)?;
+    let [left, top] = page.corner.map(|v| v.round() as usize);
+    let [width, height] = page.size.map(|v| (v.round() as usize).max(1));
     let shown = pyramid::resize(&picture.to_rgb()?, width, height, job.part(0.0, 0.5))?;
-    let mut sheet = Image::new(layout.width, layout.height, 3)?;
-    exec::for_rows(&mut sheet.data, 3 * layout.width, job.part(0.5, 1.0), |y, row| {
+    let mut sheet = Image::new(page.width, page.height, 3)?;
+    exec::for_rows(&mut sheet.data, 3 * page.width, job.part(0.5, 1.0), |y, row| {
         for (x, pixel) in row.chunks_exact_mut(3).enumerate() {
-            pixel.fill(layout.mark_shade(x, y));
+            pixel.fill(page.mark_shade(x, y));
             if (left..left + width).contains(&x) && (top..top + height).contains(&y) {
                 for (out, v) in pixel.iter_mut().zip(shown.pixel(x - left, y - top)) {
                     let v = if v.is_finite() { linear_to_srgb(v.clamp(0.0, 1.0)) } else { 0.0 };
@@ -110,7 +110,7 @@ pub struct Aligned {
 /// `Degenerate` if fewer than six marks are found in a consistent arrangement.
 pub fn align(photo: &Image, width: usize, height: usize, params: &Params, job: Job) -> Result<Aligned> {
     params.check()?;
-    let layout = Layout::new(params, width, height)?;
+    let page = Page::new(params, width, height)?;
     let mut grey = Image::new(photo.width, photo.height, 1)?;
     exec::for_rows(&mut grey.data, photo.width, job.part(0.0, 0.05), |y, row| {
         for (x, out) in row.iter_mut().enumerate() {
@@ -119,14 +119,14 @@ pub fn align(photo: &Image, width: usize, height: usize, params: &Params, job: J
         }
     })?;
     let candidates = detect::candidates(&grey, job.part(0.05, 0.5))?;
-    let found = fit::fit(&layout, &grey, &candidates, job.part(0.5, 0.7))?;
-    let to_photo = found.to_photo.after(layout.from_picture(width, height));
+    let found = fit::fit(&page, &grey, &candidates, job.part(0.5, 0.7))?;
+    let to_photo = found.to_photo.after(page.from_picture(width, height));
     let mut image = rectify::warp(&photo.to_rgb()?, &to_photo, width, height, job.part(0.7, 0.95))?;
     if params.even_light {
-        even_light(&mut image, photo, &layout, &found, width, height, job.part(0.95, 1.0))?;
+        even_light(&mut image, photo, &page, &found, width, height, job.part(0.95, 1.0))?;
     }
     // A map with eight parameters fitted to n points has the expected error residual · √(8 / 2n).
-    let scale = layout.size[0] / width as f64 * found.scale;
+    let scale = page.size[0] / width as f64 * found.scale;
     let error = found.residual * (8.0 / (2.0 * found.marks.len() as f64)).sqrt() / scale;
     job.report(1.0);
     Ok(Aligned { image, to_photo, marks: found.marks.len(), residual: found.residual, error })
@@ -136,23 +136,23 @@ pub fn align(photo: &Image, width: usize, height: usize, params: &Params, job: J
 fn even_light(
     image: &mut Image,
     photo: &Image,
-    layout: &Layout,
+    page: &Page,
     found: &fit::Fit,
     width: usize,
     height: usize,
     job: Job,
 ) -> Result<()> {
     let terms = |p: DVec2| {
-        let q = p / DVec2::new(layout.width as f64, layout.height as f64);
+        let q = p / DVec2::new(page.width as f64, page.height as f64);
         [1.0, q.x, q.y, q.x * q.y]
     };
     let mut white = [[0.0f64; 4]; 3];
     for (channel, coefficients) in white.iter_mut().enumerate() {
         let (mut matrix, mut right) = ([[0.0; 4]; 4], [0.0; 4]);
         for &mark in &found.marks {
-            let centre = layout.marks[mark];
+            let centre = page.marks[mark];
             // Sample the centres of the white quadrants.
-            let places = [1.0, -1.0].map(|s| centre + s * DVec2::new(0.4, -0.4) * layout.radius);
+            let places = [1.0, -1.0].map(|s| centre + s * DVec2::new(0.4, -0.4) * page.radius);
             let value = places.map(|p| {
                 let at = found.to_photo.apply(p);
                 f64::from(photo.sample(at.x, at.y, channel.min(photo.channels - 1)))
@@ -168,7 +168,7 @@ fn even_light(
             Error::degenerate("the marks that were found lie on one line: the light cannot be evened out")
         })?;
     }
-    let from_picture = layout.from_picture(width, height);
+    let from_picture = page.from_picture(width, height);
     exec::for_rows(&mut image.data, 3 * width, job, |y, row| {
         for (x, pixel) in row.chunks_exact_mut(3).enumerate() {
             let at = terms(from_picture.apply(DVec2::new(x as f64 + 0.5, y as f64 + 0.5)));

@@ -8,7 +8,7 @@
 use super::Params;
 use super::budget::budget;
 use super::level::{Level, Problem};
-use super::schedule::paint;
+use super::multires::paint;
 use crate::error::Result;
 use crate::image::{Image, try_collect};
 use crate::job::Job;

@@ -10,14 +10,14 @@
 //! knee: all of its errors are feasible.
 
 /// Minimum number of errors to fit a curve.
-const FEWEST: usize = 8;
+const MIN_ERRORS: usize = 8;
 /// Sample points of the sorted curve in the fit.
 const SAMPLES: usize = 256;
 
-/// Minimum share of the variance that a hyperbola must explain.
-const FIT: f64 = 0.8;
-/// Minimum distance below the diagonal of a curve with a knee.
-const SAG: f64 = 0.01;
+/// Minimum share of the variance that a hyperbola must explain [origin not recorded].
+const MIN_EXPLAINED: f64 = 0.8;
+/// Minimum distance below the diagonal of a curve with a knee [origin not recorded].
+const MIN_SAG: f64 = 0.01;
 
 /// The hyperbola `1 / (a - b x)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -97,7 +97,7 @@ pub fn budget(errors: &[u32]) -> Budget {
     // Exclude the last hundredth from the scale.
     let n = errors.len();
     let worst = if n > 0 { errors[(n - 1) * 99 / 100] } else { 0 };
-    if n < FEWEST || worst == 0 || errors[0] == worst {
+    if n < MIN_ERRORS || worst == 0 || errors[0] == worst {
         return all();
     }
     let samples = SAMPLES.min(n);
@@ -109,7 +109,7 @@ pub fn budget(errors: &[u32]) -> Budget {
         .collect();
     // A hyperbola through (1, 1) with a knee runs below the diagonal there, by (1 - √(1/b))².
     let knee = farthest_below_diagonal(&points).map(|farthest| {
-        let hyperbola = Hyperbola::fit(&points).filter(|f| f.explained(&points) >= FIT);
+        let hyperbola = Hyperbola::fit(&points).filter(|f| f.explained(&points) >= MIN_EXPLAINED);
         hyperbola.and_then(Hyperbola::knee).unwrap_or(farthest)
     });
     match knee {
@@ -120,7 +120,7 @@ pub fn budget(errors: &[u32]) -> Budget {
 
 fn farthest_below_diagonal(points: &[(f64, f64)]) -> Option<f64> {
     let farthest = points.iter().max_by(|p, q| (p.0 - p.1).total_cmp(&(q.0 - q.1)))?;
-    (farthest.0 - farthest.1 > SAG).then_some(farthest.0)
+    (farthest.0 - farthest.1 > MIN_SAG).then_some(farthest.0)
 }
 
 #[cfg(test)]

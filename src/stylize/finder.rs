@@ -52,7 +52,7 @@ impl<'a> Nearest<'a> {
         active: impl Fn(usize) -> bool + Sync,
     ) -> Result<()> {
         match &self.tables {
-            None => self.sweep(search, field, Sweep { index, reach: 64, fresh: 4 }, job, active),
+            None => self.sweep(search, field, Sweep { index, radius: 64, initial_samples: 4 }, job, active),
             Some(t) => search.look_up(field, &t.source, &t.target_means, TRIES, job, active),
         }
     }
@@ -68,7 +68,7 @@ impl<'a> Nearest<'a> {
     ) -> Result<()> {
         let search = self.level.reverse(free);
         match &self.tables {
-            None => self.sweep(&search, field, Sweep { index, reach: 32, fresh: 2 }, job, active),
+            None => self.sweep(&search, field, Sweep { index, radius: 32, initial_samples: 2 }, job, active),
             Some(t) => search.look_up(field, &t.target, &t.source_means, TRIES, job, active),
         }
     }

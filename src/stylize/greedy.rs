@@ -6,7 +6,8 @@ use crate::image::Image;
 use crate::job::Job;
 use crate::patch::{Field, NONE, pack, unpack};
 
-/// Coherence parameter κ at the finest level (Hertzmann et al., §3.2): tolerance for coherent matches.
+/// Coherence parameter κ at the finest level (Hertzmann et al., §3.2): tolerance for coherent matches [origin not
+/// recorded].
 const COHERENCE: f64 = 5.0;
 
 /// Sets every patch centre to the nearest match, or to a match that continues an already set neighbour if its distance

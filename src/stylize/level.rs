@@ -7,7 +7,7 @@ use crate::exec;
 use crate::image::colour::linear_to_srgb;
 use crate::image::{Image, try_collect, try_vec};
 use crate::job::Job;
-use crate::patch::{Domain, Features, Kernel, Quantiser, Search, halve, halve_mask};
+use crate::patch::{Domain, Kernel, QuantisedImage, Quantiser, Search, halve, halve_mask};
 
 /// The problem at one resolution in floating point, from which the next coarser one is derived.
 pub(super) struct Problem {
@@ -178,8 +178,8 @@ fn encode_known(known: &Image, target: &Image, channels: usize, job: Job) -> Res
 /// The problem at one resolution in integers.
 pub(super) struct Level<'a> {
     pub problem: &'a Problem,
-    pub source: Features,
-    pub target: Features,
+    pub source: QuantisedImage,
+    pub target: QuantisedImage,
     /// Exemplar patches that may be used, and target patches that need a match.
     pub allowed: Domain,
     pub wanted: Domain,
@@ -205,8 +205,8 @@ impl<'a> Level<'a> {
         let mut quantisers = Quantiser::for_weights(&weights, problem.patch);
         let guide_quantisers = quantisers.split_off(channels);
 
-        let mut source = Features::new(style.width, style.height, weights.len())?;
-        let mut target = Features::new(guides.target.width, guides.target.height, weights.len())?;
+        let mut source = QuantisedImage::new(style.width, style.height, weights.len())?;
+        let mut target = QuantisedImage::new(guides.target.width, guides.target.height, weights.len())?;
         source.fill(0, &quantisers, style, job.part(0.0, 0.2))?;
         source.fill(channels, &guide_quantisers, &guides.source, job.part(0.2, 0.6))?;
         target.fill(channels, &guide_quantisers, &guides.target, job.part(0.6, 1.0))?;

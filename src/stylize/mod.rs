@@ -37,11 +37,11 @@ mod finder;
 mod greedy;
 mod guides;
 mod level;
+mod multires;
 mod pca;
-mod probe;
+mod pilot;
 mod report;
 mod retrieve;
-mod schedule;
 mod study;
 
 #[cfg(test)]
@@ -49,7 +49,7 @@ mod tests;
 
 pub use budget::{Budget, Hyperbola, budget};
 pub use guides::{Guide, MAX_CHANNELS, Range};
-pub use probe::{Probe, Trial};
+pub use pilot::{PilotRuns, Prediction};
 pub use report::{LevelReport, Report, Usage};
 pub use retrieve::Pass;
 pub use study::Study;
@@ -188,7 +188,7 @@ impl Default for Params {
             settle: 2,
             seam: 0.2,
             vote: Vote::Weighted,
-            final_vote: Vote::Most,
+            final_vote: Vote::Majority,
             coherence: 1.0,
             match_appearance: 0.0,
             occurrence: 0.1,
@@ -287,7 +287,7 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Output> {
 pub fn run_and_publish(input: &Input, params: &Params, publish: Publish, job: Job) -> Result<Output> {
     params.check()?;
     let problem = level::Problem::new(input, params, job.part(0.0, 0.03))?;
-    let output = schedule::run(&problem, input, params, publish, job.part(0.03, 1.0))?;
+    let output = multires::run(&problem, input, params, publish, job.part(0.03, 1.0))?;
     job.report(1.0);
     Ok(output)
 }

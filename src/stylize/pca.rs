@@ -7,16 +7,16 @@ use crate::exec;
 use crate::image::Image;
 use crate::job::Job;
 
-/// Share of the variance to keep.
-const KEEP: f64 = 0.995;
+/// Share of the variance to keep [origin not recorded].
+const KEPT_VARIANCE: f64 = 0.995;
 /// Maximum number of components: with three colours they fill eight lanes.
-const MOST: usize = 5;
+const MAX_COMPONENTS: usize = 5;
 
 /// Replaces the channels by principal components. Distances in the weighted space change only by the dropped variance:
 /// each component is stretched to `[0, 1]` and weighted by the square of its range.
 pub(super) fn compress(guides: &mut Channels, job: Job) -> Result<()> {
     let n = guides.weights.len();
-    if n <= MOST {
+    if n <= MAX_COMPONENTS {
         return Ok(());
     }
     let roots: Vec<f64> = guides.weights.iter().map(|w| w.sqrt()).collect();
@@ -51,11 +51,11 @@ pub(super) fn compress(guides: &mut Channels, job: Job) -> Result<()> {
     let total: f64 = values.iter().sum();
     let mut kept = 0.0;
     let count = values.iter().take_while(|&&v| {
-        let more = kept < KEEP * total;
+        let more = kept < KEPT_VARIANCE * total;
         kept += v;
         more
     });
-    let count = count.count().clamp(1, MOST);
+    let count = count.count().clamp(1, MAX_COMPONENTS);
 
     // Project the channels, then stretch each component to its joint range.
     let project = |image: &Image| -> Result<Image> {

@@ -26,7 +26,7 @@ pub struct Usage {
     /// Share of the allowed exemplar patches that are used.
     pub used: f64,
     /// Maximum number of uses of a single patch.
-    pub most: u32,
+    pub max_uses: u32,
     /// Entropy of the usage in bits; at most log2 of the number of target patches.
     pub entropy: f64,
 }
@@ -68,7 +68,7 @@ impl Usage {
         };
         Ok(Self {
             used: used.clone().count() as f64 / level.allowed.len().max(1) as f64,
-            most: used.clone().copied().max().unwrap_or(0),
+            max_uses: used.clone().copied().max().unwrap_or(0),
             entropy: used.map(|&c| entropy(c)).sum(),
         })
     }

@@ -36,8 +36,8 @@ pub struct Pass {
     pub coverage: f64,
 }
 
-/// The last pass is the first that covers less than this share of the target.
-const LEAST_GAIN: f64 = 0.005;
+/// The last pass is the first that covers less than this share of the target [origin not recorded].
+const MIN_GAIN: f64 = 0.005;
 
 /// Matches every wanted target patch. `field` holds the matches or hints of the previous iteration, whose distances
 /// are valid except where `changed`; the result replaces it. Matches with `kept` set stay unchanged.
@@ -75,7 +75,7 @@ pub(super) fn retrieve(
         let (knee, gained) = accept(&mut matched, &mut free, &mut reverse, params.mode, job)?;
         let coverage = (wanted - free.len()) as f64 / wanted as f64;
         passes.push(Pass { knee, gained, coverage });
-        if (gained as f64) < LEAST_GAIN * wanted as f64 {
+        if (gained as f64) < MIN_GAIN * wanted as f64 {
             break;
         }
     }

@@ -3,8 +3,8 @@
 //! to the affected area; quantising the guides and the artwork is repeated in full.
 
 use super::level::{Level, Problem, encode, encoded};
+use super::multires::{self, Provenance, paint};
 use super::report::sources;
-use super::schedule::{self, Made, paint};
 use super::{Input, Output, Params, Publish};
 use crate::error::{Error, Result};
 use crate::image::{Image, try_vec};
@@ -14,7 +14,7 @@ use crate::patch::{Field, NONE, Sweep, halve, halve_mask, unpack};
 /// Iterations of matching and voting after a change.
 const ROUNDS: usize = 2;
 /// Radius of the random search in pixels; propagation reaches farther.
-const REACH: usize = 16;
+const SEARCH_RADIUS: usize = 16;
 
 /// A stylised target that follows changes of its artwork.
 pub struct Study {
@@ -40,7 +40,7 @@ impl Study {
     pub fn new(input: &Input, params: &Params, publish: Publish, job: Job) -> Result<(Self, Output)> {
         params.check()?;
         let problem = Problem::new(input, params, job.part(0.0, 0.03))?;
-        let output = schedule::run(&problem, input, params, publish, job.part(0.03, 1.0))?;
+        let output = multires::run(&problem, input, params, publish, job.part(0.03, 1.0))?;
         let mut display = input.artwork.try_clone()?;
         encode(&mut display, job)?;
         let mut picture = output.image.try_clone()?;
@@ -91,10 +91,14 @@ impl Study {
         };
         let target = Target { field: &mut self.field, picture: &mut self.picture, old: &mut self.old };
         rematch(&self.problem, target, changed, &self.params, job.part(0.1, 0.9))?;
-        let made =
-            Made { field: &self.field, problem: &self.problem, artwork: &self.artwork, known: self.known.as_ref() };
+        let provenance = Provenance {
+            field: &self.field,
+            problem: &self.problem,
+            artwork: &self.artwork,
+            known: self.known.as_ref(),
+        };
         let old = |i: usize| self.old[i];
-        schedule::finish(&mut self.image, &self.picture, made, job.part(0.9, 1.0), old)?;
+        multires::decode_into(&mut self.image, &self.picture, provenance, job.part(0.9, 1.0), old)?;
         let image = self.image.try_clone()?;
         self.pending.fill(false);
         self.old.fill(false);
@@ -140,7 +144,7 @@ fn rematch(problem: &Problem, target: Target, changed: &[bool], params: &Params,
         level.set_picture(picture, part(0.0, 0.05))?;
         let search = level.forward();
         search.rescore(field, part(0.0, 0.2), |i| concerned[i])?;
-        let sweep = Sweep { index: round as u64, reach: REACH, fresh: 4 };
+        let sweep = Sweep { index: round as u64, radius: SEARCH_RADIUS, initial_samples: 4 };
         search.sweep(field, sweep, part(0.2, 0.8), |i| concerned[i])?;
         let how = if round + 1 == ROUNDS { params.final_vote } else { params.vote };
         paint(picture, field, problem, how, part(0.8, 1.0), |i| old[i])?;

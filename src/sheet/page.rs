@@ -6,7 +6,7 @@ use crate::geometry::Homography;
 use crate::image::MAX_SIDE;
 use glam::{DMat3, DVec2};
 
-/// Radius of a mark, and its distance from the picture, in millimetres.
+/// Radius of a mark, and its distance from the picture, in millimetres [convention].
 const RADIUS: f64 = 4.5;
 const CLEARANCE: f64 = 2.5;
 
@@ -26,7 +26,7 @@ const MARKS: [[f64; 2]; 10] = [
 ];
 
 /// The page in pixels.
-pub struct Layout {
+pub struct Page {
     pub width: usize,
     pub height: usize,
     /// Centres of the marks in the order of [`MARKS`], and their radius.
@@ -37,22 +37,22 @@ pub struct Layout {
     pub size: [f64; 2],
 }
 
-impl Layout {
+impl Page {
     pub fn new(params: &Params, picture_width: usize, picture_height: usize) -> Result<Self> {
         let dot = params.dpi / 25.4;
-        let page = (params.paper * dot).round();
-        if page.max_element() > MAX_SIDE as f64 {
+        let extent = (params.paper * dot).round();
+        if extent.max_element() > MAX_SIDE as f64 {
             return Err(Error::argument(format!(
                 "the sheet would have {} x {} pixels; at most {MAX_SIDE} are possible: lower dpi",
-                page.x, page.y
+                extent.x, extent.y
             )));
         }
         let low = DVec2::splat((params.margin + RADIUS) * dot);
         // Round to pixel corners, so that the quadrants are drawn exactly.
-        let marks = MARKS.map(|m| (low + DVec2::from(m) * (page - 2.0 * low)).round());
+        let marks = MARKS.map(|m| (low + DVec2::from(m) * (extent - 2.0 * low)).round());
         let inner = DVec2::splat((params.margin + 2.0 * RADIUS + CLEARANCE) * dot);
-        let room = page - 2.0 * inner;
-        if picture_width == 0 || picture_height == 0 || room.min_element() < 4.0 * RADIUS * dot {
+        let available = extent - 2.0 * inner;
+        if picture_width == 0 || picture_height == 0 || available.min_element() < 4.0 * RADIUS * dot {
             return Err(Error::argument(format!(
                 "paper of {} x {} mm has no space for a picture of {picture_width} x {picture_height} pixels between \
                  its marks",
@@ -61,11 +61,11 @@ impl Layout {
         }
         // Place the picture in the centre, as large as possible, on whole pixels.
         let picture = DVec2::new(picture_width as f64, picture_height as f64);
-        let size = (picture * (room / picture).min_element()).round().max(DVec2::ONE);
-        let corner = ((page - size) / 2.0).round();
+        let size = (picture * (available / picture).min_element()).round().max(DVec2::ONE);
+        let corner = ((extent - size) / 2.0).round();
         Ok(Self {
-            width: page.x as usize,
-            height: page.y as usize,
+            width: extent.x as usize,
+            height: extent.y as usize,
             marks,
             radius: RADIUS * dot,
             corner: corner.to_array(),

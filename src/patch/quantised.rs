@@ -11,7 +11,7 @@ pub const LANES: usize = 8;
 /// Interleaved 16-bit channels, each multiplied by the square root of its weight, so that a plain sum of squared
 /// differences equals the weighted sum of Eq. 1.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Features {
+pub struct QuantisedImage {
     pub width: usize,
     pub height: usize,
     /// Samples per pixel, a multiple of [`LANES`]; samples beyond the channels are 0.
@@ -19,7 +19,7 @@ pub struct Features {
     pub data: Vec<i16>,
 }
 
-impl Features {
+impl QuantisedImage {
     pub fn new(width: usize, height: usize, channels: usize) -> Result<Self> {
         let lanes = channels.div_ceil(LANES) * LANES;
         Ok(Self { width, height, lanes, data: try_vec(width * height * lanes, 0)? })

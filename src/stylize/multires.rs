@@ -154,8 +154,8 @@ pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Pu
             let usage = Usage::of(&current, &level)?;
             drop(level);
             let mut image = picture.try_clone()?;
-            let made = Made { field: &current, problem, artwork: input.artwork, known: input.known };
-            finish(&mut image, &picture, made, job.part(1.0, 1.0), |_| true)?;
+            let provenance = Provenance { field: &current, problem, artwork: input.artwork, known: input.known };
+            decode_into(&mut image, &picture, provenance, job.part(1.0, 1.0), |_| true)?;
             let report = Report {
                 levels: reports,
                 usage,
@@ -205,9 +205,9 @@ fn by_guides_alone(problem: &Problem, params: &Params, seed: u64, job: Job) -> R
         let nearest = Nearest::new(&level, params, job.part(0.05, 0.4))?;
         nearest.forward(&search, &mut field, 0, job.part(0.4, 1.0), wanted)?;
     } else {
-        let reach = level.allowed.width.max(level.allowed.height);
+        let radius = level.allowed.width.max(level.allowed.height);
         for k in 0..8 {
-            let sweep = Sweep { index: k, reach, fresh: 16 };
+            let sweep = Sweep { index: k, radius, initial_samples: 16 };
             search.sweep(&mut field, sweep, job.part(0.05 + 0.11 * k as f64, 0.05 + 0.11 * (k + 1) as f64), wanted)?;
         }
     }
@@ -272,7 +272,7 @@ fn decode(picture: &Image, job: Job) -> Result<Image> {
 }
 
 /// The inputs that produced an encoded picture.
-pub(super) struct Made<'a> {
+pub(super) struct Provenance<'a> {
     pub field: &'a Field,
     pub problem: &'a Problem,
     /// The artwork and the known part of the target, linear.
@@ -282,14 +282,14 @@ pub(super) struct Made<'a> {
 
 /// Decodes the pixels of a picture for which `wanted` holds into `image`, in linear colour. Pixels on which all
 /// patches agree, and known pixels, are copied from the linear originals, so that they equal them to the bit.
-pub(super) fn finish(
+pub(super) fn decode_into(
     image: &mut Image,
     picture: &Image,
-    made: Made,
+    provenance: Provenance,
     job: Job,
     wanted: impl Fn(usize) -> bool + Sync,
 ) -> Result<()> {
-    let Made { field, problem, artwork, known } = made;
+    let Provenance { field, problem, artwork, known } = provenance;
     let (width, channels, whole) = (image.width, image.channels, problem.is_of(artwork));
     let left_out = |i: usize| whole && problem.target_mask.as_ref().is_some_and(|mask| !mask[i]);
     exec::for_rows(&mut image.data, width * channels, job, |y, row| {

@@ -1,7 +1,7 @@
 //! Predictions of time and energy for settings, from pilot runs at reduced resolution.
 
 use super::level::Problem;
-use super::{Input, Params, schedule};
+use super::{Input, Params, multires};
 use crate::error::Result;
 use crate::image::Image;
 use crate::job::Job;
@@ -9,23 +9,24 @@ use std::time::Duration;
 
 /// Maximum number of pixels of the smaller of exemplar and target in a pilot run. The smaller one counts, because a
 /// small exemplar has few patches per pixel, so energies at low resolutions would predict those at higher ones poorly.
-const NEAR: usize = 128 << 10;
+const MAX_PIXELS: usize = 128 << 10;
 /// Number of resolutions of the pilot runs.
 const RESOLUTIONS: usize = 3;
 
 /// Predicted time of settings, and the energy of their result.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Trial {
+pub struct Prediction {
     pub seconds: f64,
     /// Like the last of [`super::LevelReport::energy`] on the finest level.
     pub energy: f64,
 }
 
-/// Maximum exponent by which the time per pixel grows with the number of pixels: larger fields converge more slowly.
-const MOST_GROWTH: f64 = 0.12;
+/// Maximum exponent by which the time per pixel grows with the number of pixels: larger fields converge more slowly
+/// [origin not recorded].
+const MAX_GROWTH: f64 = 0.12;
 
 /// Pilot runs of settings on one input.
-pub struct Probe<'a> {
+pub struct PilotRuns<'a> {
     input: Input<'a>,
     ladder: &'a [Params],
     usual: usize,
@@ -34,14 +35,14 @@ pub struct Probe<'a> {
     problems: Vec<Problem>,
     preparing: f64,
     /// At the highest pilot resolution: the reference settings, and others after [`Self::refine`].
-    near: Vec<Option<Trial>>,
+    near: Vec<Option<Prediction>>,
     /// At the next lower resolution.
-    middle: Vec<Trial>,
+    middle: Vec<Prediction>,
     /// Predicted energy of the reference settings.
     energy: f64,
 }
 
-impl<'a> Probe<'a> {
+impl<'a> PilotRuns<'a> {
     /// Runs each of `ladder`, all with the same [`Params::preview`]; ignores `input.previous`. The settings at `usual`
     /// are run at three resolutions, the highest with 32 to 128 thousand pixels, the others at the middle one.
     ///
@@ -69,19 +70,19 @@ impl<'a> Probe<'a> {
         }
 
         let (near, middle) = (vec![None; ladder.len()], Vec::new());
-        let mut probe = Self { input, ladder, usual, clock, problems, preparing, near, middle, energy: 0.0 };
-        let [nearest, middle, far] = probe.tried();
-        let far = probe.run(far, usual, job.part(0.05, 0.1))?;
-        let near = probe.run(nearest, usual, job.part(0.1, 0.5))?;
+        let mut pilot = Self { input, ladder, usual, clock, problems, preparing, near, middle, energy: 0.0 };
+        let [nearest, middle, far] = pilot.tried();
+        let far = pilot.run(far, usual, job.part(0.05, 0.1))?;
+        let near = pilot.run(nearest, usual, job.part(0.1, 0.5))?;
         for i in 0..ladder.len() {
             let share = |i: usize| 0.5 + 0.5 * i as f64 / ladder.len() as f64;
-            let trial = probe.run(middle, i, job.part(share(i), share(i + 1)))?;
-            probe.middle.push(trial);
+            let predict = pilot.run(middle, i, job.part(share(i), share(i + 1)))?;
+            pilot.middle.push(predict);
         }
-        probe.energy = continued([far.energy, probe.middle[usual].energy, near.energy], nearest);
-        probe.near[usual] = Some(near);
+        pilot.energy = extrapolate([far.energy, pilot.middle[usual].energy, near.energy], nearest);
+        pilot.near[usual] = Some(near);
         job.report(1.0);
-        Ok(probe)
+        Ok(pilot)
     }
 
     /// The indices of the resolutions used, the highest first.
@@ -91,11 +92,11 @@ impl<'a> Probe<'a> {
         [nearest, nearest + 1, nearest + 2].map(|i| i.min(lowest))
     }
 
-    fn run(&self, at: usize, settings: usize, job: Job) -> Result<Trial> {
+    fn run(&self, at: usize, settings: usize, job: Job) -> Result<Prediction> {
         let start = (self.clock)();
-        let report = schedule::run(&self.problems[at], &self.input, &self.ladder[settings], &|_| (), job)?.report;
+        let report = multires::run(&self.problems[at], &self.input, &self.ladder[settings], &|_| (), job)?.report;
         let energy = report.levels.last().and_then(|l| l.energy.last()).copied().unwrap_or(0.0);
-        Ok(Trial { seconds: (self.clock)().saturating_sub(start).as_secs_f64(), energy })
+        Ok(Prediction { seconds: (self.clock)().saturating_sub(start).as_secs_f64(), energy })
     }
 
     /// Runs settings at the highest pilot resolution too, unless done before.
@@ -120,21 +121,21 @@ impl<'a> Probe<'a> {
     /// which is estimated from the two resolutions. Energy falls with the size of pixels, because neighbouring pixels
     /// of paint and guides differ less: from one resolution to the next by a factor whose logarithm itself decays, as
     /// extrapolated from the pilot runs. The ratio of energies between settings hardly depends on the resolution.
-    pub fn trial(&self, settings: usize) -> Trial {
+    pub fn predict(&self, settings: usize) -> Prediction {
         let [all, tried, middle] =
             [0, self.tried()[0], self.tried()[1]].map(|at| pixels(&self.problems[at].guides.target) as f64);
-        let of = |value: f64, usual: f64| if usual > 0.0 { value / usual } else { 1.0 };
+        let ratio = |value: f64, usual: f64| if usual > 0.0 { value / usual } else { 1.0 };
         // Settings run at the middle resolution only: assume the ratio to the reference settings found there.
         let usual = self.near[self.usual].unwrap_or_default();
         let [here, its_usual] = [settings, self.usual].map(|i| self.middle[i]);
-        let near = self.near[settings].unwrap_or(Trial {
-            seconds: usual.seconds * of(here.seconds, its_usual.seconds),
-            energy: usual.energy * of(here.energy, its_usual.energy),
+        let near = self.near[settings].unwrap_or(Prediction {
+            seconds: usual.seconds * ratio(here.seconds, its_usual.seconds),
+            energy: usual.energy * ratio(here.energy, its_usual.energy),
         });
-        let more = of(tried, middle).ln();
-        let growth = if more > 0.0 { of(near.seconds, here.seconds).ln() / more - 1.0 } else { 0.0 };
-        let seconds = near.seconds * of(all, tried).powf(1.0 + growth.clamp(0.0, MOST_GROWTH));
-        Trial { seconds: self.preparing + seconds, energy: self.energy * of(near.energy, usual.energy) }
+        let more = ratio(tried, middle).ln();
+        let growth = if more > 0.0 { ratio(near.seconds, here.seconds).ln() / more - 1.0 } else { 0.0 };
+        let seconds = near.seconds * ratio(all, tried).powf(1.0 + growth.clamp(0.0, MAX_GROWTH));
+        Prediction { seconds: self.preparing + seconds, energy: self.energy * ratio(near.energy, usual.energy) }
     }
 }
 
@@ -143,12 +144,12 @@ fn pixels(image: &Image) -> usize {
 }
 
 fn is_near(problem: &Problem) -> bool {
-    pixels(&problem.style).min(pixels(&problem.guides.target)) <= NEAR
+    pixels(&problem.style).min(pixels(&problem.guides.target)) <= MAX_PIXELS
 }
 
 /// Extrapolates the energy `steps` resolutions above the last of three: each step of its logarithm is a constant
 /// fraction of the previous step (Aitken 1926).
-fn continued([far, middle, near]: [f64; 3], steps: usize) -> f64 {
+fn extrapolate([far, middle, near]: [f64; 3], steps: usize) -> f64 {
     let step = |from: f64, to: f64| if from > 0.0 && to > 0.0 { (to / from).ln() } else { 0.0 };
     let [before, mut last] = [step(far, middle), step(middle, near)];
     let falls = if before == 0.0 { 1.0 } else { (last / before).clamp(0.5, 1.0) };
@@ -167,11 +168,11 @@ mod tests {
     #[test]
     fn energies_go_on_as_they_have_begun() {
         // Constant steps; decaying steps; no change.
-        assert!((continued([64.0, 32.0, 16.0], 3) - 2.0).abs() < 1e-12);
+        assert!((extrapolate([64.0, 32.0, 16.0], 3) - 2.0).abs() < 1e-12);
         let falling = 4.0 * (0.5 * (0.64f64).ln() + 0.25 * (0.64f64).ln()).exp();
-        assert!((continued([4.0 / 0.64f64.powi(3), 4.0 / 0.64, 4.0], 2) - falling).abs() < 1e-12, "{falling}");
-        assert_eq!(continued([3.0, 3.0, 3.0], 4), 3.0);
-        assert_eq!(continued([0.0, 0.0, 0.0], 4), 0.0);
-        assert_eq!(continued([9.0, 5.0, 7.0], 0), 7.0);
+        assert!((extrapolate([4.0 / 0.64f64.powi(3), 4.0 / 0.64, 4.0], 2) - falling).abs() < 1e-12, "{falling}");
+        assert_eq!(extrapolate([3.0, 3.0, 3.0], 4), 3.0);
+        assert_eq!(extrapolate([0.0, 0.0, 0.0], 4), 0.0);
+        assert_eq!(extrapolate([9.0, 5.0, 7.0], 0), 7.0);
     }
 }
