@@ -1,4 +1,4 @@
-//! Pieces that stand in the rooms. Each is built at the origin, its front towards +z, and then turned and moved.
+//! Furniture of the rooms. Each piece is built at the origin with its front towards +z, then rotated and moved.
 
 use super::Builder;
 use super::shapes::{ball, cuboid, lathe, moved};
@@ -6,7 +6,7 @@ use crate::rng::Rng;
 use crate::scene::Mesh;
 use glam::{Vec2, Vec3};
 
-/// A box given by its middle on the floor, its base height and its size.
+/// A box given by the centre of its base, the height of its base and its size.
 fn block(mesh: &mut Mesh, x: f32, y: f32, z: f32, size: [f32; 3]) {
     let half = Vec3::new(size[0] / 2.0, 0.0, size[2] / 2.0);
     let foot = Vec3::new(x, y, z);
@@ -45,7 +45,7 @@ pub fn chair(b: &mut Builder, at: Vec3, degrees: f32, wood: usize, cloth: usize)
     b.add("Cushion", cloth, moved(cushion, degrees, at));
 }
 
-/// An open shelf with its back at z = 0 and books on every board; the books take the given paints in turn.
+/// An open shelf with its back at z = 0 and books on every board; the books take the given paints at random.
 pub fn bookshelf(b: &mut Builder, at: Vec3, degrees: f32, width: f32, wood: usize, covers: &[usize]) {
     const DEPTH: f32 = 0.30;
     const BOARDS: [f32; 5] = [0.06, 0.44, 0.82, 1.20, 1.58];

@@ -1,9 +1,9 @@
-//! The wire format of Protocol Buffers: fields of a message, as views of its bytes.
+//! The wire format of Protocol Buffers: fields of a message as views of its bytes.
 
 use crate::error::{Error, Result};
 use crate::image::try_push;
 
-/// What a field holds.
+/// The value of a field.
 #[derive(Clone, Copy)]
 pub enum Value<'a> {
     Varint(u64),
@@ -84,7 +84,7 @@ impl<'a> Value<'a> {
         }
     }
 
-    /// Adds the numbers of a repeated field, packed or one by one.
+    /// Appends the numbers of a repeated field, packed or not.
     pub fn integers(self, to: &mut Vec<i64>) -> Result<()> {
         let Self::Bytes(mut rest) = self else {
             to.push(self.integer()?);
@@ -96,7 +96,7 @@ impl<'a> Value<'a> {
         Ok(())
     }
 
-    /// The same for floats.
+    /// As [`Value::integers`], for floats.
     pub fn floats(self, to: &mut Vec<f32>) -> Result<()> {
         let Self::Bytes(mut rest) = self else {
             to.push(self.float()?);

@@ -1,4 +1,4 @@
-//! A run: node by node in the order of the file, every value dropped after its last use.
+//! Execution: node by node in the order of the file, dropping every value after its last use.
 
 use super::graph::Network;
 use super::ops::Call;
@@ -6,11 +6,12 @@ use super::tensor::{Room, Tensor};
 use crate::error::{Error, Result};
 use crate::job::Job;
 
-/// Most bytes of all values at once, beside the network's own weights; what a node needs meanwhile may be as much again.
+/// Maximum number of bytes of all values at a time, in addition to the network's own weights; temporary memory of a
+/// node may take the same again.
 pub const MOST_BYTES: usize = 1 << 30;
 
 impl Network {
-    /// The first output for an input. Fails with `Format` where shapes do not fit together, with `OutOfMemory` beyond
+    /// Computes the first output for an input. Errors: `Format` if shapes are inconsistent, `OutOfMemory` beyond
     /// [`MOST_BYTES`].
     pub fn run(&self, input: Tensor, job: Job) -> Result<Tensor> {
         let mut values: Vec<Option<Tensor>> = vec![None; self.constants.len()];

@@ -1,4 +1,4 @@
-//! The strength of the emission: how long its solution takes for an error, from a few short ones.
+//! The strength of the emission: the solution time for an error, predicted from a few short solutions.
 
 use super::curve::Curve;
 use super::{Clock, Expected, Goal, PATIENCE, overtime, timed};
@@ -8,30 +8,30 @@ use crate::relight;
 use crate::render::World;
 use glam::Vec3;
 
-/// Paths of a trial of the solution, and trials: the error that one states is itself known to 13 %.
+/// Paths per trial solution, and number of trials: the standard error that a trial states is itself known to 13 %.
 const TRIAL: u32 = 4096;
 const TRIALS: u64 = 6;
-/// Tells their paths from those of the solution.
+/// Separates the trials' random paths from those of the solution.
 const SALT: u64 = 0x7472_6961_6c73_2121;
-/// Radiance in cd/m² that no other light reaches.
+/// Radiance in cd/m² far above that of any other light.
 const BRIGHT: f32 = 1e9;
-/// Least and most paths of a solution.
+/// Minimum and maximum number of paths of a solution.
 const SOLUTION_PATHS: [f64; 2] = [2048.0, (1u32 << 30) as f64];
-/// A solution that stops at a target forecasts its paths with this margin.
+/// Safety margin in the forecast of a solution that stops at a target error.
 const MARGIN: f64 = 1.1;
-/// Half-widths of intervals over standard errors, with so many batches.
+/// Ratio of an interval's half-width to its standard error, for the number of batches used.
 const HALF_WIDTH: f64 = 2.04;
 
-/// What a solution of the emission takes.
+/// Measured cost and error of the emission's solution.
 pub(super) struct Strength {
     seconds_per_path: f64,
-    /// Half-width of the interval, relative, that a trial leaves.
+    /// Relative half-width of the confidence interval of a trial.
     half_width: f64,
 }
 
 impl Strength {
-    /// Tries it a few times, for an emitting material and the triangles of the target. What the target is to be has no say
-    /// where there is no other light; with other light it is what the emission makes of it as it stands.
+    /// Runs the trials for an emitting material and the triangles of the target. The target value does not matter
+    /// without other lights; with other lights, the radiance that the emission currently produces is used.
     pub fn new(
         (world, emitter, target_triangles): (&World, usize, &[(usize, usize)]),
         params: &relight::Params,
@@ -63,13 +63,13 @@ impl Strength {
         Ok(Self { seconds_per_path: seconds / trials / f64::from(TRIAL), half_width: (squares / trials).sqrt() })
     }
 
-    /// Error that it adds to a picture of a contrast, against time.
+    /// The error that it contributes to a picture of the given contrast, against time.
     pub fn curve(&self, contrast: f64) -> Curve {
         let [least, most] = SOLUTION_PATHS.map(|paths| paths * self.seconds_per_path);
         Curve::of_independent(least, most, self.adds(self.half_width(SOLUTION_PATHS[0]), contrast).powi(2))
     }
 
-    /// What a solution with such an interval adds to the error of a picture.
+    /// The contribution of a solution with the given interval to the error of a picture.
     pub fn adds(&self, half_width: f64, contrast: f64) -> f64 {
         half_width / HALF_WIDTH * contrast
     }
@@ -78,8 +78,8 @@ impl Strength {
         self.half_width * (f64::from(TRIAL) / paths).sqrt()
     }
 
-    /// The settings with which it takes so many seconds, or reaches the error that they stand for; and what to expect of
-    /// it: the error is that of the solution, half the width of its interval.
+    /// The settings for a time in seconds, or for the error expected after that time, and the expectation: its error
+    /// is the relative half-width of the solution's interval.
     pub fn plan(&self, params: &relight::Params, goal: Goal, seconds: f64) -> (relight::Params, Expected) {
         let paths = (seconds / self.seconds_per_path).clamp(SOLUTION_PATHS[0], SOLUTION_PATHS[1]);
         let error = self.half_width(paths);

@@ -1,4 +1,4 @@
-//! What an artist sees in the scene: tones, not radiances.
+//! The scene as an artist sees it: in tones instead of radiances.
 
 use crate::error::Result;
 use crate::guides::{self, Guides};
@@ -6,24 +6,24 @@ use crate::image::colour::{linear_to_srgb, luminance};
 use crate::image::{Image, try_collect, try_with_capacity};
 use glam::{Vec2, Vec3};
 
-/// The axis that strokes go around, as the camera has it, and the way of strokes on the table.
+/// The axis, in camera space, around which strokes run, and the direction of strokes on the table.
 const AXIS: Vec3 = Vec3::new(0.45, 0.75, 0.48);
 const TABLE: Vec2 = Vec2::new(0.97, -0.24);
 
-/// A place in the picture.
+/// A position in the picture.
 #[derive(Clone, Copy)]
 pub struct Sight {
-    /// Lightness of the whole, in `[0, 1]`.
+    /// Overall lightness, in `[0, 1]`.
     pub tone: f32,
-    /// Lightness of the light that falls there directly.
+    /// Lightness of the direct light.
     pub lit: f32,
     /// Strength of the highlight.
     pub shine: f32,
-    /// How red the light from other things is.
+    /// Redness of the light from other objects.
     pub bleed: f32,
-    /// Whether it is a thing on the table, not table or wall.
+    /// Whether it shows an object, as opposed to table or wall.
     pub is_thing: bool,
-    /// Unit direction in the picture (y down) along which strokes follow the form.
+    /// Unit direction in the picture (y down) of strokes that follow the form.
     pub along: Vec2,
     /// Strength of the edge of a shape.
     pub edge: f32,
@@ -32,7 +32,7 @@ pub struct Sight {
 pub struct Subject {
     pub width: usize,
     pub height: usize,
-    /// Length in pixels of what is one pixel in a picture 800 wide.
+    /// Size in pixels of one pixel of a picture 800 wide.
     pub unit: f32,
     sights: Vec<Sight>,
 }
@@ -44,9 +44,9 @@ impl Subject {
         let lightness = |image: &Image, x: usize, y: usize, factor: f32| {
             linear_to_srgb((luminance(image.rgb(x, y)) * exposure * factor).clamp(0.0, 1.0))
         };
-        // What is in the corner is the ground.
+        // The material in the corner is the background.
         let ground = guides.materials.pixel(0, 0);
-        // A thing's own colour is not its tone: its brightest part is light, however dark its paint.
+        // Normalise tones by the object's own colour: its brightest part is light, however dark its paint.
         let things =
             direct.data.chunks_exact(3).zip(guides.materials.data.chunks_exact(3)).filter(|(_, m)| *m != ground);
         let mut brightest = try_collect(things.map(|(light, _)| luminance(Vec3::from_slice(light))))?;
@@ -58,7 +58,7 @@ impl Subject {
             for x in 0..full.width {
                 let is_thing = guides.materials.pixel(x, y) != ground;
                 let normal = Vec3::from_slice(guides.normals.pixel(x, y));
-                // Around the form, like the rings of a turned thing whose axis leans.
+                // Around the form, like the rings of a turned object with a tilted axis.
                 let ring = normal.cross(AXIS);
                 let along = if is_thing { Vec2::new(ring.x, -ring.y).normalize_or(Vec2::X) } else { TABLE };
                 let light = indirect.rgb(x, y) * exposure;

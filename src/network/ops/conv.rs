@@ -1,4 +1,4 @@
-//! Convolutions of images, direct: no matrix of patches is ever made. Four output channels by sixteen pixels are summed in
+//! Direct convolution of images, without an im2col matrix. Four output channels by sixteen pixels are accumulated in
 //! registers, over input channels and taps in order.
 
 use super::super::read::unsupported;
@@ -9,9 +9,9 @@ use crate::error::{Error, Result};
 use crate::exec;
 use crate::simd::widest;
 
-/// Pixels along a row that are summed together.
+/// Pixels along a row that are accumulated together.
 const LANES: usize = 16;
-/// Output channels that are summed together.
+/// Output channels that are accumulated together.
 const GROUP: usize = 4;
 
 pub struct Conv {
@@ -30,7 +30,7 @@ impl Conv {
         Ok(Self { window: Window::read(at)?, groups, output_padding, output_shape: at.integers("output_shape") })
     }
 
-    /// Weights `[out, in / groups, rows, columns]`.
+    /// Convolution with weights `[out, in / groups, rows, columns]`.
     pub fn run(&self, call: &Call) -> Result<Tensor> {
         let (x, weights, bias) = (call.input(0)?, call.input(1)?, call.optional(2));
         let [batch, channels, height, width] = x.shape_of()?;
@@ -57,7 +57,7 @@ impl Conv {
         let shape = vec![batch, out_channels, out_height, out_width];
         let mut out = call.room.zeros(&shape)?;
 
-        // Output channels of one group that share what they read.
+        // Output channels of one group that read the same inputs.
         let of_group = out_channels / groups;
         let together = [GROUP, 2, 1].into_iter().find(|n| of_group.is_multiple_of(*n)).unwrap_or(1);
         let weights = weights.as_floats()?;
@@ -86,7 +86,8 @@ impl Conv {
         Ok(Tensor::floats(shape, out))
     }
 
-    /// The transpose of a convolution, weights `[in, out / groups, rows, columns]`: every output pixel gathers what reaches it.
+    /// Transposed convolution with weights `[in, out / groups, rows, columns]`: every output pixel gathers its
+    /// contributions.
     pub fn run_transposed(&self, call: &Call) -> Result<Tensor> {
         let (x, weights, bias) = (call.input(0)?, call.input(1)?, call.optional(2));
         let [batch, channels, height, width] = x.shape_of()?;
@@ -147,7 +148,7 @@ impl Conv {
     }
 }
 
-/// Images with a border of zeros.
+/// Images padded with a border of zeros.
 struct Padded {
     values: Vec<f32>,
     height: usize,
@@ -176,7 +177,7 @@ struct Planes<'a> {
 }
 
 struct Weights<'a> {
-    /// Of the output channels that are summed together, one after the other.
+    /// Weights of the output channels that are accumulated together, one after the other.
     taps: &'a [f32],
     bias: &'a [f32],
 }
@@ -189,7 +190,7 @@ struct Taps {
     dilations: [usize; 2],
 }
 
-/// A row of `N` output channels.
+/// Computes a row of `N` output channels.
 #[inline(always)]
 fn row<const N: usize>(source: &Planes, weights: &Weights, taps: &Taps, y: usize, width: usize, out: &mut [f32]) {
     let plane = out.len() / N;

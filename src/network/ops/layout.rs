@@ -1,11 +1,11 @@
-//! Shapes: given, read, joined and split. Most of these move no number.
+//! Operators on shapes: reshape, query, join and split. Most of them move no data.
 
 use super::super::tensor::{Data, Tensor, count, normal_axis};
 use super::Call;
 use super::gather::shape_from;
 use crate::error::{Error, Result};
 
-/// 0 stands for the input's own size, -1 for what is left.
+/// Reshapes; 0 stands for the input's own size, -1 for the remaining size.
 pub fn reshape(keeps_zero: bool, call: &Call) -> Result<Tensor> {
     let x = call.input(0)?;
     let wanted = call.input(1)?.as_integers()?;
@@ -28,7 +28,7 @@ pub fn reshape(keeps_zero: bool, call: &Call) -> Result<Tensor> {
     x.reshaped(shape)
 }
 
-/// Two axes: those before one, and the rest.
+/// Flattens to two axes: those before `axis`, and the rest.
 pub fn flatten(axis: i64, call: &Call) -> Result<Tensor> {
     let x = call.input(0)?;
     let rank = x.shape.len() as i64;
@@ -112,7 +112,7 @@ pub fn split(axis: i64, sizes: &Option<Vec<i64>>, call: &Call) -> Result<Vec<Ten
     let size = x.shape[axis];
     let sizes: Vec<usize> = match call.integers(sizes, 1)? {
         Some(sizes) => sizes.iter().filter_map(|&n| usize::try_from(n).ok()).collect(),
-        // Even parts, the last one what is left.
+        // Split evenly; the last part takes the remainder.
         None => {
             let even = size.div_ceil(call.outputs.max(1));
             (0..call.outputs).map(|k| even.min(size.saturating_sub(k * even))).collect()

@@ -1,4 +1,4 @@
-//! Products of matrices: four rows by sixteen columns are summed in registers, in order along the shared axis.
+//! Matrix products: four rows by sixteen columns are accumulated in registers, in order along the shared axis.
 
 use super::super::tensor::{Tensor, count};
 use super::elementwise::Spread;
@@ -10,7 +10,7 @@ use crate::simd::widest;
 
 const ROWS: usize = 4;
 const LANES: usize = 16;
-/// Length along the shared axis whose part of the right matrix stays in the cache.
+/// Block length along the shared axis for which the block of the right matrix stays in the cache.
 const DEPTH: usize = 256;
 
 pub struct Gemm {
@@ -66,7 +66,7 @@ fn transposed(tensor: &Tensor, call: &Call) -> Result<Tensor> {
     Ok(Tensor::floats(vec![columns, rows], out))
 }
 
-/// The product of two stacks of matrices, as numpy's.
+/// The product of two stacks of matrices, as in numpy.
 pub fn run(call: &Call) -> Result<Tensor> {
     product(call.input(0)?, call.input(1)?, call)
 }
@@ -89,7 +89,7 @@ fn product(left: &Tensor, right: &Tensor, call: &Call) -> Result<Tensor> {
         return Err(wrong());
     }
 
-    // Which matrix of each stack goes with which.
+    // Pair the matrices of both stacks by broadcasting.
     let numbered = |shape: &[usize]| -> Result<Tensor> {
         Ok(Tensor::integers(shape.to_vec(), (0..count(shape)? as i64).collect()))
     };
@@ -104,7 +104,7 @@ fn product(left: &Tensor, right: &Tensor, call: &Call) -> Result<Tensor> {
     let mut shape = spread.shape.clone();
     shape.extend([rows, columns]);
     count(&shape)?;
-    // Rows in fours, the last four filled up: they are cut off again.
+    // Process rows in fours; pad the last four, and cut the padding off afterwards.
     let padded = rows.next_multiple_of(ROWS);
     let mut out = call.room.zeros(&[stack, padded, columns])?;
     exec::for_rows(&mut out, ROWS * columns, call.job, |k, out| {
@@ -134,7 +134,7 @@ fn product(left: &Tensor, right: &Tensor, call: &Call) -> Result<Tensor> {
     Ok(Tensor::floats(shape, out))
 }
 
-/// Some rows of the left matrix, and the right one.
+/// Some rows of the left matrix, and the right matrix.
 struct Block<'a> {
     a: &'a [f32],
     b: &'a [f32],
@@ -149,7 +149,7 @@ widest! {
 }
 
 widest! {
-    /// The last rows, fewer than four.
+    /// Processes the last rows, fewer than four.
     fn rest(block: &Block, out: &mut [f32]) {
         for (a, out) in block.a.chunks_exact(block.shared.max(1)).zip(out.chunks_exact_mut(block.columns)) {
             rows_of::<1>(&Block { a, ..*block }, out);

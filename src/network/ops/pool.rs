@@ -1,4 +1,4 @@
-//! Windows over images, and what is pooled in them.
+//! Pooling over windows of images.
 
 use super::super::read::unsupported;
 use super::super::tensor::Tensor;
@@ -6,7 +6,7 @@ use super::{Call, Settings};
 use crate::error::{Error, Result};
 use crate::exec;
 
-/// How windows lie over an image.
+/// The placement of windows over an image.
 pub struct Window {
     pub strides: [usize; 2],
     pub dilations: [usize; 2],
@@ -16,15 +16,15 @@ pub struct Window {
 pub enum Padding {
     /// Top, left, bottom, right.
     Explicit([usize; 4]),
-    /// As much as makes the output `⌈input / stride⌉`, the odd one at the end or at the start.
+    /// Padding for which the output size is `⌈input / stride⌉`, with the odd pixel at the end or at the start.
     Same { odd_first: bool },
 }
 
-/// Windows over an image of a certain size.
+/// Windows over an image of a given size.
 pub struct Place {
     /// Rows and columns of padding before the image.
     pub before: [usize; 2],
-    /// Rows and columns that all windows together reach over, padding included.
+    /// Rows and columns that all windows together cover, including padding.
     pub reach: [usize; 2],
     pub out: [usize; 2],
 }
@@ -108,7 +108,7 @@ impl Pool {
         let mut out = call.room.zeros(&shape)?;
         let values = x.as_floats()?;
         let Window { strides, dilations, .. } = &self.window;
-        // Where the taps of the window at `k` along an axis lie inside the image.
+        // The taps of the window at `k` along an axis that lie inside the image.
         let inside = |axis: usize, k: usize, size: usize| {
             let start = k * strides[axis];
             (0..self.kernel[axis]).filter_map(move |i| {

@@ -1,4 +1,4 @@
-//! Sums, means and extremes along axes.
+//! Sums, means and extrema along axes.
 
 use super::super::tensor::{Tensor, count};
 use super::{Call, Settings};
@@ -42,7 +42,7 @@ impl Reduce {
             is_reduced[x.axis(axis)?] = true;
         }
 
-        // Where each item of the input goes, axis by axis.
+        // The output position of each input item, axis by axis.
         let kept: Vec<usize> = x.shape.iter().zip(&is_reduced).map(|(&n, &r)| if r { 1 } else { n }).collect();
         let mut strides = vec![0; kept.len()];
         let mut stride = 1;
