@@ -27,10 +27,12 @@
 //! - Single-Exemplar Lighting Style Transfer via Emissive Texture Synthesis and Optimization; and for its last step the
 //!   adjoint light tracing of Lipp et al. 2024, which a linear solve replaces here.
 //! - Fišer et al. 2016: StyLit, illumination-guided example-based stylization of 3D renderings.
-//! - Efros and Freeman 2001: Image quilting. Felzenszwalb and Huttenlocher 2012: Distance transforms of sampled functions.
+//! - Efros and Freeman 2001: Image quilting. Felzenszwalb and Huttenlocher 2012: Distance transforms of sampled
+//!   functions.
 //! - Hartley and Zisserman 2004: Multiple View Geometry. Heckbert 1989: Fundamentals of texture mapping.
 //! - Veach 1997: Robust Monte Carlo methods. Heitz 2018: Sampling the GGX distribution of visible normals.
-//! - Woop, Benthin and Wald 2013: Watertight ray/triangle intersection. Burley 2020: Practical hash-based Owen scrambling.
+//! - Woop, Benthin and Wald 2013: Watertight ray/triangle intersection. Burley 2020: Practical hash-based Owen
+//!   scrambling.
 
 #![warn(unsafe_op_in_unsafe_fn)]
 

@@ -47,6 +47,7 @@ pub fn chair(b: &mut Builder, at: Vec3, degrees: f32, wood: usize, cloth: usize)
 
 /// An open shelf with its back at z = 0 and books on every board; the books take the given paints at random.
 pub fn bookshelf(b: &mut Builder, at: Vec3, degrees: f32, width: f32, wood: usize, covers: &[usize]) {
+    /// Depth of the shelf and heights of its boards, in metres [convention].
     const DEPTH: f32 = 0.30;
     const BOARDS: [f32; 5] = [0.06, 0.44, 0.82, 1.20, 1.58];
     let mut frame = Mesh::default();
@@ -158,8 +159,8 @@ pub fn plant(b: &mut Builder, foot: Vec3, height: f32, pot: usize, leaves: usize
     for i in 0..60 {
         let (s, c) = (i as f32 * 2.399_963).sin_cos();
         let up = (i as f32 + 0.5) / 60.0;
-        let reach = 0.05 + 0.25 * (std::f32::consts::PI * up).sin() * (0.6 + 0.4 * rng.next_f32());
-        let centre = foot + Vec3::new(reach * c, 0.30 + (height - 0.4) * up, reach * s);
+        let radius = 0.05 + 0.25 * (std::f32::consts::PI * up).sin() * (0.6 + 0.4 * rng.next_f32());
+        let centre = foot + Vec3::new(radius * c, 0.30 + (height - 0.4) * up, radius * s);
         ball(&mut crown, centre, Vec2::new(0.055, 0.03 + 0.03 * rng.next_f32()), 10);
     }
     b.add("Plant", leaves, crown);

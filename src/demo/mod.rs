@@ -59,7 +59,7 @@ impl Builder {
     }
 
     /// Validates and returns the scene.
-    fn finish(self) -> Result<Scene> {
+    fn build(self) -> Result<Scene> {
         self.scene.validate()?;
         Ok(self.scene)
     }

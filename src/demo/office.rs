@@ -7,14 +7,14 @@ use crate::scene::{Camera, Material, Mesh, Scene};
 use glam::{Mat3, Vec2, Vec3};
 
 const SIZE: Vec3 = Vec3::new(5.4, 2.7, 9.0);
-/// Side of the ceiling's tiles in metres, and their number along x and z.
+/// Side of the ceiling's tiles in metres, and their number along x and z [convention].
 const TILE: f32 = 0.6;
 const TILES: [usize; 2] = [9, 15];
 /// Width and depth of the bars that carry the tiles.
 const BAR: Vec2 = Vec2::new(0.024, 0.004);
-/// Side of a luminaire in metres; the rest of its tile is a white rim.
+/// Side of a luminaire in metres; the rest of its tile is a white rim [convention].
 const LUMINAIRE: f32 = 0.56;
-/// Luminance of the luminaires in cd/m².
+/// Luminance of the luminaires in cd/m² [convention].
 const LUMINANCE: f32 = 3000.0;
 /// Linear Rec.709 of a blackbody at 3500 K (CIE xy 0.4053, 0.3907), with luminance 1.
 const WARM_WHITE: Vec3 = Vec3::new(1.564, 0.892, 0.406);
@@ -80,7 +80,7 @@ pub fn exemplar_room() -> Result<Exemplar> {
         up: turn * Vec3::Y,
         fov_y,
     });
-    Ok(Exemplar { scene: b.finish()?, grid, ceiling_height: SIZE.y, camera: 0 })
+    Ok(Exemplar { scene: b.build()?, grid, ceiling_height: SIZE.y, camera: 0 })
 }
 
 /// Tiles, luminaires with their rims, and the bars between them. Everything except the bars lies in one plane.

@@ -11,19 +11,19 @@ use crate::scene::{Camera, Scene};
 use glam::Vec3;
 use std::sync::Arc;
 
-/// Standard deviation of the lens blur in pixels.
+/// Standard deviation of the lens blur in pixels [convention].
 const LENS_BLUR: f32 = 0.7;
 /// Share of the light that the lens scatters into a glow around lamps, and the standard deviation of the glow in
-/// pixels.
+/// pixels [convention].
 const GLARE: (f32, f32) = (0.03, 9.0);
-/// Brightness in the corner of the picture relative to its centre.
+/// Brightness in the corner of the picture relative to its centre [convention].
 const VIGNETTE: f32 = 0.8;
-/// Full-well capacity and read-out noise, in electrons.
+/// Full-well capacity and read-out noise, in electrons [convention].
 const WELL: (f64, f64) = (6000.0, 12.0);
 /// Strength of the camera's white balance from the colour of the light (0) to white (1): real cameras correct
-/// partially.
+/// partially [convention].
 const WHITE_BALANCE: f32 = 0.6;
-/// Linear value to which the median of the picture is exposed.
+/// Linear value to which the median of the picture is exposed [convention].
 const MEDIAN_EXPOSURE: f32 = 0.14;
 
 #[derive(Clone, Debug, PartialEq)]
@@ -73,10 +73,10 @@ pub fn photograph(scene: Arc<Scene>, camera: &Camera, params: &Params, job: Job)
     // Sensor: vignetting, shot and read-out noise, saturation, 8 bits.
     let mut photo = Image::new(params.width, params.height, 3)?;
     let centre = [params.width as f32 / 2.0, params.height as f32 / 2.0];
-    let reach = centre[0].hypot(centre[1]);
+    let half_diagonal = centre[0].hypot(centre[1]);
     exec::for_rows(&mut photo.data, params.width * 3, job.part(0.96, 1.0), |y, row| {
         for (x, pixel) in row.chunks_exact_mut(3).enumerate() {
-            let radius = (x as f32 + 0.5 - centre[0]).hypot(y as f32 + 0.5 - centre[1]) / reach;
+            let radius = (x as f32 + 0.5 - centre[0]).hypot(y as f32 + 0.5 - centre[1]) / half_diagonal;
             let falloff = 1.0 - (1.0 - VIGNETTE) * radius * radius;
             let mut rng = Rng::new(params.seed, &[x as u64, y as u64]);
             for (c, out) in pixel.iter_mut().enumerate() {

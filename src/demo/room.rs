@@ -7,9 +7,9 @@ use crate::scene::{Camera, Mesh, Scene};
 use glam::{Vec2, Vec3};
 
 const SIZE: Vec3 = Vec3::new(6.0, 2.8, 4.0);
-/// Side of the cells into which walls, floor and ceiling are divided.
+/// Side of the cells into which walls, floor and ceiling are divided [convention].
 const CELL: f32 = 0.25;
-/// Depth of door and window openings.
+/// Depth of door and window openings [convention].
 const REVEAL: f32 = 0.12;
 /// Openings in the wall at z = 0: lower and upper corner along x and y.
 const WINDOW: [Vec2; 2] = [Vec2::new(1.1, 0.95), Vec2::new(3.1, 2.25)];
@@ -25,7 +25,7 @@ pub fn target_room() -> Result<Scene> {
         name: "Camera".into(),
         ..Camera::look_at(Vec3::new(5.65, 1.55, 3.75), Vec3::new(2.2, 1.32, 1.15), 56f32.to_radians())
     });
-    b.finish()
+    b.build()
 }
 
 /// Floor, ceiling and walls, all facing inwards.

@@ -12,7 +12,7 @@ use glam::{Mat3, Vec2, Vec3};
 
 /// Corner, width and depth of the lamp, which faces the table.
 const LAMP: [Vec3; 2] = [Vec3::new(0.12, 0.62, -0.12), Vec3::new(0.34, 0.56, 0.06)];
-/// Luminance of the lamp in cd/m².
+/// Luminance of the lamp in cd/m² [convention].
 const LAMP_LUMINANCE: f32 = 12_000.0;
 /// Luminance of the dim surroundings.
 const SURROUNDINGS: Vec3 = Vec3::new(120.0, 125.0, 135.0);
@@ -24,7 +24,7 @@ pub fn sphere_on_table() -> Result<Scene> {
     let mut sphere = Mesh::default();
     ball(&mut sphere, Vec3::new(0.0, 0.1, 0.0), Vec2::splat(0.1), 96);
     b.add("Ball", red, sphere);
-    b.finish()
+    b.build()
 }
 
 /// The target: a vase, a ring and two balls. Object names: `Vase`, `Ring`, `Balls`, `Table`, `Wall`.
@@ -45,7 +45,7 @@ pub fn still_life() -> Result<Scene> {
     ball(&mut balls, Vec3::new(0.075, 0.042, 0.085), Vec2::splat(0.042), 64);
     ball(&mut balls, Vec3::new(-0.02, 0.024, 0.115), Vec2::splat(0.024), 64);
     b.add("Balls", red, balls);
-    b.finish()
+    b.build()
 }
 
 /// Table, wall, lamp, surroundings and camera.

@@ -38,8 +38,8 @@ struct Surface<'a> {
 }
 
 impl Surface<'_> {
-    /// Weighted means over 5 × 5 pixels at distance `step`; `range_weight` weights a pair of positions by their brightness in
-    /// `guide`.
+    /// Weighted means over 5 × 5 pixels at distance `step`; `range_weight` weights a pair of positions by their
+    /// brightness in `guide`.
     fn average(
         &self,
         light: &Image,

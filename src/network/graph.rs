@@ -27,7 +27,7 @@ pub(super) struct Node {
 }
 
 /// Maximum number of nodes: the largest DPT has about 3,000.
-const MOST_NODES: usize = 100_000;
+const MAX_NODES: usize = 100_000;
 
 impl Network {
     /// Parses the bytes of an ONNX file. Errors: `Format` if they are damaged or inconsistent, `Unsupported` for
@@ -37,8 +37,8 @@ impl Network {
         if !(7..=21).contains(&model.opset) {
             return Err(unsupported(format_args!("version {} of the operators (7 to 21 are known)", model.opset)));
         }
-        if model.nodes.len() > MOST_NODES {
-            return Err(unsupported(format_args!("{} nodes (at most {MOST_NODES} are allowed)", model.nodes.len())));
+        if model.nodes.len() > MAX_NODES {
+            return Err(unsupported(format_args!("{} nodes (at most {MAX_NODES} are allowed)", model.nodes.len())));
         }
         // Old files list their weights among the inputs.
         let mut inputs = model.inputs.into_iter().filter(|(name, _)| !model.constants.contains_key(name));

@@ -5,10 +5,10 @@
 //! bytes ─▶ protobuf ─▶ graph (checked, only what the output needs) ─▶ run: node by node, parallel inside ─▶ output
 //! ```
 //!
-//! Files are not trusted. Shapes are checked where they are used, the output of a node is charged to a [`Room`] before
-//! it is allocated, and a value is dropped after its last use; a file cannot make a run take more memory than
-//! [`MOST_BYTES`] in addition to its own weights. All loops work in units that do not depend on the number of threads:
-//! equal input yields equal bits. A cancel request is answered within one row of the largest layer.
+//! Files are not trusted. Shapes are checked where they are used, the output of a node is charged to a
+//! [`MemoryBudget`] before it is allocated, and a value is dropped after its last use; a file cannot make a run take
+//! more memory than [`MAX_BYTES`] in addition to its own weights. All loops work in units that do not depend on the
+//! number of threads: equal input yields equal bits. A cancel request is answered within one row of the largest layer.
 //!
 //! Existing runtimes are not used because they are unsuitable for a host's process: they keep threads of their own for
 //! good, print, abort the process when memory runs out, or cannot be cancelled.
@@ -31,5 +31,5 @@ pub mod writer;
 
 pub use graph::Network;
 pub use ops::resize_cubic;
-pub use run::MOST_BYTES;
+pub use run::MAX_BYTES;
 pub use tensor::{Data, Tensor};

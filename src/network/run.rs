@@ -2,17 +2,17 @@
 
 use super::graph::Network;
 use super::ops::Call;
-use super::tensor::{Room, Tensor};
+use super::tensor::{MemoryBudget, Tensor};
 use crate::error::{Error, Result};
 use crate::job::Job;
 
 /// Maximum number of bytes of all values at a time, in addition to the network's own weights; temporary memory of a
 /// node may take the same again.
-pub const MOST_BYTES: usize = 1 << 30;
+pub const MAX_BYTES: usize = 1 << 30;
 
 impl Network {
     /// Computes the first output for an input. Errors: `Format` if shapes are inconsistent, `OutOfMemory` beyond
-    /// [`MOST_BYTES`].
+    /// [`MAX_BYTES`].
     pub fn run(&self, input: Tensor, job: Job) -> Result<Tensor> {
         let mut values: Vec<Option<Tensor>> = vec![None; self.constants.len()];
         let mut used = input.bytes();
@@ -23,7 +23,7 @@ impl Network {
             let value = |&number: &usize| values[number].as_ref().or(self.constants[number].as_ref());
             let call = Call {
                 inputs: node.inputs.iter().map(|number| number.as_ref().and_then(value)).collect(),
-                room: Room(MOST_BYTES.saturating_sub(used)),
+                budget: MemoryBudget(MAX_BYTES.saturating_sub(used)),
                 outputs: node.outputs.len(),
                 job,
             };

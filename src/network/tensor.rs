@@ -95,9 +95,9 @@ pub fn normal_axis(axis: i64, rank: usize) -> Result<usize> {
 
 /// The number of bytes that may still be allocated.
 #[derive(Clone, Copy)]
-pub(crate) struct Room(pub usize);
+pub(crate) struct MemoryBudget(pub usize);
 
-impl Room {
+impl MemoryBudget {
     fn check<T>(self, count: usize) -> Result<()> {
         if count <= self.0 / size_of::<T>() { Ok(()) } else { Err(no_memory::<T>(count)) }
     }

@@ -46,7 +46,7 @@ impl Default for Params {
 }
 
 /// Colour of pixels without a value, such as those between the triangles of a mesh's map.
-const NOTHING: Vec3 = Vec3::splat(0.05);
+const NO_VALUE: Vec3 = Vec3::splat(0.05);
 const PAPER: Vec3 = Vec3::splat(1.0);
 const INK: Vec3 = Vec3::ZERO;
 
@@ -99,7 +99,7 @@ pub fn render(image: &Image, params: &Params) -> Result<Image> {
     let table: Vec<Vec3> = (0..256).map(|i| colour_of(f64::from(i) / 255.0)).collect();
     let seen = |x: usize, y: usize| {
         let share = range.share(f64::from(value(image, x, y)));
-        if share.is_nan() { NOTHING } else { table[(share * 255.0).round() as usize] }
+        if share.is_nan() { NO_VALUE } else { table[(share * 255.0).round() as usize] }
     };
     if !params.bar {
         return Image::from_fn(image.width, image.height, |x, y| seen(x, y).to_array());
@@ -273,7 +273,7 @@ mod tests {
         let plain = Params { bar: false, ..Params::default() };
         let at = |params: &Params, x| render(&image, params).unwrap().rgb(x, 0);
         let close = |a: Vec3, share: f64| (a - colour_of(share)).abs().max_element() < 0.01;
-        assert!(close(at(&plain, 2), 1.0) && close(at(&plain, 1), 0.1) && at(&plain, 3) == NOTHING);
+        assert!(close(at(&plain, 2), 1.0) && close(at(&plain, 1), 0.1) && at(&plain, 3) == NO_VALUE);
         let log = Params { scale: Scale::Logarithmic, least: 1.0, most: 1e4, ..plain.clone() };
         assert!(close(at(&log, 0), 0.0) && close(at(&log, 1), 0.25) && close(at(&log, 2), 0.5));
         // Colour images are shown by their luminance.

@@ -1,12 +1,13 @@
 //! IES LM-63 files, all editions from 1986 to 2019, with type C photometry (the other types are for floodlights and
 //! car lamps).
 
-use super::lines::{self, Lines, MOST_ANGLES, MOST_VALUES, at, count, number, plain, within};
+use super::lines::{self, Lines, MAX_ANGLES, MAX_VALUES, at, count, number, plain, within};
 use super::luminaire::Luminaire;
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::try_vec;
 use std::fmt::Write;
 
+/// [convention]
 const FEET: f64 = 0.3048;
 
 /// The words of the lines after `TILT=`, each with its line number.
@@ -75,7 +76,7 @@ pub fn read(bytes: &[u8]) -> Result<Luminaire> {
     let mut words = Words { list: list.into_iter(), line: last };
     if tilt.eq_ignore_ascii_case("INCLUDE") {
         words.next("the lamp's orientation")?;
-        let pairs = words.count("the number of tilt angles", 0, MOST_ANGLES)?;
+        let pairs = words.count("the number of tilt angles", 0, MAX_ANGLES)?;
         words.list("a tilt angle", pairs, 360.0)?;
         words.list("a tilt factor", pairs, 1e9)?;
     }
@@ -85,10 +86,10 @@ pub fn read(bytes: &[u8]) -> Result<Luminaire> {
     let (line, word) = words.next("lumens per lamp")?;
     let lumens: f64 = number(line, word, "lumens per lamp")?;
     let multiplier = words.within("the candela multiplier", 0.0, 1e9)?;
-    let gammas = words.count("the number of vertical angles", 1, MOST_ANGLES)?;
-    let planes = words.count("the number of horizontal angles", 1, MOST_ANGLES)?;
-    if gammas * planes > MOST_VALUES {
-        return Err(at(words.line, format_args!("{gammas} x {planes} intensities; at most {MOST_VALUES} are read")));
+    let gammas = words.count("the number of vertical angles", 1, MAX_ANGLES)?;
+    let planes = words.count("the number of horizontal angles", 1, MAX_ANGLES)?;
+    if gammas * planes > MAX_VALUES {
+        return Err(at(words.line, format_args!("{gammas} x {planes} intensities; at most {MAX_VALUES} are read")));
     }
     let kind = words.count("the photometric type", 1, 3)?;
     if kind != 1 {
@@ -196,7 +197,7 @@ fn push(text: &mut String, values: &[f64]) {
 }
 
 /// Maximum size of a file in bytes.
-pub const MOST_BYTES: usize = lines::MOST_BYTES;
+pub const MAX_BYTES: usize = lines::MAX_BYTES;
 
 #[cfg(test)]
 mod tests {

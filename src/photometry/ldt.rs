@@ -1,14 +1,14 @@
 //! EULUMDAT files (Stockmar 1990): one value per line in a fixed order; intensities in candela per 1000 lumens of the
 //! lamps.
 
-use super::lines::{Lines, MOST_ANGLES, MOST_VALUES, at, count, plain, within};
+use super::lines::{Lines, MAX_ANGLES, MAX_VALUES, at, count, plain, within};
 use super::luminaire::Luminaire;
 use crate::error::Result;
 use crate::image::try_vec;
 use std::fmt::Write;
 
 /// Maximum number of lamp sets in a file.
-const MOST_SETS: usize = 20;
+const MAX_SETS: usize = 20;
 /// Number of room indices for which a file lists direct ratios.
 const ROOM_INDICES: usize = 10;
 
@@ -59,15 +59,15 @@ pub fn read(bytes: &[u8]) -> Result<Luminaire> {
     let manufacturer = rows.next("the manufacturer")?.to_string();
     rows.count("the type", 0, 3)?;
     let symmetry = rows.count("the symmetry", 0, 4)?;
-    let planes = rows.count("the number of C planes", 1, MOST_ANGLES)?;
+    let planes = rows.count("the number of C planes", 1, MAX_ANGLES)?;
     rows.within("the distance between C planes", 0.0, 360.0)?;
-    let gammas = rows.count("the number of intensities of a plane", 1, MOST_ANGLES)?;
+    let gammas = rows.count("the number of intensities of a plane", 1, MAX_ANGLES)?;
     rows.within("the distance between intensities", 0.0, 180.0)?;
     rows.next("the report's number")?;
     let name = rows.next("the luminaire's name")?.to_string();
     rows.skip(3, "the date")?;
-    if gammas * planes > MOST_VALUES {
-        return Err(at(rows.line, format_args!("{gammas} x {planes} intensities; at most {MOST_VALUES} are read")));
+    if gammas * planes > MAX_VALUES {
+        return Err(at(rows.line, format_args!("{gammas} x {planes} intensities; at most {MAX_VALUES} are read")));
     }
 
     // Read the sizes in millimetres of the housing and of the luminous area; only the latter are used.
@@ -81,7 +81,7 @@ pub fn read(bytes: &[u8]) -> Result<Luminaire> {
     rows.skip(1, "the tilt")?;
 
     // Read the lamp sets; the first is the measured one. A negative number of lamps declares absolute photometry.
-    let sets = rows.count("the number of sets of lamps", 1, MOST_SETS)?;
+    let sets = rows.count("the number of sets of lamps", 1, MAX_SETS)?;
     let (mut lumens, mut watts, mut absolute) = (0.0, 0.0, false);
     for set in 0..sets {
         let lamps = rows.within("the number of lamps", -1e6, 1e6)?;

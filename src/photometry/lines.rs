@@ -4,10 +4,10 @@ use crate::error::{Error, Result};
 use std::str::FromStr;
 
 /// Maximum size of a file in bytes: more than a distribution with a resolution of a tenth of a degree needs.
-pub const MOST_BYTES: usize = 64 << 20;
+pub const MAX_BYTES: usize = 64 << 20;
 /// Maximum number of angles along either axis of a distribution, and of values in it.
-pub const MOST_ANGLES: usize = 4096;
-pub const MOST_VALUES: usize = 1 << 22;
+pub const MAX_ANGLES: usize = 4096;
+pub const MAX_VALUES: usize = 1 << 22;
 
 /// The lines of a file. Files that are not UTF-8 are read as Latin-1.
 pub struct Lines {
@@ -18,8 +18,8 @@ impl Lines {
     /// # Errors
     /// `Format` if the file is too large or contains zero bytes.
     pub fn new(bytes: &[u8]) -> Result<Self> {
-        if bytes.len() > MOST_BYTES {
-            return Err(Error::format(format!("the file has {} bytes; at most {MOST_BYTES} are read", bytes.len())));
+        if bytes.len() > MAX_BYTES {
+            return Err(Error::format(format!("the file has {} bytes; at most {MAX_BYTES} are read", bytes.len())));
         }
         if bytes.contains(&0) {
             return Err(Error::format("the file is not a text file: it contains zero bytes"));

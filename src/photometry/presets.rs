@@ -61,9 +61,9 @@ impl Preset {
 
     /// The requirements not met by a task area with the given minimum and mean illuminance and glare rating (if
     /// known).
-    pub fn check(&self, least: f64, mean: f64, glare: Option<f64>) -> Vec<Shortfall> {
+    pub fn check(&self, minimum: f64, mean: f64, glare: Option<f64>) -> Vec<Shortfall> {
         let bright = mean >= self.illuminance;
-        let even = mean > 0.0 && least / mean >= self.uniformity;
+        let even = mean > 0.0 && minimum / mean >= self.uniformity;
         let calm = glare.is_none_or(|g| g <= self.glare);
         let all = [(bright, Shortfall::Illuminance), (even, Shortfall::Uniformity), (calm, Shortfall::Glare)];
         all.into_iter().filter(|(good, _)| !good).map(|(_, what)| what).collect()

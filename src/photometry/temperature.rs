@@ -8,9 +8,9 @@
 use crate::image::colour;
 use glam::{DMat3, DVec2, DVec3, Vec3};
 
-/// Range of temperatures in kelvin.
-pub const LEAST_KELVIN: f64 = 1000.0;
-pub const MOST_KELVIN: f64 = 20_000.0;
+/// Range of temperatures in kelvin [convention].
+pub const MIN_KELVIN: f64 = 1000.0;
+pub const MAX_KELVIN: f64 = 20_000.0;
 
 /// Steps in mired of the initial scan: the distance to the locus has a single minimum within two of them.
 const SCAN: usize = 96;
@@ -52,7 +52,7 @@ pub fn of_chromaticity(xy: DVec2) -> Temperature {
 
 /// CIE 1931 chromaticity of a temperature and a distance from the locus.
 pub fn chromaticity_of(temperature: Temperature) -> DVec2 {
-    let kelvin = temperature.kelvin.clamp(LEAST_KELVIN, MOST_KELVIN);
+    let kelvin = temperature.kelvin.clamp(MIN_KELVIN, MAX_KELVIN);
     // Along the locus, u falls with rising temperature: the upward normal is the rotated tangent.
     let (a, b) = (locus(kelvin * 0.9995), locus(kelvin * 1.0005));
     let tangent = (a - b).normalize();
@@ -106,7 +106,7 @@ pub fn fit(response: DVec3, background: DVec3, target: DVec3) -> Option<Fit> {
 
 /// Minimises a function of the mired: a scan, then golden-section search around the minimum.
 fn search(f: impl Fn(f64) -> f64) -> f64 {
-    let (low, high) = (1e6 / MOST_KELVIN, 1e6 / LEAST_KELVIN);
+    let (low, high) = (1e6 / MAX_KELVIN, 1e6 / MIN_KELVIN);
     let at = |i: usize| low + (high - low) * i as f64 / SCAN as f64;
     let best = (0..=SCAN).min_by(|&a, &b| f(at(a)).total_cmp(&f(at(b)))).unwrap_or(0);
     let (mut a, mut b) = (at(best.saturating_sub(1)), at((best + 1).min(SCAN)));

@@ -6,27 +6,28 @@ use super::Goal;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Curve {
     /// Minimum and maximum time in seconds that it can use; 0 < minimum <= maximum.
-    pub least: f64,
-    pub most: f64,
+    pub min_seconds: f64,
+    pub max_seconds: f64,
     /// Ascending times in seconds with the squared errors after them. Between them the squared error falls as a power
-    /// of the time, clamped to [`POWERS`]; beyond them as between the last two, but with at most the power [`BEYOND`].
+    /// of the time, clamped to [`POWERS`]; beyond them as between the last two, but with at most the power
+    /// [`MAX_EXTRAPOLATED`].
     pub points: [[f64; 2]; 3],
 }
 
 /// Minimum and maximum exponents by which squared errors fall with time: of independent samples, and of scrambled nets
 /// on smooth integrands (Owen 1997, "Scrambled net variance for integrals of smooth functions") [paper: Owen 1997].
 const POWERS: [f64; 2] = [1.0, 3.0];
-/// Maximum exponent of the extrapolation: eventually edges dominate, for which nets gain less.
-const BEYOND: f64 = 2.0;
+/// Maximum exponent of the extrapolation: eventually edges dominate, for which nets gain less [origin not recorded].
+const MAX_EXTRAPOLATED: f64 = 2.0;
 
-/// Growth of a stage's time per allocation step.
+/// Growth of a stage's time per allocation step [convention].
 const STEP: f64 = 1.01;
 
 impl Curve {
     /// A squared error that falls with time like that of independent samples.
-    pub fn of_independent(least: f64, most: f64, square: f64) -> Self {
-        let point = |times: f64| [times * least, square / times];
-        Self { least, most, points: [point(1.0), point(2.0), point(4.0)] }
+    pub fn of_independent(min_seconds: f64, max_seconds: f64, square: f64) -> Self {
+        let point = |times: f64| [times * min_seconds, square / times];
+        Self { min_seconds, max_seconds, points: [point(1.0), point(2.0), point(4.0)] }
     }
 
     /// The squared error after a time in seconds.
@@ -39,12 +40,12 @@ impl Curve {
         let power = ((a / b).ln() / (t / s).ln()).clamp(POWERS[0], POWERS[1]);
         // Both pieces are anchored at the middle point.
         let [known, beyond] = [seconds.min(last[0]), seconds.max(last[0])];
-        middle[1] * (middle[0] / known).powf(power) * (last[0] / beyond).powf(power.min(BEYOND))
+        middle[1] * (middle[0] / known).powf(power) * (last[0] / beyond).powf(power.min(MAX_EXTRAPOLATED))
     }
 
     /// The decrease of the squared error per second of a step from `seconds`; 0 at the end of the curve.
     fn gain(&self, seconds: f64) -> f64 {
-        let next = (seconds * STEP).min(self.most);
+        let next = (seconds * STEP).min(self.max_seconds);
         if next > seconds { (self.square(seconds) - self.square(next)) / (next - seconds) } else { 0.0 }
     }
 }
@@ -53,7 +54,7 @@ impl Curve {
 /// the sum of squared errors most, until the goal is reached or no stage can use more. Since gains fall along every
 /// curve, no other allocation is better by more than a step.
 pub(super) fn allocate(curves: &[Curve], goal: Goal) -> Vec<f64> {
-    let mut seconds: Vec<f64> = curves.iter().map(|c| c.least).collect();
+    let mut seconds: Vec<f64> = curves.iter().map(|c| c.min_seconds).collect();
     loop {
         let total: f64 = seconds.iter().sum();
         let square: f64 = curves.iter().zip(&seconds).map(|(c, &s)| c.square(s)).sum();
@@ -64,7 +65,7 @@ pub(super) fn allocate(curves: &[Curve], goal: Goal) -> Vec<f64> {
         };
         let best = (0..curves.len()).max_by(|&a, &b| curves[a].gain(seconds[a]).total_cmp(&curves[b].gain(seconds[b])));
         let Some(best) = best.filter(|&i| left > 0.0 && curves[i].gain(seconds[i]) > 0.0) else { return seconds };
-        let next = (seconds[best] * STEP).min(curves[best].most);
+        let next = (seconds[best] * STEP).min(curves[best].max_seconds);
         if next - seconds[best] >= left {
             seconds[best] += left;
             return seconds;
@@ -83,7 +84,7 @@ mod tests {
 
     #[test]
     fn errors_pass_through_what_is_known_of_them() {
-        let curve = Curve { least: 1.0, most: 1e6, points: [[1.0, 64.0], [4.0, 8.0], [16.0, 2.0]] };
+        let curve = Curve { min_seconds: 1.0, max_seconds: 1e6, points: [[1.0, 64.0], [4.0, 8.0], [16.0, 2.0]] };
         for ([seconds, square], expected) in curve.points.iter().map(|p| (*p, p[1])) {
             assert!((curve.square(seconds) - expected).abs() < 1e-9, "{square} after {seconds} s");
         }
@@ -114,7 +115,7 @@ mod tests {
 
     #[test]
     fn least_and_most_are_kept() {
-        let short = Curve { most: 0.5, ..monte_carlo(1.0) };
+        let short = Curve { max_seconds: 0.5, ..monte_carlo(1.0) };
         assert_eq!(allocate(&[short], Goal::Seconds(9.0)), [0.5]);
         assert_eq!(allocate(&[short], Goal::Error(1e-5)), [0.5]);
         assert_eq!(allocate(&[short, short], Goal::Seconds(0.001)), [0.01, 0.01]);

@@ -80,12 +80,12 @@ fn timed<T>(clock: Clock, work: impl FnOnce() -> T) -> (f64, T) {
     (clock().saturating_sub(start).as_secs_f64(), value)
 }
 
-/// Maximum cost of a stage that stops at a target error, relative to the expected cost.
-const PATIENCE: f64 = 4.0;
-/// Maximum time of a stage with a time budget, relative to the expected time.
-const OVERTIME: f64 = 1.25;
+/// Maximum cost of a stage that stops at a target error, relative to the expected cost [origin not recorded].
+const MAX_COST: f64 = 4.0;
+/// Maximum time of a stage with a time budget, relative to the expected time [origin not recorded].
+const MAX_OVERTIME: f64 = 1.25;
 
 /// The time budget in milliseconds after which a stage stops that takes longer than expected.
 fn overtime(expected: Expected) -> u32 {
-    (1e3 * OVERTIME * expected.seconds).ceil().clamp(1.0, f64::from(u32::MAX)) as u32
+    (1e3 * MAX_OVERTIME * expected.seconds).ceil().clamp(1.0, f64::from(u32::MAX)) as u32
 }

@@ -1,19 +1,19 @@
 //! The picture: the rendering time for an error, predicted from a few tiles.
 
 use super::curve::{Curve, allocate};
-use super::{Clock, Expected, Goal, PATIENCE, overtime};
+use super::{Clock, Expected, Goal, MAX_COST, overtime};
 use crate::error::Result;
 use crate::job::Job;
 use crate::render::probe::{self, PATHS, REPLICATIONS, nets};
 use crate::render::{self, Probe, World};
 use crate::scene::Camera;
 
-/// Minimum number of paths per pixel for which the error is estimated.
-const FEWEST: f64 = 4.0;
-/// Maximum number of paths per pixel.
-const MOST: f64 = (1u32 << 20) as f64;
-/// Paths per pixel after which adaptive sampling starts, if there is a target error.
-const EVEN: f64 = 16.0;
+/// Minimum number of paths per pixel for which the error is estimated [origin not recorded].
+const MIN_PATHS: f64 = 4.0;
+/// Maximum number of paths per pixel [convention].
+const MAX_PATHS: f64 = (1u32 << 20) as f64;
+/// Paths per pixel after which adaptive sampling starts, if there is a target error [origin not recorded].
+const ADAPTIVE_FROM: f64 = 16.0;
 
 /// A planned rendering.
 #[derive(Clone, Debug, PartialEq)]
@@ -79,7 +79,7 @@ impl Picture {
     /// Error against time with uniform sampling.
     pub fn curve(&self) -> Curve {
         let points = [0, 1, 2].map(|i| [self.seconds(PATHS[i].into()), self.probe.squares[i]]);
-        Curve { least: self.seconds(FEWEST), most: self.seconds(MOST), points }
+        Curve { min_seconds: self.seconds(MIN_PATHS), max_seconds: self.seconds(MAX_PATHS), points }
     }
 
     /// The settings for a time in seconds with uniform sampling, or for the error expected after that time.
@@ -91,31 +91,36 @@ impl Picture {
             time_budget_ms: 0,
             ..params.clone()
         };
-        let even = seconds / self.seconds(1.0);
+        let uniform_paths = seconds / self.seconds(1.0);
         let wanted = self.curve().square(seconds).sqrt();
-        let count = |paths: f64| paths.clamp(FEWEST, MOST) as u32;
-        let alike = |paths: u32| {
+        let count = |paths: f64| paths.clamp(MIN_PATHS, MAX_PATHS) as u32;
+        let uniform = |paths: u32| {
             let expected = Expected { seconds: self.seconds(paths.into()), error: self.error(paths) };
             Rendering { params: render::Params { samples: paths, ..plain.clone() }, expected }
         };
         match goal {
-            Goal::Error(_) if even > EVEN => {
+            Goal::Error(_) if uniform_paths > ADAPTIVE_FROM => {
                 let error = wanted;
-                let samples = (PATIENCE * even).min(MOST) as u32;
-                let expected = Expected { seconds: self.seconds(EVEN + (even - EVEN) / self.saved()), error };
+                let samples = (MAX_COST * uniform_paths).min(MAX_PATHS) as u32;
+                let expected = Expected {
+                    seconds: self.seconds(ADAPTIVE_FROM + (uniform_paths - ADAPTIVE_FROM) / self.saved()),
+                    error,
+                };
                 Rendering { params: render::Params { samples, target_error: error as f32, ..plain }, expected }
             }
             Goal::Error(_) => {
-                let mut counts = count(even.ceil())..=EVEN as u32;
-                alike(counts.find(|&paths| self.error(paths) <= wanted).unwrap_or(EVEN as u32))
+                let mut counts = count(uniform_paths.ceil())..=ADAPTIVE_FROM as u32;
+                uniform(counts.find(|&paths| self.error(paths) <= wanted).unwrap_or(ADAPTIVE_FROM as u32))
             }
             Goal::Seconds(_) => {
                 // Use as many paths as the time allows, or fewer that form whole nets.
-                let most = count(even);
-                let whole = (0..most.ilog2()).map(|bits| most >> bits << bits).filter(|&paths| paths >= FEWEST as u32);
+                let max_paths = count(uniform_paths);
+                let whole = (0..max_paths.ilog2())
+                    .map(|bits| max_paths >> bits << bits)
+                    .filter(|&paths| paths >= MIN_PATHS as u32);
                 let error = |paths: &u32| self.error(*paths);
-                let best = whole.min_by(|a, b| error(a).total_cmp(&error(b))).unwrap_or(most);
-                let mut plan = alike(best);
+                let best = whole.min_by(|a, b| error(a).total_cmp(&error(b))).unwrap_or(max_paths);
+                let mut plan = uniform(best);
                 plan.params.time_budget_ms = overtime(plan.expected);
                 plan
             }

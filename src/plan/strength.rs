@@ -1,7 +1,7 @@
 //! The strength of the emission: the solution time for an error, predicted from a few short solutions.
 
 use super::curve::Curve;
-use super::{Clock, Expected, Goal, PATIENCE, overtime, timed};
+use super::{Clock, Expected, Goal, MAX_COST, overtime, timed};
 use crate::error::Result;
 use crate::job::Job;
 use crate::relight;
@@ -12,14 +12,14 @@ use glam::Vec3;
 const TRIAL: u32 = 4096;
 const TRIALS: u64 = 6;
 /// Separates the trials' random paths from those of the solution.
-const SALT: u64 = 0x7472_6961_6c73_2121;
-/// Radiance in cd/m² far above that of any other light.
-const BRIGHT: f32 = 1e9;
-/// Minimum and maximum number of paths of a solution.
+const TRIAL_SEED: u64 = 0x7472_6961_6c73_2121;
+/// Radiance in cd/m² far above that of any other light [convention].
+const DOMINANT: f32 = 1e9;
+/// Minimum and maximum number of paths of a solution [origin not recorded].
 const SOLUTION_PATHS: [f64; 2] = [2048.0, (1u32 << 30) as f64];
-/// Safety margin in the forecast of a solution that stops at a target error.
+/// Safety margin in the forecast of a solution that stops at a target error [origin not recorded].
 const MARGIN: f64 = 1.1;
-/// Ratio of an interval's half-width to its standard error, for the number of batches used.
+/// Ratio of an interval's half-width to its standard error, for the number of batches used [convention].
 const HALF_WIDTH: f64 = 2.04;
 
 /// Measured cost and error of the emission's solution.
@@ -49,13 +49,13 @@ impl Strength {
             };
             relight::run(&input, &params, job)
         };
-        let first = trial(SALT, Vec3::splat(BRIGHT), job.part(0.0, 0.1))?;
+        let first = trial(TRIAL_SEED, Vec3::splat(DOMINANT), job.part(0.0, 0.1))?;
         let target = (first.response + first.background).as_vec3();
         let (mut seconds, mut squares) = (0.0, 0.0);
         let job = job.part(0.1, 1.0);
         for k in 0..TRIALS {
             let part = job.part(k as f64 / TRIALS as f64, (k + 1) as f64 / TRIALS as f64);
-            let (taken, solution) = timed(clock, || trial(SALT + 1 + k, target, part));
+            let (taken, solution) = timed(clock, || trial(TRIAL_SEED + 1 + k, target, part));
             seconds += taken;
             squares += solution?.error().powi(2);
         }
@@ -65,12 +65,16 @@ impl Strength {
 
     /// The error that it contributes to a picture of the given contrast, against time.
     pub fn curve(&self, contrast: f64) -> Curve {
-        let [least, most] = SOLUTION_PATHS.map(|paths| paths * self.seconds_per_path);
-        Curve::of_independent(least, most, self.adds(self.half_width(SOLUTION_PATHS[0]), contrast).powi(2))
+        let [min_seconds, max_seconds] = SOLUTION_PATHS.map(|paths| paths * self.seconds_per_path);
+        Curve::of_independent(
+            min_seconds,
+            max_seconds,
+            self.contribution(self.half_width(SOLUTION_PATHS[0]), contrast).powi(2),
+        )
     }
 
     /// The contribution of a solution with the given interval to the error of a picture.
-    pub fn adds(&self, half_width: f64, contrast: f64) -> f64 {
+    pub fn contribution(&self, half_width: f64, contrast: f64) -> f64 {
         half_width / HALF_WIDTH * contrast
     }
 
@@ -88,7 +92,7 @@ impl Strength {
         if matches!(goal, Goal::Error(_)) {
             let expected = Expected { seconds: MARGIN * paths * self.seconds_per_path, error };
             let target_error = error.min(1.0) as f32;
-            (relight::Params { paths: count(PATIENCE * paths), target_error, ..plain }, expected)
+            (relight::Params { paths: count(MAX_COST * paths), target_error, ..plain }, expected)
         } else {
             let expected = Expected { seconds: paths * self.seconds_per_path, error };
             (relight::Params { paths: count(paths), time_budget_ms: overtime(expected), ..plain }, expected)

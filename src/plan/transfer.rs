@@ -50,7 +50,7 @@ pub fn lighting(transfer: &Transfer, goal: Goal, clock: Clock, job: Job) -> Resu
     let seconds = allocate(&[strength.curve(contrast), picture.curve()], light);
     let (relight, mut solving) = strength.plan(&transfer.params.relight, goal, seconds[0]);
     let Rendering { params: render, expected: mut rendering } = picture.plan(&transfer.params.render, goal, seconds[1]);
-    let error = strength.adds(solving.error, contrast).hypot(rendering.error);
+    let error = strength.contribution(solving.error, contrast).hypot(rendering.error);
     solving.seconds += building;
     rendering.seconds += building;
     let whole = Expected { seconds: solving.seconds + rendering.seconds, error };
@@ -64,6 +64,6 @@ pub fn check(transfer: &Transfer, goal: Goal) -> Result<Arc<LitScene>> {
     transfer.params.check(Stage::Relight)?;
     transfer.params.check(Stage::Render)?;
     transfer.results.unsolved.clone().ok_or_else(|| {
-        Error::new(ErrorKind::InvalidOperation, "run the stage EMISSION first: a plan measures the light of its lamps")
+        Error::new(ErrorKind::InvalidOperation, "run stage Emission first: a plan measures the light of its lamps")
     })
 }

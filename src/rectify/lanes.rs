@@ -5,8 +5,8 @@
 use super::taps::TAPS;
 use glam::{Vec4, Vec4Swizzles};
 
-/// Most samples that [`PixelLanes::load`] reads with three channels: four pixels and the samples after them that fill the
-/// register.
+/// Most samples that [`PixelLanes::load`] reads with three channels: four pixels and the samples after them that fill
+/// the register.
 pub const MAX_READ: usize = 16;
 
 /// Four neighbouring pixels with one channel or three.

@@ -98,7 +98,8 @@ widest! {
                 let out = &mut row[x * channels..(x + count) * channels];
                 locate(&map.to_source, map.front, map.size, first_row + y, x, &mut footprints);
                 footprints.is_seen[count..].fill(false);
-                let Some(Sampling { level, parts: [across, down] }) = choose_sampling(&footprints, levels.len()) else { continue };
+                let sampling = choose_sampling(&footprints, levels.len());
+                let Some(Sampling { level, parts: [across, down] }) = sampling else { continue };
                 let (seen, source) = (&footprints.is_seen, levels[level]);
                 let scale = 1.0 / (1u64 << level) as f32;
                 for channel in 0..if channels == 3 { 1 } else { channels } {

@@ -58,8 +58,8 @@ pub fn fit(page: &Page, grey: &Image, candidates: &[Candidate], job: Job) -> Res
 
 fn too_few(count: usize) -> Error {
     Error::degenerate(format!(
-        "{count} places look like alignment marks, and no six of them are arranged as on the sheet; photograph the whole \
-         sheet, flat and sharp, and give the paper size it was printed with"
+        "{count} places look like alignment marks, and no six of them are arranged as on the sheet; photograph the \
+         whole sheet, flat and sharp, and give the paper size it was printed with"
     ))
 }
 

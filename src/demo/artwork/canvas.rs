@@ -63,9 +63,9 @@ impl Canvas {
     pub fn touch(&mut self, at: Vec2, radius: f32, colour: Vec3, opacity: f32, thickness: f32) {
         self.deposit(at, radius, |canvas, i, cover| {
             // A loaded brush covers everything; a dry one touches only the raised places of the canvas.
-            let reach = (opacity * 1.6 - canvas.tooth[i] * 0.6).clamp(0.0, 1.0);
-            canvas.colour[i] = canvas.colour[i].lerp(colour, cover * reach);
-            canvas.relief[i] += (thickness - canvas.relief[i]) * cover * reach;
+            let coverage = (opacity * 1.6 - canvas.tooth[i] * 0.6).clamp(0.0, 1.0);
+            canvas.colour[i] = canvas.colour[i].lerp(colour, cover * coverage);
+            canvas.relief[i] += (thickness - canvas.relief[i]) * cover * coverage;
         });
     }
 
@@ -84,7 +84,7 @@ impl Canvas {
     }
 
     /// The sheet in linear colour, with its relief lit from the upper left.
-    pub fn finish(self) -> Result<Image> {
+    pub fn into_image(self) -> Result<Image> {
         let (width, height) = (self.width, self.height);
         let relief = |x: usize, y: usize| self.relief[y.min(height - 1) * width + x.min(width - 1)];
         let mut out = Image::new(width, height, 3)?;

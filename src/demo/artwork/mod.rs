@@ -36,7 +36,7 @@ pub fn draw(style: Style, guides: &Guides) -> Result<Image> {
         Style::Stipple => stipple::draw(&subject)?,
         Style::Paint => paint::draw(&subject)?,
     };
-    canvas.finish()
+    canvas.into_image()
 }
 
 #[cfg(test)]

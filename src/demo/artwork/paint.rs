@@ -2,7 +2,7 @@
 //! each stroke is a bundle of bristles.
 
 use super::canvas::{Canvas, tremor};
-use super::subject::{Sight, Subject};
+use super::subject::{Appearance, Subject};
 use crate::error::Result;
 use crate::rng::Rng;
 use glam::{Vec2, Vec3};
@@ -25,7 +25,7 @@ const BRUSHES: [Brush; 3] = [
 ];
 
 /// The painter's palette: differs from the scene's colours but follows its light.
-fn mixed(s: &Sight) -> Vec3 {
+fn mixed(s: &Appearance) -> Vec3 {
     let ramp = |stops: &[Vec3; 4], t: f32| {
         let t = t.clamp(0.0, 1.0) * 2.999;
         stops[t as usize].lerp(stops[t as usize + 1], t.fract())
@@ -44,7 +44,7 @@ fn mixed(s: &Sight) -> Vec3 {
     ];
     const RED: Vec3 = Vec3::new(0.82, 0.16, 0.20);
     const LIGHT: Vec3 = Vec3::new(1.0, 0.97, 0.88);
-    if s.is_thing {
+    if s.is_object {
         let body = ramp(&SHAPE, s.lit * 1.05).lerp(Vec3::new(0.50, 0.28, 0.52), (s.bleed * 2.0).min(0.55));
         body.lerp(LIGHT, ((s.shine - 0.4) * 2.5).clamp(0.0, 1.0))
     } else {
@@ -93,7 +93,7 @@ fn stroke(canvas: &mut Canvas, subject: &Subject, brush: &Brush, start: Vec2, mu
     let colour = mixed(&here) * (0.93 + 0.14 * rng.next_f32()) + 0.07 * shift;
 
     // Direction of the stroke: along the form, or slanted on table and wall. It ends where the colour would be wrong.
-    let lean = if here.is_thing { 0.25 } else { -0.75 } + 0.35 * (rng.next_f32() - 0.5);
+    let lean = if here.is_object { 0.25 } else { -0.75 } + 0.35 * (rng.next_f32() - 0.5);
     let length = brush.length * unit * (0.4 + 0.6 * rng.next_f32());
     let (bend, wobble) = (0.006 / unit * (rng.next_f32() - 0.5), rng.next_u32() as u64);
     let mut ends = [Vec::new(), Vec::new()];
@@ -103,8 +103,10 @@ fn stroke(canvas: &mut Canvas, subject: &Subject, brush: &Brush, start: Vec2, mu
             let direction = Vec2::from_angle(lean + bend * gone * way).rotate(subject.at(at).along) * way;
             at += direction * 0.8;
             gone += 0.8;
-            let sight = subject.at(at);
-            if !subject.contains(at) || sight.is_thing != here.is_thing || (mixed(sight) - mixed(&here)).length() > 0.17
+            let appearance = subject.at(at);
+            if !subject.contains(at)
+                || appearance.is_object != here.is_object
+                || (mixed(appearance) - mixed(&here)).length() > 0.17
             {
                 break;
             }

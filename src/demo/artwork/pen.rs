@@ -2,7 +2,7 @@
 //! Salesin 1994).
 
 use super::canvas::{Canvas, tremor};
-use super::subject::{Sight, Subject};
+use super::subject::{Appearance, Subject};
 use crate::error::Result;
 use crate::image::try_vec;
 use crate::rng::Rng;
@@ -15,7 +15,7 @@ const SANGUINE: Vec3 = Vec3::new(0.66, 0.21, 0.12);
 /// A set of lines.
 struct Set {
     /// Drawing weight at a position: lines appear above 0 and are full at 1.
-    weight: fn(&Sight) -> f32,
+    weight: fn(&Appearance) -> f32,
     /// Angle to the direction of the form, in radians.
     turn: f32,
     /// Distance between lines, and their maximum length, in units.
@@ -25,29 +25,47 @@ struct Set {
 }
 
 /// Darkness below a tone; full where it is a quarter below.
-fn below(sight: &Sight, tone: f32) -> f32 {
+fn below(appearance: &Appearance, tone: f32) -> f32 {
     // Leave highlights blank, whatever surrounds them.
-    if sight.shine > 0.6 { 0.0 } else { (tone - sight.tone) * 4.0 }
+    if appearance.shine > 0.6 { 0.0 } else { (tone - appearance.tone) * 4.0 }
 }
 
 const SETS: [Set; 7] = [
     // Table and wall: slanted lines, crossed in the shadow.
     Set {
-        weight: |s| if s.is_thing { 0.0 } else { below(s, 0.80) },
+        weight: |s| if s.is_object { 0.0 } else { below(s, 0.80) },
         turn: -0.55,
         spacing: 7.5,
         length: 70.0,
         ink: INK,
     },
-    Set { weight: |s| if s.is_thing { 0.0 } else { below(s, 0.66) }, turn: 0.25, spacing: 6.0, length: 60.0, ink: INK },
-    Set { weight: |s| if s.is_thing { 0.0 } else { below(s, 0.52) }, turn: -1.2, spacing: 5.0, length: 36.0, ink: INK },
+    Set {
+        weight: |s| if s.is_object { 0.0 } else { below(s, 0.66) },
+        turn: 0.25,
+        spacing: 6.0,
+        length: 60.0,
+        ink: INK,
+    },
+    Set {
+        weight: |s| if s.is_object { 0.0 } else { below(s, 0.52) },
+        turn: -1.2,
+        spacing: 5.0,
+        length: 36.0,
+        ink: INK,
+    },
     // The object: around its form, across it, and both.
-    Set { weight: |s| if s.is_thing { below(s, 0.93) } else { 0.0 }, turn: 0.0, spacing: 5.2, length: 80.0, ink: INK },
-    Set { weight: |s| if s.is_thing { below(s, 0.66) } else { 0.0 }, turn: 1.0, spacing: 5.2, length: 48.0, ink: INK },
-    Set { weight: |s| if s.is_thing { below(s, 0.49) } else { 0.0 }, turn: -0.7, spacing: 4.4, length: 34.0, ink: INK },
+    Set { weight: |s| if s.is_object { below(s, 0.93) } else { 0.0 }, turn: 0.0, spacing: 5.2, length: 80.0, ink: INK },
+    Set { weight: |s| if s.is_object { below(s, 0.66) } else { 0.0 }, turn: 1.0, spacing: 5.2, length: 48.0, ink: INK },
+    Set {
+        weight: |s| if s.is_object { below(s, 0.49) } else { 0.0 },
+        turn: -0.7,
+        spacing: 4.4,
+        length: 34.0,
+        ink: INK,
+    },
     // Red light from the object, on the table and reflected back onto the object.
     Set {
-        weight: |s| (s.bleed - 0.035) * if s.is_thing { 5.0 } else { 18.0 },
+        weight: |s| (s.bleed - 0.035) * if s.is_object { 5.0 } else { 18.0 },
         turn: 0.5,
         spacing: 5.6,
         length: 40.0,
@@ -123,15 +141,15 @@ fn hatch(canvas: &mut Canvas, subject: &Subject, set: &Set, seed: u64) -> Result
         let mut ends = [Vec::new(), Vec::new()];
         for (way, path) in [1.0, -1.0].into_iter().zip(&mut ends) {
             let (mut at, mut gone) = (start, 0.0);
-            let inside = subject.at(start).is_thing;
+            let inside = subject.at(start).is_object;
             while gone < reach {
-                let sight = subject.at(at);
+                let appearance = subject.at(at);
                 let along = Vec2::from_angle(lean + 0.06 * tremor(gone / (14.0 * unit), seed + 7 * line as u64))
-                    .rotate(sight.along);
+                    .rotate(appearance.along);
                 at += along * way * 0.6;
                 gone += 0.6;
                 let here = subject.at(at);
-                let stop = !subject.contains(at) || here.is_thing != inside || (set.weight)(here) <= 0.0;
+                let stop = !subject.contains(at) || here.is_object != inside || (set.weight)(here) <= 0.0;
                 if stop || drawn.is_near(at, 0.6 * keep, line) {
                     break;
                 }
@@ -164,8 +182,8 @@ fn outline(canvas: &mut Canvas, subject: &Subject, seed: u64) {
         for x in 0..subject.width {
             let at = Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
             let here = subject.at(at);
-            let is_rim = here.is_thing
-                && [Vec2::X, Vec2::NEG_X, Vec2::Y, Vec2::NEG_Y].iter().any(|d| !subject.at(at + *d).is_thing);
+            let is_rim = here.is_object
+                && [Vec2::X, Vec2::NEG_X, Vec2::Y, Vec2::NEG_Y].iter().any(|d| !subject.at(at + *d).is_object);
             if !is_rim {
                 continue;
             }

@@ -1,7 +1,7 @@
 //! Stippling, denser where it is darker (Poisson disks of varying radius, by dart throwing).
 
 use super::canvas::Canvas;
-use super::subject::{Sight, Subject};
+use super::subject::{Appearance, Subject};
 use crate::error::Result;
 use crate::image::try_vec;
 use crate::rng::Rng;
@@ -14,7 +14,7 @@ const RED: Vec3 = Vec3::new(0.80, 0.16, 0.18);
 /// A kind of dot.
 struct Ink {
     /// Target darkness, in `[0, 1]`.
-    darkness: fn(&Sight) -> f32,
+    darkness: fn(&Appearance) -> f32,
     colour: Vec3,
     /// Radius in units.
     radius: f32,
@@ -24,7 +24,7 @@ const INKS: [Ink; 2] = [
     Ink {
         darkness: |s| match () {
             () if s.shine > 0.6 => 0.0,
-            () if s.is_thing => 1.1 * (0.9 - s.tone) + 0.25 * s.edge - 0.3 * s.bleed,
+            () if s.is_object => 1.1 * (0.9 - s.tone) + 0.25 * s.edge - 0.3 * s.bleed,
             () => 1.3 * (0.84 - s.tone),
         },
         colour: BLUE,
@@ -33,7 +33,7 @@ const INKS: [Ink; 2] = [
     Ink {
         darkness: |s| match () {
             () if s.shine > 0.6 => 0.0,
-            () if s.is_thing => 0.24 + 0.9 * s.bleed + 0.4 * s.edge - 0.12 * s.lit,
+            () if s.is_object => 0.24 + 0.9 * s.bleed + 0.4 * s.edge - 0.12 * s.lit,
             () => 3.2 * (s.bleed - 0.03),
         },
         colour: RED,
@@ -49,8 +49,8 @@ pub fn draw(subject: &Subject) -> Result<Canvas> {
     Ok(canvas)
 }
 
-/// Maximum distance between dots, in radii: wider dots do not read as a tone.
-const WIDEST: f32 = 9.0;
+/// Maximum distance between dots, in radii: wider dots do not read as a tone [convention].
+const MAX_SPACING: f32 = 9.0;
 
 fn dots(canvas: &mut Canvas, subject: &Subject, ink: &Ink, seed: u64) -> Result<()> {
     let radius = ink.radius * subject.unit;
@@ -67,7 +67,7 @@ fn dots(canvas: &mut Canvas, subject: &Subject, ink: &Ink, seed: u64) -> Result<
             continue;
         }
         // The share of the paper covered by ink equals the darkness.
-        let apart = radius * (1.75 / darkness.sqrt()).clamp(1.45, WIDEST);
+        let apart = radius * (1.75 / darkness.sqrt()).clamp(1.45, MAX_SPACING);
         let (x, y, reach) = ((at.x / cell) as usize, (at.y / cell) as usize, (apart / cell).ceil() as usize);
         let mut near = (y.saturating_sub(reach)..(y + reach + 1).min(rows))
             .flat_map(|row| {

@@ -12,7 +12,7 @@ const TABLE: Vec2 = Vec2::new(0.97, -0.24);
 
 /// A position in the picture.
 #[derive(Clone, Copy)]
-pub struct Sight {
+pub struct Appearance {
     /// Overall lightness, in `[0, 1]`.
     pub tone: f32,
     /// Lightness of the direct light.
@@ -22,7 +22,7 @@ pub struct Sight {
     /// Redness of the light from other objects.
     pub bleed: f32,
     /// Whether it shows an object, as opposed to table or wall.
-    pub is_thing: bool,
+    pub is_object: bool,
     /// Unit direction in the picture (y down) of strokes that follow the form.
     pub along: Vec2,
     /// Strength of the edge of a shape.
@@ -34,7 +34,7 @@ pub struct Subject {
     pub height: usize,
     /// Size in pixels of one pixel of a picture 800 wide.
     pub unit: f32,
-    sights: Vec<Sight>,
+    appearances: Vec<Appearance>,
 }
 
 impl Subject {
@@ -45,36 +45,36 @@ impl Subject {
             linear_to_srgb((luminance(image.rgb(x, y)) * exposure * factor).clamp(0.0, 1.0))
         };
         // The material in the corner is the background.
-        let ground = guides.materials.pixel(0, 0);
+        let background = guides.materials.pixel(0, 0);
         // Normalise tones by the object's own colour: its brightest part is light, however dark its paint.
-        let things =
-            direct.data.chunks_exact(3).zip(guides.materials.data.chunks_exact(3)).filter(|(_, m)| *m != ground);
-        let mut brightest = try_collect(things.map(|(light, _)| luminance(Vec3::from_slice(light))))?;
+        let objects =
+            direct.data.chunks_exact(3).zip(guides.materials.data.chunks_exact(3)).filter(|(_, m)| *m != background);
+        let mut brightest = try_collect(objects.map(|(light, _)| luminance(Vec3::from_slice(light))))?;
         brightest.sort_unstable_by(f32::total_cmp);
         let light = brightest.get(brightest.len() * 98 / 100).copied().unwrap_or(0.0);
         let own = if light > 0.0 { 0.7 / (light * exposure) } else { 1.0 };
-        let mut sights = try_with_capacity(full.width * full.height)?;
+        let mut appearances = try_with_capacity(full.width * full.height)?;
         for y in 0..full.height {
             for x in 0..full.width {
-                let is_thing = guides.materials.pixel(x, y) != ground;
+                let is_object = guides.materials.pixel(x, y) != background;
                 let normal = Vec3::from_slice(guides.normals.pixel(x, y));
                 // Around the form, like the rings of a turned object with a tilted axis.
                 let ring = normal.cross(AXIS);
-                let along = if is_thing { Vec2::new(ring.x, -ring.y).normalize_or(Vec2::X) } else { TABLE };
+                let along = if is_object { Vec2::new(ring.x, -ring.y).normalize_or(Vec2::X) } else { TABLE };
                 let light = indirect.rgb(x, y) * exposure;
-                let factor = if is_thing { own } else { 1.0 };
-                sights.push(Sight {
+                let factor = if is_object { own } else { 1.0 };
+                appearances.push(Appearance {
                     tone: lightness(full, x, y, factor),
                     lit: lightness(direct, x, y, factor),
                     shine: lightness(specular, x, y, 1.0),
                     bleed: (light.x - 0.5 * (light.y + light.z)).max(0.0),
-                    is_thing,
+                    is_object,
                     along,
                     edge: guides.edges.pixel(x, y)[0],
                 });
             }
         }
-        Ok(Self { width: full.width, height: full.height, unit: full.width as f32 / 800.0, sights })
+        Ok(Self { width: full.width, height: full.height, unit: full.width as f32 / 800.0, appearances })
     }
 
     pub fn contains(&self, at: Vec2) -> bool {
@@ -82,8 +82,8 @@ impl Subject {
     }
 
     /// The nearest pixel.
-    pub fn at(&self, at: Vec2) -> &Sight {
+    pub fn at(&self, at: Vec2) -> &Appearance {
         let clamp = |v: f32, n: usize| (v.max(0.0) as usize).min(n - 1);
-        &self.sights[clamp(at.y, self.height) * self.width + clamp(at.x, self.width)]
+        &self.appearances[clamp(at.y, self.height) * self.width + clamp(at.x, self.width)]
     }
 }

@@ -2,7 +2,7 @@
 //! registers, over input channels and taps in order.
 
 use super::super::read::unsupported;
-use super::super::tensor::{Room, Tensor};
+use super::super::tensor::{MemoryBudget, Tensor};
 use super::pool::{Padding, Window};
 use super::{Call, Settings};
 use crate::error::{Error, Result};
@@ -47,15 +47,15 @@ impl Conv {
             Some(bias) if bias.len() == out_channels => bias.as_floats()?,
             Some(bias) => return Err(Error::format(format!("{} biases for {out_channels} channels", bias.len()))),
             None => {
-                zeros = call.room.vec(out_channels, 0.0)?;
+                zeros = call.budget.vec(out_channels, 0.0)?;
                 &zeros
             }
         };
         let place = self.window.place([height, width], [rows, columns], false)?;
-        let padded = Padded::of(x.as_floats()?, batch * channels, [height, width], &place, call.room)?;
+        let padded = Padded::of(x.as_floats()?, batch * channels, [height, width], &place, call.budget)?;
         let [out_height, out_width] = place.out;
         let shape = vec![batch, out_channels, out_height, out_width];
-        let mut out = call.room.zeros(&shape)?;
+        let mut out = call.budget.zeros(&shape)?;
 
         // Output channels of one group that read the same inputs.
         let of_group = out_channels / groups;
@@ -112,7 +112,7 @@ impl Conv {
         };
         let (out_height, out_width) = (out_size(0, height, rows)?, out_size(1, width, columns)?);
         let shape = vec![batch, out_channels, out_height, out_width];
-        let mut out = call.room.zeros(&shape)?;
+        let mut out = call.budget.zeros(&shape)?;
         let (values, weights) = (x.as_floats()?, weights.as_floats()?);
         let bias = bias.map(Tensor::as_floats).transpose()?.filter(|bias| bias.len() == out_channels);
         let per_group = channels / self.groups;
@@ -156,11 +156,17 @@ struct Padded {
 }
 
 impl Padded {
-    fn of(values: &[f32], planes: usize, size: [usize; 2], place: &super::pool::Place, room: Room) -> Result<Self> {
+    fn of(
+        values: &[f32],
+        planes: usize,
+        size: [usize; 2],
+        place: &super::pool::Place,
+        budget: MemoryBudget,
+    ) -> Result<Self> {
         let [height, width] = size;
         let [top, left] = place.before;
-        let (padded_height, padded_width) = (place.reach[0].max(height + top), place.reach[1].max(width + left));
-        let mut padded = room.zeros(&[planes, padded_height, padded_width])?;
+        let (padded_height, padded_width) = (place.extent[0].max(height + top), place.extent[1].max(width + left));
+        let mut padded = budget.zeros(&[planes, padded_height, padded_width])?;
         for (k, row) in values.chunks_exact(width.max(1)).enumerate() {
             let (plane, y) = (k / height, k % height);
             padded[(plane * padded_height + y + top) * padded_width + left..][..width].copy_from_slice(row);

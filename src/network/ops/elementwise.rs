@@ -1,6 +1,6 @@
 //! Element-wise operators, with numpy's broadcasting.
 
-use super::super::tensor::{Data, Room, Tensor, count};
+use super::super::tensor::{Data, MemoryBudget, Tensor, count};
 use super::{Call, Settings};
 use crate::error::{Error, Result};
 use crate::exec;
@@ -122,7 +122,7 @@ pub fn unary(op: Unary, call: &Call) -> Result<Tensor> {
     match (&x.data, op) {
         (_, Unary::Identity) => Ok(x.clone()),
         (Data::Floats(values), _) if op != Unary::Not => {
-            let mut out = call.room.zeros(&x.shape)?;
+            let mut out = call.budget.zeros(&x.shape)?;
             by_rows(&mut out, call.job, |start, row| {
                 row.iter_mut().zip(&values[start..]).for_each(|(out, &x)| *out = op.of(x));
             })?;
@@ -135,7 +135,7 @@ pub fn unary(op: Unary, call: &Call) -> Result<Tensor> {
                 Unary::Relu => v.max(0),
                 _ => i64::from(v == 0),
             };
-            let mut out = call.room.vec(values.len(), 0i64)?;
+            let mut out = call.budget.vec(values.len(), 0i64)?;
             out.iter_mut().zip(values.iter()).for_each(|(out, v)| *out = of(v));
             Ok(Tensor::integers(x.shape.clone(), out))
         }
@@ -241,17 +241,17 @@ fn pair(op: Binary, left: &Tensor, right: &Tensor, call: &Call) -> Result<Tensor
     let spread = Spread::of(&[left, right])?;
     match (&left.data, &right.data) {
         (Data::Floats(a), Data::Floats(b)) => {
-            let room = call.room;
+            let budget = call.budget;
             macro_rules! floats {
                 ($of:expr) => {{
-                    let out = spread.zip(room, call.job, a, b, 0.0f32, $of)?;
+                    let out = spread.zip(budget, call.job, a, b, 0.0f32, $of)?;
                     Ok(Tensor::floats(spread.shape, out))
                 }};
             }
             macro_rules! truths {
                 ($of:expr) => {{
                     let of = $of;
-                    let out = spread.zip(room, call.job, a, b, 0i64, |a: f32, b: f32| i64::from(of(a, b)))?;
+                    let out = spread.zip(budget, call.job, a, b, 0i64, |a: f32, b: f32| i64::from(of(a, b)))?;
                     Ok(Tensor::integers(spread.shape, out))
                 }};
             }
@@ -276,7 +276,7 @@ fn pair(op: Binary, left: &Tensor, right: &Tensor, call: &Call) -> Result<Tensor
             }
         }
         (Data::Integers(a), Data::Integers(b)) => {
-            let out = spread.zip(call.room, call.job, a, b, 0i64, |a, b| op.of_integers(a, b))?;
+            let out = spread.zip(call.budget, call.job, a, b, 0i64, |a, b| op.of_integers(a, b))?;
             Ok(Tensor::integers(spread.shape, out))
         }
         // The exponent may be an integer.
@@ -336,7 +336,7 @@ impl Spread {
 
     fn zip<A: Copy + Sync, T: Clone + Send>(
         &self,
-        room: Room,
+        budget: MemoryBudget,
         job: Job,
         a: &[A],
         b: &[A],
@@ -344,7 +344,7 @@ impl Spread {
         of: impl Fn(A, A) -> T + Sync,
     ) -> Result<Vec<T>> {
         let total = count(&self.shape)?;
-        let mut out = room.vec(total, zero)?;
+        let mut out = budget.vec(total, zero)?;
         if a.len() == total && b.len() == total {
             by_rows(&mut out, job, |start, row| {
                 for ((out, &a), &b) in row.iter_mut().zip(&a[start..]).zip(&b[start..]) {
@@ -375,7 +375,7 @@ impl Spread {
 
     /// The items of a tensor broadcast to the whole shape.
     pub fn all<T: Copy + Send + Sync>(&self, tensor: usize, values: &[T], zero: T, call: &Call) -> Result<Vec<T>> {
-        let mut out = call.room.vec(count(&self.shape)?, zero)?;
+        let mut out = call.budget.vec(count(&self.shape)?, zero)?;
         let length = self.shape.last().copied().unwrap_or(1);
         let step = self.strides[tensor].last().copied().unwrap_or(0);
         exec::for_rows(&mut out, length, call.job, |k, row| {
@@ -396,7 +396,7 @@ pub fn clip(low: Option<f32>, high: Option<f32>, call: &Call) -> Result<Tensor> 
     };
     let (low, high) = (bound(low, 1, f32::NEG_INFINITY)?, bound(high, 2, f32::INFINITY)?);
     let values = x.as_floats()?;
-    let mut out = call.room.zeros(&x.shape)?;
+    let mut out = call.budget.zeros(&x.shape)?;
     by_rows(&mut out, call.job, |start, row| {
         row.iter_mut().zip(&values[start..]).for_each(|(out, v)| *out = v.max(low).min(high));
     })?;
@@ -428,18 +428,18 @@ pub fn cast(to_float: bool, is_bool: bool, call: &Call) -> Result<Tensor> {
     let shape = x.shape.clone();
     Ok(match &x.data {
         Data::Integers(values) if to_float => {
-            let mut out = call.room.zeros(&shape)?;
+            let mut out = call.budget.zeros(&shape)?;
             out.iter_mut().zip(values.iter()).for_each(|(out, &v)| *out = v as f32);
             Tensor::floats(shape, out)
         }
         Data::Floats(values) if !to_float => {
-            let mut out = call.room.vec(values.len(), 0i64)?;
+            let mut out = call.budget.vec(values.len(), 0i64)?;
             let of = |v: f32| if is_bool { i64::from(v != 0.0) } else { v as i64 };
             out.iter_mut().zip(values.iter()).for_each(|(out, &v)| *out = of(v));
             Tensor::integers(shape, out)
         }
         Data::Integers(values) if is_bool => {
-            let mut out = call.room.vec(values.len(), 0i64)?;
+            let mut out = call.budget.vec(values.len(), 0i64)?;
             out.iter_mut().zip(values.iter()).for_each(|(out, &v)| *out = i64::from(v != 0));
             Tensor::integers(shape, out)
         }

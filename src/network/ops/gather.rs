@@ -18,8 +18,8 @@ fn picked(
     let (total, rank) = (count(&shape)?, shape.len());
     // Allocate first: the maps below are as long as the axes.
     let data = match &x.data {
-        Data::Floats(values) => Values::Floats(values, call.room.vec(total, fill)?),
-        Data::Integers(values) => Values::Integers(values, call.room.vec(total, fill as i64)?),
+        Data::Floats(values) => Values::Floats(values, call.budget.vec(total, fill)?),
+        Data::Integers(values) => Values::Integers(values, call.budget.vec(total, fill as i64)?),
     };
     let maps: Vec<Vec<Option<usize>>> = if total == 0 {
         Vec::new()
@@ -274,12 +274,12 @@ fn turned(x: &Tensor, order: &[i64], call: &Call) -> Result<Tensor> {
     }
     match &x.data {
         Data::Floats(values) => {
-            let mut out = call.room.zeros(&shape)?;
+            let mut out = call.budget.zeros(&shape)?;
             copy(values, &mut out, &shape, &strides, call)?;
             Ok(Tensor::floats(shape, out))
         }
         Data::Integers(values) => {
-            let mut out = call.room.vec(values.len(), 0i64)?;
+            let mut out = call.budget.vec(values.len(), 0i64)?;
             copy(values, &mut out, &shape, &strides, call)?;
             Ok(Tensor::integers(shape, out))
         }

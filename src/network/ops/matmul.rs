@@ -59,7 +59,7 @@ impl Gemm {
 fn transposed(tensor: &Tensor, call: &Call) -> Result<Tensor> {
     let [rows, columns] = tensor.shape_of()?;
     let values = tensor.as_floats()?;
-    let mut out = call.room.zeros(&[columns, rows])?;
+    let mut out = call.budget.zeros(&[columns, rows])?;
     exec::for_rows(&mut out, rows, call.job, |c, out| {
         out.iter_mut().enumerate().for_each(|(r, out)| *out = values[r * columns + c]);
     })?;
@@ -106,7 +106,7 @@ fn product(left: &Tensor, right: &Tensor, call: &Call) -> Result<Tensor> {
     count(&shape)?;
     // Process rows in fours; pad the last four, and cut the padding off afterwards.
     let padded = rows.next_multiple_of(ROWS);
-    let mut out = call.room.zeros(&[stack, padded, columns])?;
+    let mut out = call.budget.zeros(&[stack, padded, columns])?;
     exec::for_rows(&mut out, ROWS * columns, call.job, |k, out| {
         if call.job.is_cancelled() {
             return;

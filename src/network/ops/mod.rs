@@ -4,15 +4,15 @@
 mod conv;
 mod elementwise;
 mod gather;
-mod layout;
 mod matmul;
 mod norm;
 mod pool;
 mod reduce;
 mod resize;
+mod shapes;
 
 use super::read::{Attribute, NodeMessage, unsupported};
-use super::tensor::{Room, Tensor};
+use super::tensor::{MemoryBudget, Tensor};
 use crate::error::{Error, Result};
 use crate::job::Job;
 use elementwise::{Binary, Unary};
@@ -60,7 +60,7 @@ pub enum Op {
 /// The arguments of a node's execution.
 pub struct Call<'a> {
     pub inputs: Vec<Option<&'a Tensor>>,
-    pub room: Room,
+    pub budget: MemoryBudget,
     /// Number of the node's outputs.
     pub outputs: usize,
     pub job: Job<'a>,
@@ -231,20 +231,20 @@ impl Op {
             Self::Reduce(reduce) => one(reduce.run(call)),
             Self::Resize(resize) => one(resize.run(call)),
             Self::Pad { mode, pads, value } => one(gather::pad(*mode, pads, *value, call)),
-            Self::Reshape { keeps_zero } => one(layout::reshape(*keeps_zero, call)),
-            Self::Flatten { axis } => one(layout::flatten(*axis, call)),
-            Self::Squeeze { axes } => one(layout::squeeze(axes, call)),
-            Self::Unsqueeze { axes } => one(layout::unsqueeze(axes, call)),
+            Self::Reshape { keeps_zero } => one(shapes::reshape(*keeps_zero, call)),
+            Self::Flatten { axis } => one(shapes::flatten(*axis, call)),
+            Self::Squeeze { axes } => one(shapes::squeeze(axes, call)),
+            Self::Unsqueeze { axes } => one(shapes::unsqueeze(axes, call)),
             Self::Transpose { order } => one(gather::transpose(order, call)),
-            Self::Concat { axis } => one(layout::concat(*axis, call)),
-            Self::Split { axis, sizes } => layout::split(*axis, sizes, call),
+            Self::Concat { axis } => one(shapes::concat(*axis, call)),
+            Self::Split { axis, sizes } => shapes::split(*axis, sizes, call),
             Self::Slice { starts, ends, axes } => one(gather::slice(starts, ends, axes, call)),
             Self::Gather { axis } => one(gather::gather(*axis, call)),
             Self::Expand => one(gather::expand(call)),
             Self::Tile => one(gather::tile(call)),
-            Self::Shape { start, end } => one(layout::shape(*start, *end, call)),
-            Self::ConstantOfShape(value) => one(layout::filled(value, call)),
-            Self::Range => one(layout::range(call)),
+            Self::Shape { start, end } => one(shapes::shape(*start, *end, call)),
+            Self::ConstantOfShape(value) => one(shapes::filled(value, call)),
+            Self::Range => one(shapes::range(call)),
             Self::DepthToSpace { block, columns_first } => one(gather::depth_to_space(*block, *columns_first, call)),
         }
     }

@@ -13,7 +13,7 @@ pub fn batch(epsilon: f32, call: &Call) -> Result<Tensor> {
     let (scale, bias, mean, variance) = (of_channel(1)?, of_channel(2)?, of_channel(3)?, of_channel(4)?);
     let values = x.as_floats()?;
     let size: usize = x.shape.iter().skip(2).product();
-    let mut out = call.room.zeros(&x.shape)?;
+    let mut out = call.budget.zeros(&x.shape)?;
     exec::for_rows(&mut out, size, call.job, |k, out| {
         let c = k % channels;
         let factor = scale[c] / (variance[c] + epsilon).sqrt();
@@ -38,7 +38,7 @@ pub fn instance(epsilon: f32, call: &Call) -> Result<Tensor> {
     let (scale, bias) = (channel_values(call.input(1)?, channels)?, channel_values(call.input(2)?, channels)?);
     let size: usize = x.shape.iter().skip(2).product();
     let values = x.as_floats()?;
-    let mut out = call.room.zeros(&x.shape)?;
+    let mut out = call.budget.zeros(&x.shape)?;
     exec::for_rows(&mut out, size, call.job, |k, out| {
         let c = k % channels;
         standardise(&values[k * size..][..size], epsilon, out);
@@ -55,7 +55,7 @@ pub fn layer(axis: i64, epsilon: f32, call: &Call) -> Result<Tensor> {
     let scale = channel_values(call.input(1)?, size)?;
     let bias = call.optional(2).map(|bias| channel_values(bias, size)).transpose()?;
     let values = x.as_floats()?;
-    let mut out = call.room.zeros(&x.shape)?;
+    let mut out = call.budget.zeros(&x.shape)?;
     exec::for_rows(&mut out, size, call.job, |k, out| {
         standardise(&values[k * size..][..size], epsilon, out);
         out.iter_mut().zip(scale).for_each(|(v, s)| *v *= s);
@@ -81,7 +81,7 @@ pub fn softmax(axis: i64, flattens: bool, call: &Call) -> Result<Tensor> {
     let after: usize = if flattens { 1 } else { x.shape[axis + 1..].iter().product() };
     let size: usize = if flattens { x.shape[axis..].iter().product() } else { x.shape[axis] };
     let values = x.as_floats()?;
-    let mut out = call.room.zeros(&x.shape)?;
+    let mut out = call.budget.zeros(&x.shape)?;
     exec::for_rows(&mut out, size * after, call.job, |k, out| {
         let values = &values[k * size * after..][..size * after];
         for i in 0..after {

@@ -56,7 +56,7 @@ impl Reduce {
             Kind::Max => f64::NEG_INFINITY,
             Kind::Min => f64::INFINITY,
         };
-        let mut sums = call.room.vec(total, start)?;
+        let mut sums = call.budget.vec(total, start)?;
         let last = x.shape.last().copied().unwrap_or(1).max(1);
         let step = strides.last().copied().unwrap_or(0);
         for (row, values) in x.as_floats()?.chunks_exact(last).enumerate() {

@@ -2,7 +2,7 @@
 //! up to four input ones.
 
 use super::super::read::unsupported;
-use super::super::tensor::{Room, Tensor, count};
+use super::super::tensor::{MemoryBudget, Tensor, count};
 use super::{Call, Settings};
 use crate::error::{Error, Result};
 use crate::exec;
@@ -123,7 +123,7 @@ impl Resize {
         let axis = |k: usize| Axis { from: x.shape[k], to: shape[k], scale: scales[k] };
         let axes = [axis(rank - 2), axis(rank - 1)];
         let planes: usize = x.shape[..rank - 2].iter().product();
-        let out = resample(x.as_floats()?, planes, axes, self.filter, self.place, call.room, call.job)?;
+        let out = resample(x.as_floats()?, planes, axes, self.filter, self.place, call.budget, call.job)?;
         Ok(Tensor::floats(shape, out))
     }
 }
@@ -135,20 +135,20 @@ pub fn resample(
     [vertical, horizontal]: [Axis; 2],
     filter: Filter,
     place: Place,
-    room: Room,
+    budget: MemoryBudget,
     job: Job,
 ) -> Result<Vec<f32>> {
     // Along rows first, then along columns.
-    let taps = taps(horizontal, filter, place, room)?;
-    let mut wide = room.zeros(&[planes, vertical.from, horizontal.to])?;
+    let taps = taps(horizontal, filter, place, budget)?;
+    let mut wide = budget.zeros(&[planes, vertical.from, horizontal.to])?;
     exec::for_rows(&mut wide, horizontal.to, job.part(0.0, 0.5), |k, out| {
         let row = &values[k * horizontal.from..][..horizontal.from];
         for (out, taps) in out.iter_mut().zip(&taps) {
             *out = taps.iter().map(|&(i, w)| w * row[i]).sum();
         }
     })?;
-    let taps = self::taps(vertical, filter, place, room)?;
-    let mut out = room.zeros(&[planes, vertical.to, horizontal.to])?;
+    let taps = self::taps(vertical, filter, place, budget)?;
+    let mut out = budget.zeros(&[planes, vertical.to, horizontal.to])?;
     exec::for_rows(&mut out, horizontal.to, job.part(0.5, 1.0), |k, out| {
         let plane = &wide[k / vertical.to * vertical.from * horizontal.to..];
         for &(i, weight) in taps[k % vertical.to].iter().filter(|(_, weight)| *weight != 0.0) {
@@ -160,8 +160,8 @@ pub fn resample(
 }
 
 /// The input indices and weights of each output pixel.
-fn taps(axis: Axis, filter: Filter, place: Place, room: Room) -> Result<Vec<[(usize, f32); 4]>> {
-    let mut taps = room.vec(axis.to, [(0, 0.0); 4])?;
+fn taps(axis: Axis, filter: Filter, place: Place, budget: MemoryBudget) -> Result<Vec<[(usize, f32); 4]>> {
+    let mut taps = budget.vec(axis.to, [(0, 0.0); 4])?;
     let last = axis.from as i64 - 1;
     let inside = |i: i64| i.clamp(0, last) as usize;
     for (k, taps) in taps.iter_mut().enumerate() {
@@ -219,5 +219,5 @@ fn cubic(t: f32, a: f32) -> [f32; 4] {
 /// Resizes planes by cubic convolution without a low-pass filter, as OpenCV's `INTER_CUBIC` does.
 pub fn cubic_planes(values: &[f32], planes: usize, from: [usize; 2], to: [usize; 2], job: Job) -> Result<Vec<f32>> {
     let axis = |k: usize| Axis { from: from[k], to: to[k], scale: to[k] as f64 / from[k] as f64 };
-    resample(values, planes, [axis(0), axis(1)], Filter::Cubic(-0.75), Place::HalfPixel, Room(usize::MAX), job)
+    resample(values, planes, [axis(0), axis(1)], Filter::Cubic(-0.75), Place::HalfPixel, MemoryBudget(usize::MAX), job)
 }

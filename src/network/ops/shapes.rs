@@ -91,14 +91,14 @@ pub fn concat(axis: i64, call: &Call) -> Result<Tensor> {
     Ok(match &first.data {
         Data::Floats(_) => {
             let parts: Vec<&[f32]> = tensors.iter().map(|t| t.as_floats()).collect::<Result<_>>()?;
-            let mut out = call.room.vec(total, 0.0)?;
+            let mut out = call.budget.vec(total, 0.0)?;
             out.clear();
             joined(&parts, outer, &mut out);
             Tensor::floats(shape, out)
         }
         Data::Integers(_) => {
             let parts: Vec<&[i64]> = tensors.iter().map(|t| t.as_integers()).collect::<Result<_>>()?;
-            let mut out = call.room.vec(total, 0)?;
+            let mut out = call.budget.vec(total, 0)?;
             out.clear();
             joined(&parts, outer, &mut out);
             Tensor::integers(shape, out)
@@ -131,13 +131,13 @@ pub fn split(axis: i64, sizes: &Option<Vec<i64>>, call: &Call) -> Result<Vec<Ten
         let range = start * after..(start + part) * after;
         parts.push(match &x.data {
             Data::Floats(values) => {
-                let mut out = call.room.vec(count(&shape)?, 0.0)?;
+                let mut out = call.budget.vec(count(&shape)?, 0.0)?;
                 out.clear();
                 values.chunks_exact(stride.max(1)).for_each(|chunk| out.extend_from_slice(&chunk[range.clone()]));
                 Tensor::floats(shape, out)
             }
             Data::Integers(values) => {
-                let mut out = call.room.vec(count(&shape)?, 0)?;
+                let mut out = call.budget.vec(count(&shape)?, 0)?;
                 out.clear();
                 values.chunks_exact(stride.max(1)).for_each(|chunk| out.extend_from_slice(&chunk[range.clone()]));
                 Tensor::integers(shape, out)
@@ -164,11 +164,11 @@ pub fn filled(value: &Tensor, call: &Call) -> Result<Tensor> {
     Ok(match &value.data {
         Data::Floats(values) => {
             let value = values.first().copied().unwrap_or(0.0);
-            Tensor::floats(shape, call.room.vec(total, value)?)
+            Tensor::floats(shape, call.budget.vec(total, value)?)
         }
         Data::Integers(values) => {
             let value = values.first().copied().unwrap_or(0);
-            Tensor::integers(shape, call.room.vec(total, value)?)
+            Tensor::integers(shape, call.budget.vec(total, value)?)
         }
     })
 }
@@ -184,7 +184,7 @@ pub fn range(call: &Call) -> Result<Tensor> {
         if !steps.is_finite() {
             return Err(wrong());
         }
-        let mut out = call.room.vec(steps as usize, start)?;
+        let mut out = call.budget.vec(steps as usize, start)?;
         out.iter_mut().enumerate().for_each(|(i, v)| *v += i as f32 * delta);
         return Ok(Tensor::floats(vec![out.len()], out));
     }
@@ -196,7 +196,7 @@ pub fn range(call: &Call) -> Result<Tensor> {
     }
     let delta = i128::from(delta);
     let steps = if (span > 0) == (delta > 0) { (span.abs() + delta.abs() - 1) / delta.abs() } else { 0 };
-    let mut out = call.room.vec(usize::try_from(steps).map_err(|_| wrong())?, start)?;
+    let mut out = call.budget.vec(usize::try_from(steps).map_err(|_| wrong())?, start)?;
     out.iter_mut().enumerate().for_each(|(i, v)| *v = v.wrapping_add((i as i64).wrapping_mul(delta as i64)));
     Ok(Tensor::integers(vec![out.len()], out))
 }
