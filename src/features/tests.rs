@@ -188,7 +188,7 @@ fn the_layout_of_a_synthetic_room_is_recovered() {
 }
 
 #[test]
-fn without_segments_the_layout_is_a_usual_room_that_no_one_trusts() {
+fn without_segments_the_layout_is_the_prior_room_with_low_confidence() {
     let camera = camera(0.0, 0.0, 0.0, 64, 48);
     let room = RoomView { perspective: &camera, segments: &[], strokes: &[] };
     let features = run_with(&photo(64, 48), None, Some(room)).unwrap();

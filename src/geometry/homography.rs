@@ -20,7 +20,7 @@ impl Homography {
                 .fold(f64::MAX, f64::min);
             if min_area < 1e-12 {
                 return Err(Error::degenerate(
-                    "three of the four corners lie on one line: no perspective maps them to a rectangle",
+                    "three of the four corners are collinear: no perspective maps them to a rectangle",
                 ));
             }
         }
@@ -128,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn corners_across_and_behind_the_horizon_are_told_by_the_sign() {
+    fn the_sign_identifies_corners_on_and_behind_the_horizon() {
         let square = [DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y];
         let signs = |to: [DVec2; 4]| {
             let h = Homography::from_corners(square, to).unwrap();

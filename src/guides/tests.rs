@@ -12,7 +12,7 @@ fn rendered(scene: crate::scene::Scene, width: usize, samples: u32) -> Guides {
 }
 
 #[test]
-fn the_kinds_of_light_are_told_apart() {
+fn the_kinds_of_light_are_separated() {
     let g = rendered(demo::sphere_on_table().unwrap(), 120, 32);
     let mean = |image: &Image| image.data.iter().map(|v| f64::from(*v)).sum::<f64>() / image.data.len() as f64;
     let [full, direct, specular, indirect, two, caustics] = [0, 1, 2, 3, 4, 5].map(|i| mean(&g.light[i]));

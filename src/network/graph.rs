@@ -111,7 +111,7 @@ impl<'a> Values<'a> {
     }
 
     fn find(&self, name: &str) -> Result<usize> {
-        let missing = || Error::format(format!("no node before it makes the value {name}"));
+        let missing = || Error::format(format!("no earlier node computes the value {name}"));
         self.numbers.get(name).copied().ok_or_else(missing)
     }
 

@@ -64,7 +64,7 @@ pub fn model(bytes: &[u8]) -> Result<Model<'_>> {
         }
         Ok(())
     })?;
-    let graph = found.ok_or_else(|| Error::format("the file has no graph: it is truncated, or no ONNX file"))?;
+    let graph = found.ok_or_else(|| Error::format("the file has no graph: it is truncated, or not an ONNX file"))?;
     fields(graph, |number, value| {
         match number {
             1 => model.nodes.push(node(value.bytes()?)?),
@@ -83,7 +83,7 @@ pub fn model(bytes: &[u8]) -> Result<Model<'_>> {
 }
 
 pub fn unsupported(what: impl std::fmt::Display) -> Error {
-    Error::new(ErrorKind::Unsupported, format!("the network uses {what}, which this runtime does not do"))
+    Error::new(ErrorKind::Unsupported, format!("the network uses {what}, which this runtime does not support"))
 }
 
 fn node(bytes: &[u8]) -> Result<NodeMessage<'_>> {
@@ -181,7 +181,7 @@ fn tensor(bytes: &[u8]) -> Result<(&str, Tensor)> {
         Ok(())
     })?;
     if is_elsewhere {
-        return Err(unsupported("weights in a file of their own"));
+        return Err(unsupported("weights in a separate file"));
     }
     let shape: Vec<usize> = shape
         .into_iter()

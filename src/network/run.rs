@@ -40,6 +40,6 @@ impl Network {
             job.report(1.0);
         }
         let made = values[self.output].take().or_else(|| self.constants[self.output].clone());
-        made.ok_or_else(|| Error::format("the network does not make its output"))
+        made.ok_or_else(|| Error::format("the network does not compute its output"))
     }
 }

@@ -39,7 +39,7 @@ impl Tensor {
     /// The same numbers in another shape of equal size.
     pub fn reshaped(&self, shape: Vec<usize>) -> Result<Self> {
         if count(&shape)? != self.len() {
-            return Err(Error::format(format!("a tensor of shape {:?} cannot take shape {shape:?}", self.shape)));
+            return Err(Error::format(format!("a tensor of shape {:?} cannot be reshaped to {shape:?}", self.shape)));
         }
         Ok(Self { shape, data: self.data.clone() })
     }
@@ -61,14 +61,14 @@ impl Tensor {
     pub fn as_floats(&self) -> Result<&[f32]> {
         match &self.data {
             Data::Floats(values) => Ok(values),
-            Data::Integers(_) => Err(Error::format("integers stand where floats are needed")),
+            Data::Integers(_) => Err(Error::format("integers where floats are needed")),
         }
     }
 
     pub fn as_integers(&self) -> Result<&[i64]> {
         match &self.data {
             Data::Integers(values) => Ok(values),
-            Data::Floats(_) => Err(Error::format("floats stand where integers are needed")),
+            Data::Floats(_) => Err(Error::format("floats where integers are needed")),
         }
     }
 

@@ -85,7 +85,7 @@ mod tests {
                 assert!((found - sum / count).abs() < 0.01, "{deviation}: {found} instead of {}", sum / count);
             }
         }
-        let most = Biweight::of_noise(f64::INFINITY);
-        assert!(most.slope == 0.0 && most.square == 0.0 && most.influence == 0.0);
+        let limit = Biweight::of_noise(f64::INFINITY);
+        assert!(limit.slope == 0.0 && limit.square == 0.0 && limit.influence == 0.0);
     }
 }

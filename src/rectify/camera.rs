@@ -188,8 +188,8 @@ fn orthonormal(directions: [Option<(DVec3, f64)>; 3]) -> DMat3 {
 /// `M (Mᵀ M)^(-1/2)` of the matrix `M` whose columns are scaled by their certainties.
 fn polar(columns: [(DVec3, f64); 3]) -> DMat3 {
     // Limit the ratio of weights to 1e4: a larger one would only lose digits.
-    let least = columns.iter().map(|c| c.1).fold(f64::INFINITY, f64::min).max(1e-12);
-    let scaled = columns.map(|(d, e)| d * (least / e.max(least)).max(1e-4));
+    let min_error = columns.iter().map(|c| c.1).fold(f64::INFINITY, f64::min).max(1e-12);
+    let scaled = columns.map(|(d, e)| d * (min_error / e.max(min_error)).max(1e-4));
     let gram = std::array::from_fn(|r| std::array::from_fn(|c| scaled[r].dot(scaled[c])));
     let (values, vectors) = symmetric_eigen::<3>(gram);
     let mut inverse_root = DMat3::ZERO;

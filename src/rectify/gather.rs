@@ -120,11 +120,11 @@ pub fn store(sums: &Sums, parts: usize, channels: usize, channel: usize, mut out
     let share = 1.0 / parts as f32;
     if channels == 3 {
         for sum in &sums[..out.len() / 3] {
-            let four = (*sum * share).to_array();
+            let lanes = (*sum * share).to_array();
             // The fourth lane is overwritten by the next pixel.
             match out.first_chunk_mut() {
-                Some(place) => *place = four,
-                None => out.copy_from_slice(&four[..3]),
+                Some(place) => *place = lanes,
+                None => out.copy_from_slice(&lanes[..3]),
             }
             out = &mut out[3..];
         }

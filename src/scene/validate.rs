@@ -146,7 +146,7 @@ impl Scene {
         for (what, len) in lengths {
             if len != 0 && len != count {
                 return Err(Error::argument(format!(
-                    "it has {len} {what}; there must be none or {count}, as positions"
+                    "it has {len} {what}; there must be {count}, one per position, or none"
                 )));
             }
         }

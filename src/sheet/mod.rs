@@ -164,9 +164,8 @@ fn even_light(
                 (0..4).for_each(|j| matrix[i][j] += row[i] * row[j]);
             }
         }
-        *coefficients = solve(matrix, right).ok_or_else(|| {
-            Error::degenerate("the marks that were found lie on one line: the light cannot be evened out")
-        })?;
+        *coefficients = solve(matrix, right)
+            .ok_or_else(|| Error::degenerate("the marks found are collinear: uneven light cannot be corrected"))?;
     }
     let from_picture = page.from_picture(width, height);
     exec::for_rows(&mut image.data, 3 * width, job, |y, row| {

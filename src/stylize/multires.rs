@@ -60,7 +60,8 @@ pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Pu
         let mut level = Level::new(problem, &weights, 1.0, seed, job.part(0.0, 0.01))?;
         if level.allowed.is_empty() {
             return Err(Error::degenerate(
-                "no exemplar patch can be used: source_mask and pixels that are no numbers leave none".to_string(),
+                "no exemplar patch can be used: every patch is outside source_mask or has a pixel that is not finite"
+                    .to_string(),
             ));
         }
 

@@ -137,12 +137,12 @@ fn hatch(canvas: &mut Canvas, subject: &Subject, set: &Set, seed: u64) -> Result
         }
         // Trace in both directions from the start, as far as there is something to draw.
         let lean = set.turn + 0.10 * (rng.next_f32() - 0.5);
-        let reach = set.length * unit * (0.35 + 0.65 * rng.next_f32()) / 2.0;
+        let half_length = set.length * unit * (0.35 + 0.65 * rng.next_f32()) / 2.0;
         let mut ends = [Vec::new(), Vec::new()];
         for (way, path) in [1.0, -1.0].into_iter().zip(&mut ends) {
             let (mut at, mut gone) = (start, 0.0);
             let inside = subject.at(start).is_object;
-            while gone < reach {
+            while gone < half_length {
                 let appearance = subject.at(at);
                 let along = Vec2::from_angle(lean + 0.06 * tremor(gone / (14.0 * unit), seed + 7 * line as u64))
                     .rotate(appearance.along);

@@ -68,10 +68,10 @@ fn dots(canvas: &mut Canvas, subject: &Subject, ink: &Ink, seed: u64) -> Result<
         }
         // The share of the paper covered by ink equals the darkness.
         let apart = radius * (1.75 / darkness.sqrt()).clamp(1.45, MAX_SPACING);
-        let (x, y, reach) = ((at.x / cell) as usize, (at.y / cell) as usize, (apart / cell).ceil() as usize);
-        let mut near = (y.saturating_sub(reach)..(y + reach + 1).min(rows))
+        let (x, y, span) = ((at.x / cell) as usize, (at.y / cell) as usize, (apart / cell).ceil() as usize);
+        let mut near = (y.saturating_sub(span)..(y + span + 1).min(rows))
             .flat_map(|row| {
-                (x.saturating_sub(reach)..(x + reach + 1).min(columns)).map(move |column| row * columns + column)
+                (x.saturating_sub(span)..(x + span + 1).min(columns)).map(move |column| row * columns + column)
             })
             .map(|i| taken[i]);
         if near.any(|other| other.distance_squared(at) < apart * apart) {

@@ -38,8 +38,8 @@ impl Cluttered {
         let mut rng = Rng::new(77, &[seed]);
         let mut within = |a: f64, b: f64| a + (b - a) * rng.next_f64();
         let mut sides = [0.0; 4];
-        for (side, (least, most)) in sides.iter_mut().zip([(0.3, 1.0), (0.3, 1.0), (0.15, 0.5), (0.25, 0.6f64)]) {
-            *side = within(f64::ln(least), most.ln()).exp();
+        for (side, (smallest, largest)) in sides.iter_mut().zip([(0.3, 1.0), (0.3, 1.0), (0.15, 0.5), (0.25, 0.6f64)]) {
+            *side = within(f64::ln(smallest), largest.ln()).exp();
         }
         let mut camera = camera(within(-0.5, 0.5), within(-0.25, 0.25), within(-0.03, 0.03), SIZE[0], SIZE[1]);
         camera.focal *= within(0.75, 1.25);
@@ -118,8 +118,8 @@ impl Cluttered {
             places[truth(&camera, &sides, place.x as usize, place.y as usize).1].push(place);
         }
         let wanted = if within(0.0, 1.0) < 0.7 { Face::Ceiling as usize } else { within(0.0, 5.0) as usize };
-        let most = (0..Face::COUNT).max_by_key(|&face| places[face].len()).unwrap();
-        let plane = if places[wanted].len() >= 12 { wanted } else { most };
+        let largest = (0..Face::COUNT).max_by_key(|&face| places[face].len()).unwrap();
+        let plane = if places[wanted].len() >= 12 { wanted } else { largest };
         let mut strokes = Vec::new();
         for (face, places) in places.iter().enumerate().filter(|(_, places)| places.len() >= 12) {
             for pair in places.chunks(2).take(if face == plane { 2 } else { 1 }) {

@@ -76,7 +76,7 @@ impl Conv {
                     return;
                 }
                 match together {
-                    GROUP => four(&source, &mine, &taps, y, out_width, out),
+                    GROUP => four_channels(&source, &mine, &taps, y, out_width, out),
                     2 => two(&source, &mine, &taps, y, out_width, out),
                     _ => single(&source, &mine, &taps, y, out_width, out),
                 }
@@ -108,7 +108,7 @@ impl Conv {
             let whole =
                 strides[axis] * size.saturating_sub(1) + self.output_padding[axis] + (kernel - 1) * dilations[axis] + 1;
             let cut = pads[axis] + pads[axis + 2];
-            whole.checked_sub(cut).ok_or_else(|| Error::format(format!("pads of {cut} leave nothing of {whole}")))
+            whole.checked_sub(cut).ok_or_else(|| Error::format(format!("pads of {cut} remove all of {whole}")))
         };
         let (out_height, out_width) = (out_size(0, height, rows)?, out_size(1, width, columns)?);
         let shape = vec![batch, out_channels, out_height, out_width];
@@ -239,7 +239,7 @@ fn row<const N: usize>(source: &Planes, weights: &Weights, taps: &Taps, y: usize
 }
 
 widest! {
-    fn four(source: &Planes, weights: &Weights, taps: &Taps, y: usize, width: usize, out: &mut [f32]) {
+    fn four_channels(source: &Planes, weights: &Weights, taps: &Taps, y: usize, width: usize, out: &mut [f32]) {
         row::<GROUP>(source, weights, taps, y, width, out);
     }
 }

@@ -209,7 +209,7 @@ pub fn expand(call: &Call) -> Result<Tensor> {
     let first = shape.len() - wanted.len();
     for (to, &size) in shape[first..].iter_mut().zip(&wanted) {
         if *to != size && *to != 1 && size != 1 {
-            return Err(Error::format(format!("a tensor of shape {:?} cannot be spread over {wanted:?}", x.shape)));
+            return Err(Error::format(format!("a tensor of shape {:?} cannot be broadcast to {wanted:?}", x.shape)));
         }
         *to = if *to == 1 { size } else { *to };
     }
@@ -291,7 +291,7 @@ pub fn depth_to_space(block: usize, columns_first: bool, call: &Call) -> Result<
     let x = call.input(0)?;
     let [batch, channels, height, width] = x.shape_of()?;
     if channels % (block * block) != 0 {
-        return Err(Error::format(format!("{channels} channels are no multiple of {block} x {block}")));
+        return Err(Error::format(format!("{channels} channels are not a multiple of {block} x {block}")));
     }
     let left = channels / (block * block);
     let (apart, order) = if columns_first {

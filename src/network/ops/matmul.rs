@@ -115,7 +115,7 @@ fn product(left: &Tensor, right: &Tensor, call: &Call) -> Result<Tensor> {
         let b = &values_b[of_b[m] as usize * shared * columns..][..shared * columns];
         let a = &values_a[(of_a[m] as usize * rows + first) * shared..][..ROWS.min(rows - first) * shared];
         let block = Block { a, b, shared, columns };
-        if a.len() == ROWS * shared { four(&block, out) } else { rest(&block, out) }
+        if a.len() == ROWS * shared { four_rows(&block, out) } else { rest(&block, out) }
     })?;
     call.job.check()?;
     if padded != rows {
@@ -143,7 +143,7 @@ struct Block<'a> {
 }
 
 widest! {
-    fn four(block: &Block, out: &mut [f32]) {
+    fn four_rows(block: &Block, out: &mut [f32]) {
         rows_of::<ROWS>(block, out);
     }
 }

@@ -267,5 +267,5 @@ fn constant(at: &Settings) -> Result<Tensor> {
     if let Some(a) = get("value_ints") {
         return Ok(Tensor::integers(vec![a.integers.len()], a.integers.clone()));
     }
-    Err(unsupported("a constant that is no number"))
+    Err(unsupported("a constant that is not numeric"))
 }

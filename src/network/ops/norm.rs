@@ -86,10 +86,10 @@ pub fn softmax(axis: i64, flattens: bool, call: &Call) -> Result<Tensor> {
         let values = &values[k * size * after..][..size * after];
         for i in 0..after {
             let items = || (i..size * after).step_by(after);
-            let most = items().fold(f32::NEG_INFINITY, |most, j| most.max(values[j]));
+            let max = items().fold(f32::NEG_INFINITY, |max, j| max.max(values[j]));
             let mut sum = 0.0;
             for j in items() {
-                out[j] = (values[j] - most).exp();
+                out[j] = (values[j] - max).exp();
                 sum += out[j];
             }
             items().for_each(|j| out[j] /= sum);

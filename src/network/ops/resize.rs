@@ -84,7 +84,7 @@ impl Resize {
         let (scales_at, sizes_at) = if is_old { (1, None) } else { (2, Some(3)) };
         let known = constants.get(scales_at).copied().flatten();
         if known.is_some_and(|tensor| tensor.as_floats().is_err()) {
-            return Err(Error::format("scales are no floats"));
+            return Err(Error::format("scales must be floats"));
         }
         Ok(Self { filter, place, scales, scales_at, sizes_at })
     }
@@ -112,7 +112,7 @@ impl Resize {
         };
         if shape.len() != rank || scales.len() != rank || rank < 2 || shape[..rank - 2] != x.shape[..rank - 2] {
             return Err(if shape.len() == rank {
-                unsupported("resizing of other axes than the last two")
+                unsupported("resizing of axes other than the last two")
             } else {
                 wrong()
             });

@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 pub fn reshape(keeps_zero: bool, call: &Call) -> Result<Tensor> {
     let x = call.input(0)?;
     let wanted = call.input(1)?.as_integers()?;
-    let wrong = || Error::format(format!("a tensor of shape {:?} cannot take shape {wanted:?}", x.shape));
+    let wrong = || Error::format(format!("a tensor of shape {:?} cannot be reshaped to {wanted:?}", x.shape));
     let mut shape = Vec::with_capacity(wanted.len());
     let mut open = None;
     for (k, &size) in wanted.iter().enumerate() {
@@ -60,7 +60,7 @@ pub fn unsqueeze(axes: &Option<Vec<i64>>, call: &Call) -> Result<Tensor> {
     let mut old = x.shape.iter();
     let sizes = is_new.iter().map(|&is_new| if is_new { Some(1) } else { old.next().copied() });
     let shape: Option<Vec<usize>> = sizes.collect();
-    x.reshaped(shape.ok_or_else(|| Error::format(format!("axes are {axes:?}; one is there twice")))?)
+    x.reshaped(shape.ok_or_else(|| Error::format(format!("axes are {axes:?}; no axis may occur twice")))?)
 }
 
 pub fn concat(axis: i64, call: &Call) -> Result<Tensor> {
@@ -119,7 +119,7 @@ pub fn split(axis: i64, sizes: &Option<Vec<i64>>, call: &Call) -> Result<Vec<Ten
         }
     };
     if sizes.iter().try_fold(0usize, |sum, &n| sum.checked_add(n)) != Some(size) {
-        return Err(Error::format(format!("parts of {sizes:?} do not make an axis of {size}")));
+        return Err(Error::format(format!("parts of {sizes:?} do not sum to an axis of {size}")));
     }
     let after: usize = x.shape[axis + 1..].iter().product();
     let mut parts = Vec::new();

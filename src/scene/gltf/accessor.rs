@@ -121,7 +121,7 @@ fn read_vectors<const N: usize>(file: &File, index: Index<accessor::Accessor>) -
     if components != N {
         return Err(Error::format(format!("it has {components} components where {N} are expected")));
     }
-    let count = usize::try_from(accessor.count.0).map_err(|_| Error::format("its count is beyond all memory"))?;
+    let count = usize::try_from(accessor.count.0).map_err(|_| Error::format("its count exceeds all memory"))?;
     let strided = |view, offset, count| {
         Strided::new(file, view, offset, kind, components, count)
             .map(|strided| Strided { normalized: accessor.normalized, ..strided })
@@ -161,7 +161,7 @@ fn sparse_parts<'a>(
     let Checked::Valid(kind) = &sparse.indices.component_type else {
         return Err(Error::format("the componentType of its sparse indices is unknown"));
     };
-    let count = usize::try_from(sparse.count.0).map_err(|_| Error::format("its sparse count is beyond all memory"))?;
+    let count = usize::try_from(sparse.count.0).map_err(|_| Error::format("its sparse count exceeds all memory"))?;
     let at = Strided::new(file, sparse.indices.buffer_view, sparse.indices.byte_offset.0, kind.0, 1, count)?;
     Ok((at, strided(sparse.values.buffer_view, sparse.values.byte_offset.0, count)?))
 }
@@ -174,7 +174,7 @@ pub fn indices(file: &File, index: Index<accessor::Accessor>) -> Result<Vec<u32>
         let (Some(view), 1) = (accessor.buffer_view, components) else {
             return Err(Error::format("indices must be scalars in a buffer view"));
         };
-        let count = usize::try_from(accessor.count.0).map_err(|_| Error::format("its count is beyond all memory"))?;
+        let count = usize::try_from(accessor.count.0).map_err(|_| Error::format("its count exceeds all memory"))?;
         let source = Strided::new(file, view, accessor.byte_offset.map_or(0, |o| o.0), kind, 1, count)?;
         let mut out = try_vec(count, 0)?;
         for (i, o) in out.iter_mut().enumerate() {

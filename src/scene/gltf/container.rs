@@ -76,7 +76,7 @@ impl<'a> File<'a> {
         let relative = safe_path(uri)?;
         let base = self.base.ok_or_else(|| {
             Error::argument(format!(
-                "the file refers to {uri:?} beside it: say in which folder that is, or load by path"
+                "the file refers to {uri:?} beside it: give the folder of that file, or load by path"
             ))
         })?;
         let path = base.join(relative);
@@ -126,7 +126,7 @@ fn split(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>)> {
 
 /// A relative path that cannot leave its folder.
 fn safe_path(uri: &str) -> Result<PathBuf> {
-    let refused = |why: &str| Error::format(format!("the outside file {uri:?} {why}"));
+    let refused = |why: &str| Error::format(format!("the external file {uri:?} {why}"));
     let bytes = decode_percent(uri).ok_or_else(|| refused("is not validly percent-encoded"))?;
     let name = String::from_utf8(bytes).map_err(|_| refused("is not valid UTF-8"))?;
     if name.contains(['\\', ':', '\0']) {

@@ -154,7 +154,7 @@ impl Importer<'_> {
         // Restore the right angle, which nodes with shear destroy.
         let c0 = (axes[1] - axes[0] * axes[0].dot(axes[1])).normalize_or_zero();
         if axes[0] == DVec3::ZERO || c0 == DVec3::ZERO {
-            return Err(Error::format("its node is scaled to nothing"));
+            return Err(Error::format("its node is scaled to zero"));
         }
         self.scene.lights.push(PunctualLight::Luminaire {
             position: transform.w_axis.truncate().as_vec3(),
@@ -282,7 +282,7 @@ impl Importer<'_> {
         let Some(perspective) = &camera.perspective else { return Ok(()) };
         let axis = |v: DVec3| {
             let axis = transform.transform_vector3(v).try_normalize();
-            axis.ok_or_else(|| Error::format(format!("camera {name:?} is scaled to nothing")))
+            axis.ok_or_else(|| Error::format(format!("camera {name:?} is scaled to zero")))
         };
         let forward = axis(DVec3::NEG_Z)?;
         // Non-uniform scaling shears the axes: make up orthogonal again.
@@ -381,7 +381,7 @@ fn punctual(light: &Light, transform: DMat4) -> Result<PunctualLight> {
     let strength = Vec3::from(light.color) * light.intensity;
     let direction = || {
         let direction = transform.transform_vector3(DVec3::NEG_Z).try_normalize();
-        direction.map(|d| d.as_vec3()).ok_or_else(|| Error::format("its node is scaled to nothing"))
+        direction.map(|d| d.as_vec3()).ok_or_else(|| Error::format("its node is scaled to zero"))
     };
     match light.type_ {
         Checked::Valid(Type::Point) => Ok(PunctualLight::Point { position, intensity: strength }),
@@ -389,7 +389,7 @@ fn punctual(light: &Light, transform: DMat4) -> Result<PunctualLight> {
             Ok(PunctualLight::Directional { direction: direction()?, illuminance: strength })
         }
         Checked::Valid(Type::Spot) => {
-            let spot = light.spot.as_ref().ok_or_else(|| Error::format("a spot light without its cone"))?;
+            let spot = light.spot.as_ref().ok_or_else(|| Error::format("a spot light without cone angles"))?;
             Ok(PunctualLight::Spot {
                 position,
                 direction: direction()?,
