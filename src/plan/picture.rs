@@ -70,8 +70,8 @@ impl Picture {
         nets(paths).map(f64::from).map(|points| points * points * square(points)).sum::<f64>().sqrt() / f64::from(paths)
     }
 
-    /// The factor by which adaptive sampling reduces the number of paths for an error: the ideal saving is the square
-    /// of the saving measured by doubling tiles one by one.
+    /// The factor by which adaptive sampling reduces the number of paths for an error. The ideal saving, which the
+    /// probe measures, is the square of the saving that doubling tiles one by one achieves.
     fn saved(&self) -> f64 {
         self.probe.saved.sqrt()
     }

@@ -1,6 +1,6 @@
-//! The paper's line detector (§5.1): a Hough transform in which each edge pixel votes only for lines within a few
-//! degrees of the normal to its gradient. The maxima of the accumulator are the lines; each is cut into the pieces
-//! that edge pixels cover.
+//! The paper's line detector (§5.1): a Hough transform in which each edge pixel votes only for lines perpendicular to
+//! its gradient, within a few degrees. The maxima of the accumulator are the lines; each is cut into the pieces that
+//! edge pixels cover.
 
 use super::gradient::Gradients;
 use crate::error::Result;

@@ -52,7 +52,7 @@ impl Frame {
         Self { principal, scale: width.max(height) as f64 / 2.0 }
     }
 
-    /// Segments as evidence, each with its index; segments of zero length are left out.
+    /// Segments as weighted lines, each with its index; segments of zero length are left out.
     pub fn weighted_lines(&self, segments: &[Segment]) -> Vec<(usize, WeightedLine)> {
         let to_frame = |p: DVec2| (p - self.principal) / self.scale;
         let prepare = |s: &Segment| Line::new(&Segment { a: to_frame(s.a), b: to_frame(s.b) });

@@ -18,7 +18,8 @@ use glam::Vec3;
 use rayon::prelude::*;
 use std::collections::{BinaryHeap, HashMap};
 
-/// Number of parts of a large tree; minimum number of leaves per part; and minimum number of parts worth cutting.
+/// Number of parts of a large tree; number of leaves per part of smaller trees; and minimum number of parts worth
+/// cutting.
 const PARTS: usize = 256;
 const PART_LEAVES: usize = 128;
 const MIN_PARTS: usize = 8;
