@@ -152,7 +152,7 @@ pub struct RightAngle {
 /// between each line and the line to the point. Tukey's biweight rejects lines beyond its limit. `None` if fewer than
 /// two distinct lines remain.
 pub fn refine(lines: &[WeightedLine], start: DVec3, focal: f64) -> Option<Refined> {
-    let direction = iterate(lines, start, focal, NO_MATRIX)?;
+    let direction = iterate(lines, start, focal, ZERO_MATRIX)?;
     Some(Refined { direction, covariance: covariance(lines, direction, focal)?.of_direction })
 }
 
@@ -162,7 +162,7 @@ pub fn refine_near(lines: &[WeightedLine], start: DVec3, focal: f64, expected: &
     // The normal matrix of the lines is the inverse of their covariance up to a factor; express the priors in its
     // unit.
     let unit = deviation(&own.of_direction).powi(2) / own.inverse_trace;
-    let mut prior = NO_MATRIX;
+    let mut prior = ZERO_MATRIX;
     for RightAngle { to, variance } in expected {
         add_square(&mut prior, *to, unit / variance);
     }
@@ -183,7 +183,8 @@ fn iterate(lines: &[WeightedLine], start: DVec3, focal: f64, prior: [[f64; 3]; 3
     Some(direction)
 }
 
-const NO_MATRIX: [[f64; 3]; 3] = [[0.0; 3]; 3];
+/// The zero matrix: a system without priors [convention].
+const ZERO_MATRIX: [[f64; 3]; 3] = [[0.0; 3]; 3];
 
 fn add_square(matrix: &mut [[f64; 3]; 3], v: DVec3, weight: f64) {
     let v = v.to_array();

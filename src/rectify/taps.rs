@@ -12,7 +12,7 @@ use crate::image::Image;
 /// Taps along each side.
 pub const TAPS: usize = 4;
 
-/// Longest side of a rectangle that the taps cover at any sub-pixel position: `TAPS - 1`.
+/// Longest side of a rectangle that the taps cover at any sub-pixel position: `TAPS - 1` [convention].
 pub const MAX_SIDE: f32 = 3.0;
 
 /// Range of the squared major axis of a pixel's footprint, in source pixels, over which the cubic filter fades out:

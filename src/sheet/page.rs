@@ -11,7 +11,7 @@ const RADIUS: f64 = 4.5;
 const CLEARANCE: f64 = 2.5;
 
 /// Positions of the marks on the border of a rectangle: four corners and four midpoints of sides, each in cyclic
-/// order, and two marks that break the symmetry: no rotation or reflection maps them to other marks.
+/// order, and two marks that break the symmetry: no rotation or reflection maps them to other marks [convention].
 const MARKS: [[f64; 2]; 10] = [
     [0.0, 0.0],
     [1.0, 0.0],
