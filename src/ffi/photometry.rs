@@ -11,7 +11,7 @@ use super::pointer::Out;
 use super::status::luxfer_status;
 use crate::error::{Error, check_range};
 use crate::photometry::glare;
-use crate::photometry::temperature::{self, LEAST_KELVIN, MOST_KELVIN, Temperature};
+use crate::photometry::temperature::{self, MAX_KELVIN, MIN_KELVIN, Temperature};
 use glam::DVec3;
 
 /// The glare of a view. Set struct_size before the call.
@@ -77,7 +77,7 @@ pub unsafe extern "C" fn luxfer_colour_of_temperature(
 ) -> luxfer_status {
     enter(context, |_| {
         let out = Out::new(rgb.cast::<[f64; 3]>(), "rgb")?;
-        check_range("kelvin", kelvin, LEAST_KELVIN, MOST_KELVIN)?;
+        check_range("kelvin", kelvin, MIN_KELVIN, MAX_KELVIN)?;
         check_range("duv", duv, -0.05, 0.05)?;
         out.set(temperature::to_rgb(Temperature { kelvin, duv }).to_array());
         Ok(())

@@ -128,7 +128,7 @@ unsafe impl Versioned for luxfer_stylize_params {
 
 const MODES: [Mode; 6] = [Mode::Budget, Mode::Uniform, Mode::Nearest, Mode::Greedy, Mode::LitSphere, Mode::Occurrence];
 const SEARCHES: [Finder; 2] = [Finder::PatchMatch, Finder::Table];
-const VOTES: [Vote; 4] = [Vote::Plain, Vote::Weighted, Vote::Nearest, Vote::Most];
+const VOTES: [Vote; 4] = [Vote::Plain, Vote::Weighted, Vote::Nearest, Vote::Majority];
 
 /// The value that an integer from outside stands for.
 pub(super) fn choice<T: Copy>(values: &[T], index: i32, name: &str, prefix: &str) -> Result<T> {

@@ -161,7 +161,7 @@ impl Stylised {
         let numbers = luxfer_stylize_report {
             finished: 1,
             patch: report.patch as u32,
-            most_used: report.usage.most,
+            most_used: report.usage.max_uses,
             used: report.usage.used,
             entropy: report.usage.entropy,
             guide_error: (squares.sum::<f64>() / report.guide_error.data.len() as f64).sqrt(),
