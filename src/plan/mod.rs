@@ -4,7 +4,7 @@
 //! relighting and rendering come to it, how long each is expected to take, and what error it is expected to leave.
 //!
 //! What a path costs and how much paths scatter depends on the machine and on the scene, and nothing that could be counted
-//! before tells it. So it is measured: a few tiles of the very image are rendered ([`picture`], `render::probe`), and a few
+//! before tells it. So it is measured: a few tiles of the very image are rendered ([`picture`], `render::pilot`), and a few
 //! paths of the very solution are traced ([`strength`]). Along the curves of error against time that follow, the time is
 //! given out in small steps, each to the stage where it lowers the error of the picture most ([`curve`]). A stylisation is tried
 //! with settings from quick to careful, at a part of its resolution (`stylisation`).

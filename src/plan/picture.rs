@@ -4,8 +4,8 @@ use super::curve::{Curve, allocate};
 use super::{Clock, Expected, Goal, PATIENCE, overtime};
 use crate::error::Result;
 use crate::job::Job;
-use crate::render::probe::{self, PATHS, REPLICATIONS, nets};
-use crate::render::{self, Probe, World};
+use crate::render::pilot::{self, PATHS, REPLICATIONS, nets};
+use crate::render::{self, Pilot, World};
 use crate::scene::Camera;
 
 /// Least paths of a pixel that state an error.
@@ -43,22 +43,22 @@ pub fn rendering(
 /// What a picture takes.
 pub(super) struct Picture {
     pixels: f64,
-    probe: Probe,
+    pilot: Pilot,
 }
 
 impl Picture {
     pub fn new(world: &World, camera: &Camera, params: &render::Params, clock: Clock, job: Job) -> Result<Self> {
-        let probe = probe::run(world, camera, params, clock, job)?;
-        Ok(Self { pixels: params.width as f64 * params.height as f64, probe })
+        let pilot = pilot::run(world, camera, params, clock, job)?;
+        Ok(Self { pixels: params.width as f64 * params.height as f64, pilot })
     }
 
     /// Root mean square of the picture over its mean.
     pub fn contrast(&self) -> f64 {
-        self.probe.contrast
+        self.pilot.contrast
     }
 
     fn seconds(&self, paths: f64) -> f64 {
-        self.pixels * paths * self.probe.seconds_per_path.max(1e-12)
+        self.pixels * paths * self.pilot.seconds_per_path.max(1e-12)
     }
 
     /// With as many paths for every pixel. The curve is that of whole nets; other numbers of paths are several, and the
@@ -72,12 +72,12 @@ impl Picture {
     /// How many times fewer paths reach an error when they may go where they are needed: the ideal is the square of what
     /// tiles that are doubled one by one come to.
     fn saved(&self) -> f64 {
-        self.probe.saved.sqrt()
+        self.pilot.adaptive_gain.sqrt()
     }
 
     /// Error against time, with as many paths for every pixel.
     pub fn curve(&self) -> Curve {
-        let points = [0, 1, 2].map(|i| [self.seconds(PATHS[i].into()), self.probe.squares[i]]);
+        let points = [0, 1, 2].map(|i| [self.seconds(PATHS[i].into()), self.pilot.squared_errors[i]]);
         Curve { least: self.seconds(FEWEST), most: self.seconds(MOST), points }
     }
 

@@ -7,7 +7,7 @@
 //! vote of Boyer and Moore 1981, which takes one pass and one counter).
 
 use super::ballot;
-use super::path::Seen;
+use super::path::PrimaryHit;
 use super::world::World;
 use glam::{DVec3, Vec3};
 
@@ -145,7 +145,7 @@ pub struct Surfaces {
 
 impl Surfaces {
     /// `depth` is along the camera's viewing direction.
-    pub fn meet(&mut self, world: &World, seen: &Seen, depth: f32) {
+    pub fn add(&mut self, world: &World, seen: &PrimaryHit, depth: f32) {
         let material = world.scene().meshes[seen.mesh as usize].material;
         self.hits += 1;
         self.depth += f64::from(depth);

@@ -87,21 +87,21 @@ impl Lobes {
 }
 
 /// Where a path goes on.
-pub struct Scattered {
+pub struct BsdfSample {
     pub direction: Vec3,
     /// Throughput: the BSDF times the cosine over the density.
     pub weight: Vec3,
     /// What the BSDF is made of where it spreads.
     pub lobes: Lobes,
-    pub kind: Kind,
+    pub kind: ScatterKind,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Kind {
+pub enum ScatterKind {
     /// With this density per steradian.
-    Spread(f32),
-    Mirrored,
-    Through,
+    NonSpecular(f32),
+    Mirror,
+    Pane,
 }
 
 impl<'a> Bsdf<'a> {
@@ -169,13 +169,13 @@ impl<'a> Bsdf<'a> {
 
     /// Whether it is the same for all viewers on its side.
     #[inline]
-    pub fn looks_alike(&self) -> bool {
+    pub fn is_view_independent(&self) -> bool {
         self.is_diffuse() && self.normal == self.geometric
     }
 
     /// Whether any light but that of single directions is scattered.
     #[inline]
-    pub fn spreads(&self) -> bool {
+    pub fn has_non_specular(&self) -> bool {
         match &self.layers {
             None => self.diffuse != Vec3::ZERO,
             Some(layers) => layers.shares[0] > 0.0 || (layers.shares[1] > 0.0 && layers.lobe.is_some()),
@@ -198,7 +198,7 @@ impl<'a> Bsdf<'a> {
 
     /// Chooses where a path goes on, by a point of the unit square. None where the light is absorbed.
     #[inline]
-    pub fn sample(&self, u: Vec2) -> Option<Scattered> {
+    pub fn sample(&self, u: Vec2) -> Option<BsdfSample> {
         if let Some(layers) = &self.layers {
             return layers.sample(self, u);
         }
@@ -208,9 +208,9 @@ impl<'a> Bsdf<'a> {
         if !(local.z > 0.0 && direction.dot(self.geometric) > 0.0) || self.diffuse == Vec3::ZERO {
             return None;
         }
-        let density = local.z * FRAC_1_PI;
-        let lobes = Lobes { diffuse: self.diffuse * density, glossy: Vec3::ZERO };
-        Some(Scattered { direction, weight: self.diffuse, lobes, kind: Kind::Spread(density) })
+        let pdf = local.z * FRAC_1_PI;
+        let lobes = Lobes { diffuse: self.diffuse * pdf, glossy: Vec3::ZERO };
+        Some(BsdfSample { direction, weight: self.diffuse, lobes, kind: ScatterKind::NonSpecular(pdf) })
     }
 }
 
@@ -227,20 +227,20 @@ impl<'a> Layers<'a> {
             }
             _ => None,
         };
-        let (mut top, mut taken, mut mean_taken) = (0.0, 0.0, 0.0);
+        let (mut top, mut coat_albedo, mut mean_coat_albedo) = (0.0, 0.0, 0.0);
         if let Some((_, albedo)) = &lobe {
             let share = albedo.row.directional(wo.z);
-            (top, taken) = (s.f0.max_element() * share.x + s.f90 * share.y, albedo.of(share));
-            mean_taken = albedo.of(albedo.row.average());
+            (top, coat_albedo) = (s.f0.max_element() * share.x + s.f90 * share.y, albedo.of(share));
+            mean_coat_albedo = albedo.of(albedo.row.average());
         } else if has_top {
             top = ggx::schlick(s.f0, s.f90, wo.z).max_element();
-            taken = ggx::schlick(Vec3::splat(s.dielectric_f0), s.f90, wo.z).x;
+            coat_albedo = ggx::schlick(Vec3::splat(s.dielectric_f0), s.f90, wo.z).x;
             // The cosine-weighted mean of Schlick's fifth power is 1/21.
-            mean_taken = s.dielectric_f0 + (s.f90 - s.dielectric_f0) / 21.0;
+            mean_coat_albedo = s.dielectric_f0 + (s.f90 - s.dielectric_f0) / 21.0;
         }
-        let left_over = (1.0 - taken).max(0.0) / (1.0 - mean_taken).max(1e-3);
+        let left_over = (1.0 - coat_albedo).max(0.0) / (1.0 - mean_coat_albedo).max(1e-3);
         // Choose among the layers by what they send back.
-        let diffuse = s.diffuse.max_element() * (1.0 - taken);
+        let diffuse = s.diffuse.max_element() * (1.0 - coat_albedo);
         let through = s.through(upright);
         let sum = diffuse + top + through.max_element();
         let shares = if sum > 0.0 { [diffuse / sum, top / sum] } else { [0.0; 2] };
@@ -248,16 +248,16 @@ impl<'a> Layers<'a> {
     }
 
     fn eval(&self, direction: Vec3, cosine: f32) -> (Lobes, f32) {
-        let (mut lobes, mut density) = (Lobes::NONE, 0.0);
+        let (mut lobes, mut pdf) = (Lobes::NONE, 0.0);
         if self.wo.z <= 0.0 {
-            return (lobes, density);
+            return (lobes, pdf);
         }
         let s = &self.substance;
         let [diffuse, top] = self.shares;
         if diffuse > 0.0 {
-            let left = self.left_over * (1.0 - self.taken(cosine)).max(0.0);
+            let left = self.left_over * (1.0 - self.coat_albedo(cosine)).max(0.0);
             lobes.diffuse = s.diffuse * (left * cosine * FRAC_1_PI);
-            density += diffuse * cosine * FRAC_1_PI;
+            pdf += diffuse * cosine * FRAC_1_PI;
         }
         if let Some((lobe, _)) = &self.lobe
             && top > 0.0
@@ -267,13 +267,13 @@ impl<'a> Layers<'a> {
             let h = (self.wo + wi).normalize_or(Vec3::Z);
             let (value, chosen) = lobe.eval(wi, h);
             lobes.glossy = ggx::schlick(s.f0, s.f90, self.wo.dot(h)) * value;
-            density += top * chosen;
+            pdf += top * chosen;
         }
-        (lobes, density)
+        (lobes, pdf)
     }
 
     /// Share of light the dielectric top layer sends back.
-    fn taken(&self, cosine: f32) -> f32 {
+    fn coat_albedo(&self, cosine: f32) -> f32 {
         let s = &self.substance;
         match &self.lobe {
             Some((_, albedo)) => albedo.of(albedo.row.directional(cosine)),
@@ -282,7 +282,7 @@ impl<'a> Layers<'a> {
         }
     }
 
-    fn sample(&self, bsdf: &Bsdf, u: Vec2) -> Option<Scattered> {
+    fn sample(&self, bsdf: &Bsdf, u: Vec2) -> Option<BsdfSample> {
         let [diffuse, top] = self.shares;
         let frame = [self.tangents[0], self.tangents[1], bsdf.normal];
         // A part of the square for each layer, stretched to the whole.
@@ -297,24 +297,25 @@ impl<'a> Layers<'a> {
             return self.pass_through(&frame);
         };
         let direction = from_local(&frame, local);
-        let (lobes, density) = bsdf.eval(direction);
-        if !(density > 0.0 && density.is_finite()) {
+        let (lobes, pdf) = bsdf.eval(direction);
+        if !(pdf > 0.0 && pdf.is_finite()) {
             return None;
         }
-        Some(Scattered { direction, weight: lobes.sum() / density, lobes, kind: Kind::Spread(density) })
+        Some(BsdfSample { direction, weight: lobes.sum() / pdf, lobes, kind: ScatterKind::NonSpecular(pdf) })
     }
 
-    fn reflect(&self, frame: &[Vec3; 3], geometric: Vec3) -> Option<Scattered> {
+    fn reflect(&self, frame: &[Vec3; 3], geometric: Vec3) -> Option<BsdfSample> {
         let direction = from_local(frame, Vec3::new(-self.wo.x, -self.wo.y, self.wo.z));
         let weight = ggx::schlick(self.substance.f0, self.substance.f90, self.wo.z) / self.shares[1];
-        let scattered = Scattered { direction, weight, lobes: Lobes::NONE, kind: Kind::Mirrored };
+        let scattered = BsdfSample { direction, weight, lobes: Lobes::NONE, kind: ScatterKind::Mirror };
         (direction.dot(geometric) > 0.0).then_some(scattered)
     }
 
-    fn pass_through(&self, frame: &[Vec3; 3]) -> Option<Scattered> {
+    fn pass_through(&self, frame: &[Vec3; 3]) -> Option<BsdfSample> {
         let share = 1.0 - self.shares[0] - self.shares[1];
         let direction = -from_local(frame, self.wo);
-        let scattered = Scattered { direction, weight: self.through / share, lobes: Lobes::NONE, kind: Kind::Through };
+        let scattered =
+            BsdfSample { direction, weight: self.through / share, lobes: Lobes::NONE, kind: ScatterKind::Pane };
         (share > 0.0 && self.through != Vec3::ZERO).then_some(scattered)
     }
 }
@@ -338,9 +339,9 @@ impl<'a> TopAlbedo<'a> {
 
 /// A shading normal that the viewer would see from behind is tilted until it is seen from the side.
 fn face_viewer(normal: Vec3, wo: Vec3) -> Vec3 {
-    const LEAST: f32 = 1e-3;
+    const MIN_COSINE: f32 = 1e-3;
     let cosine = normal.dot(wo);
-    if cosine >= LEAST { normal } else { (normal + wo * (LEAST - cosine)).normalize_or(wo) }
+    if cosine >= MIN_COSINE { normal } else { (normal + wo * (MIN_COSINE - cosine)).normalize_or(wo) }
 }
 
 /// By the cosine: a point of the unit disc, raised to the hemisphere (Malley).

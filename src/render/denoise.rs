@@ -70,7 +70,7 @@ const FACING: f32 = 0.02;
 /// Squared difference in albedo that does the same.
 const COLOUR: f32 = 0.02;
 /// Albedos count as at least this much, so that lamps and black things keep their light.
-const LEAST_ALBEDO: f32 = 0.02;
+const MIN_ALBEDO: f32 = 0.02;
 /// Side of the squares in which the bias is measured.
 const SQUARE: usize = 8;
 
@@ -116,7 +116,7 @@ fn filtered(half: &Image, variance: &Image, guide: &[f32], strength: f32, job: J
     exec::for_rows(&mut image.data, 3 * width, job.part(0.94, 1.0), |y, row| {
         let (light, guide) = (&light[y * LIGHT * width..], &guide[y * GUIDE * width..]);
         for (x, out) in row.chunks_exact_mut(3).enumerate() {
-            (0..3).for_each(|c| out[c] = light[c * width + x] * guide[c * width + x].max(LEAST_ALBEDO));
+            (0..3).for_each(|c| out[c] = light[c * width + x] * guide[c * width + x].max(MIN_ALBEDO));
         }
     })?;
     Ok(image)
@@ -144,7 +144,7 @@ fn light(half: &Image, variance: &Image, guide: &[f32], job: Job) -> Result<Vec<
     let mut out = try_vec(LIGHT * width * height, 0.0f32)?;
     exec::for_rows(&mut out, LIGHT * width, job, |y, row| {
         for x in 0..width {
-            let albedo: Vec3 = [0, 1, 2].map(|c| guide[(y * GUIDE + c) * width + x].max(LEAST_ALBEDO)).into();
+            let albedo: Vec3 = [0, 1, 2].map(|c| guide[(y * GUIDE + c) * width + x].max(MIN_ALBEDO)).into();
             let colour = half.rgb(x, y) / albedo;
             // The channels of a path rise and fall together, so their errors add up.
             let error = variance.rgb(x, y).map(f32::sqrt) / albedo;

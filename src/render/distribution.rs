@@ -40,7 +40,7 @@ impl Distribution {
         self.cumulative.last().copied().unwrap_or(0.0)
     }
 
-    pub fn probability(&self, index: usize) -> f64 {
+    pub fn pmf(&self, index: usize) -> f64 {
         let before = if index == 0 { 0.0 } else { self.cumulative[index - 1] };
         if self.total() > 0.0 { (self.cumulative[index] - before) / self.total() } else { 0.0 }
     }
@@ -91,15 +91,15 @@ mod tests {
             counts[index] += 1;
         }
         assert_eq!(counts, [0, 3000, 0, 1000, 4000, 0]);
-        assert_eq!(table.probability(4), 0.5);
+        assert_eq!(table.pmf(4), 0.5);
         assert_eq!(table.sample(0.0).0, 1);
         assert_eq!(table.sample(1.0 - 1e-16).0, 4);
         // There and back.
         for i in 0..1000 {
             let u = f64::from(i) / 1000.0;
             let (index, rest) = table.sample(u);
-            let before: f64 = (0..index).map(|j| table.probability(j)).sum();
-            assert!((before + rest * table.probability(index) - u).abs() < 1e-12, "{u}");
+            let before: f64 = (0..index).map(|j| table.pmf(j)).sum();
+            assert!((before + rest * table.pmf(index) - u).abs() < 1e-12, "{u}");
         }
     }
 }

@@ -56,13 +56,13 @@ impl EnvironmentSampler {
                 let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
                 let angle = ((x as f64 + across) / width as f64 - 0.5) as f32 * TAU;
                 let direction = Vec3::new(sine * angle.sin(), cosine, -sine * angle.cos());
-                (direction, self.pixel_density(x, y))
+                (direction, self.pixel_pdf(x, y))
             }
         }
     }
 
     /// The density with which [`EnvironmentSampler::sample`] chooses a unit direction.
-    pub fn density(&self, direction: Vec3) -> f32 {
+    pub fn pdf(&self, direction: Vec3) -> f32 {
         match self {
             Self::Constant => 1.0 / (4.0 * PI),
             Self::Image { columns, .. } => {
@@ -70,17 +70,17 @@ impl EnvironmentSampler {
                 let uv = equirectangular(direction);
                 let x = ((uv.x * width as f32) as usize).min(width - 1);
                 let y = ((uv.y * height as f32) as usize).min(height - 1);
-                self.pixel_density(x, y)
+                self.pixel_pdf(x, y)
             }
         }
     }
 
-    fn pixel_density(&self, x: usize, y: usize) -> f32 {
+    fn pixel_pdf(&self, x: usize, y: usize) -> f32 {
         match self {
             Self::Constant => 1.0 / (4.0 * PI),
             Self::Image { rows, columns } => {
                 let solid_angle = band_solid_angle(y, columns.len()) / columns[y].len() as f64;
-                (rows.probability(y) * columns[y].probability(x) / solid_angle) as f32
+                (rows.pmf(y) * columns[y].pmf(x) / solid_angle) as f32
             }
         }
     }
@@ -155,9 +155,9 @@ mod tests {
             let mut rng = Rng::new(31, &[]);
             let mut disagreed = 0;
             for _ in 0..20_000 {
-                let (direction, density) = sampler.sample(rng.next_f64(), rng.next_f32());
+                let (direction, pdf) = sampler.sample(rng.next_f64(), rng.next_f32());
                 assert!((direction.length() - 1.0).abs() < 1e-5);
-                disagreed += usize::from((sampler.density(direction) / density - 1.0).abs() > 1e-4);
+                disagreed += usize::from((sampler.pdf(direction) / pdf - 1.0).abs() > 1e-4);
             }
             // Only directions within rounding of a pixel's border.
             assert!(disagreed < 20, "{disagreed}");
@@ -180,7 +180,7 @@ mod tests {
             let expected: Vec<f64> = (0..width * height)
                 .map(|i| {
                     let solid_angle = band_solid_angle(i / width, height) / width as f64;
-                    f64::from(sampler.pixel_density(i % width, i / width)) * solid_angle * f64::from(n)
+                    f64::from(sampler.pixel_pdf(i % width, i / width)) * solid_angle * f64::from(n)
                 })
                 .collect();
             assert_follows(&expected, &counts, 4, &format!("{width} x {height}"));
@@ -210,11 +210,11 @@ mod tests {
                 let row = (d.y.clamp(-1.0, 1.0).acos() / std::f64::consts::PI * height as f64).min(height as f64 - 1.0);
                 let (top, bottom) = polar_cosines(row as usize, height);
                 let within = (d.y - top) / (bottom - top);
-                let back = running(rows, row as usize) + within * rows.probability(row as usize);
+                let back = running(rows, row as usize) + within * rows.pmf(row as usize);
                 let table = &columns[row as usize];
                 let column = (0.5 + d.x.atan2(-d.z) / std::f64::consts::TAU) * table.len() as f64;
                 let at = (column as usize).min(table.len() - 1);
-                let across = running(table, at) + (column - at as f64) * table.probability(at);
+                let across = running(table, at) + (column - at as f64) * table.pmf(at);
                 // As far as a direction in f32 tells; one within rounding of a border counts for the next pixel.
                 let tolerance = 1e-4;
                 assert!((back - u).abs() < tolerance, "{u} became {d}, and that {back}");
@@ -226,7 +226,7 @@ mod tests {
 
     /// The share of a table's weight before an entry.
     fn running(table: &Distribution, entry: usize) -> f64 {
-        (0..entry).map(|i| table.probability(i)).sum()
+        (0..entry).map(|i| table.pmf(i)).sum()
     }
 
     #[test]
@@ -236,18 +236,18 @@ mod tests {
             let (sampler, mean) = EnvironmentSampler::build(&environment).unwrap().unwrap();
             let mut rng = Rng::new(32, &[]);
             let n = 400_000;
-            let (mut density, mut light, mut sampled) = (0.0, 0.0, 0.0);
+            let (mut pdf, mut light, mut sampled) = (0.0, 0.0, 0.0);
             for _ in 0..n {
                 let cosine = 1.0 - 2.0 * rng.next_f64();
                 let (sine, angle) = ((1.0 - cosine * cosine).sqrt(), f64::from(TAU) * rng.next_f64());
                 let d = DVec3::new(sine * angle.cos(), cosine, sine * angle.sin()).as_vec3();
                 let sphere = f64::from(4.0 * PI) / f64::from(n);
-                density += f64::from(sampler.density(d)) * sphere;
+                pdf += f64::from(sampler.pdf(d)) * sphere;
                 light += f64::from(mean_channel(radiance(&environment, d))) * sphere;
-                let (d, density) = sampler.sample(rng.next_f64(), rng.next_f32());
-                sampled += f64::from(mean_channel(radiance(&environment, d)) / density) / f64::from(n);
+                let (d, pdf) = sampler.sample(rng.next_f64(), rng.next_f32());
+                sampled += f64::from(mean_channel(radiance(&environment, d)) / pdf) / f64::from(n);
             }
-            assert!((density - 1.0).abs() < 0.03, "{density}");
+            assert!((pdf - 1.0).abs() < 0.03, "{pdf}");
             assert!((sampled / light - 1.0).abs() < 0.05, "{sampled} and {light}");
             assert!((mean * f64::from(4.0 * PI) / light - 1.0).abs() < 0.05);
         }

@@ -70,7 +70,7 @@ impl Facet {
     }
 
     /// The same, to be looked at as if its normals bent it.
-    pub fn unanalysed(&self) -> Self {
+    pub fn without_analysis(&self) -> Self {
         Self { material: self.material | SMOOTH, ..*self }
     }
 

@@ -236,9 +236,9 @@ mod tests {
                 let (z, angle) = (z / cells as f32, ((i % cells) as f32 + 0.5) / cells as f32 * 2.0 * PI);
                 let r = (1.0 - z * z).sqrt();
                 let seen = v.dot(Vec3::new(r * angle.cos(), r * angle.sin(), z)).max(0.0);
-                let density = f64::from(2.0 * seen / (PI * (1.0 + v.z)));
+                let pdf = f64::from(2.0 * seen / (PI * (1.0 + v.z)));
                 expected[i / cells / fine * side + i % cells / fine] +=
-                    density * f64::from(2.0 * PI) / (cells * cells) as f64 * f64::from(n);
+                    pdf * f64::from(2.0 * PI) / (cells * cells) as f64 * f64::from(n);
             }
             let mut counts = vec![0.0; side * side];
             for _ in 0..n {

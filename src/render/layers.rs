@@ -5,11 +5,11 @@
 
 use super::LightSource;
 use super::aov::{Aov, Surfaces};
-use super::bsdf::{Kind, Lobes};
-use super::lpe::{EmitterAs, Expression, Table, Trail};
-use super::path::{Found, Observer, Seen};
-use super::shared::{MOST, Scratch};
-use super::tape::Told;
+use super::bsdf::{Lobes, ScatterKind};
+use super::lpe::{Automaton, EmitterAs, Expression, Trail};
+use super::path::{Observer, PrimaryHit, Strategy};
+use super::shared::{MAX_SHARED, Scratch};
+use super::tape::LpeTape;
 use super::world::{Pane, World};
 use crate::error::{Error, Result};
 use crate::exec;
@@ -23,8 +23,8 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 pub type Kept<'a> = MutexGuard<'a, Vec<f32>>;
 
 /// Longest name of a layer, and the most layers.
-const LONGEST_NAME: usize = 64;
-const MOST_LAYERS: usize = 1024;
+const MAX_NAME_BYTES: usize = 64;
+const MAX_LAYERS: usize = 1024;
 
 /// What to render beside the main image; nothing by default.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -44,9 +44,9 @@ impl Outputs {
     /// characters; an expression that is none.
     pub fn add(&mut self, name: &str, expression: &str) -> Result<()> {
         let unfit = |c: char| c == '.' || c == '"' || c.is_control();
-        if name.is_empty() || name.len() > LONGEST_NAME || name.contains(unfit) {
+        if name.is_empty() || name.len() > MAX_NAME_BYTES || name.contains(unfit) {
             return Err(Error::argument(format!(
-                "the layer's name is {name:?}; it must have 1 to {LONGEST_NAME} bytes, without dots, quotes or control \
+                "the layer's name is {name:?}; it must have 1 to {MAX_NAME_BYTES} bytes, without dots, quotes or control \
                  characters"
             )));
         }
@@ -54,8 +54,8 @@ impl Outputs {
         if taken.chain(["Combined", "Variance"]).any(|n| n == name) {
             return Err(Error::argument(format!("there is a layer called {name:?} already; choose another name")));
         }
-        if self.expressions.len() >= MOST_LAYERS {
-            return Err(Error::argument(format!("there are {MOST_LAYERS} layers already; no more are possible")));
+        if self.expressions.len() >= MAX_LAYERS {
+            return Err(Error::argument(format!("there are {MAX_LAYERS} layers already; no more are possible")));
         }
         self.expressions.push((name.to_string(), Expression::parse(expression)?));
         Ok(())
@@ -80,7 +80,7 @@ pub struct Layers<'a> {
     /// The camera's place in the world's coordinates, and its unit viewing direction.
     eye: Vec3,
     forward: Vec3,
-    table: Table,
+    automaton: Automaton,
     /// Numbers kept of a pixel.
     width: usize,
     /// Each tile is in the hands of one worker at a time; the locks never wait.
@@ -100,7 +100,7 @@ impl<'a> Layers<'a> {
             return Ok(None);
         }
         let expressions: Vec<&Expression> = outputs.expressions.iter().map(|(_, e)| e).collect();
-        let table = Table::new(world.scene(), &expressions, outputs.emitter_as)?;
+        let automaton = Automaton::new(world.scene(), &expressions, outputs.emitter_as)?;
         let surfaces = 1 + outputs.aovs.iter().map(|a| a.kept()).sum::<usize>();
         let width = 3 * expressions.len() + if outputs.aovs.is_empty() { 0 } else { surfaces };
         let mut kept = try_with_capacity(tiles)?;
@@ -108,7 +108,7 @@ impl<'a> Layers<'a> {
             kept.push(Mutex::new(try_vec(width * tile_pixels, 0.0)?));
         }
         let (eye, forward) = (world.from_scene(camera.position), camera.forward.normalize_or_zero());
-        Ok(Some(Self { world, outputs, eye, forward, table, width, tiles: kept }))
+        Ok(Some(Self { world, outputs, eye, forward, automaton, width, tiles: kept }))
     }
 
     /// What is kept of a tile.
@@ -159,20 +159,20 @@ impl<'a> Layers<'a> {
         Recorder {
             layers: self,
             beauty: Vec3::ZERO,
-            trail: Trail::new(&self.table),
-            sums: vec![DVec3::ZERO; self.table.lists().len()],
+            trail: Trail::new(&self.automaton),
+            sums: vec![DVec3::ZERO; self.automaton.lists().len()],
             surfaces: Surfaces::default(),
         }
     }
 
     /// One for each path of those that share what they find.
     pub fn recorders(&self) -> Vec<Recorder<'_>> {
-        (0..MOST).map(|_| self.recorder()).collect()
+        (0..MAX_SHARED).map(|_| self.recorder()).collect()
     }
 
     /// Scratch memory for what is told to several of them.
-    pub fn scratch(&self) -> Scratch<Told<'_>> {
-        Scratch::new(Told::new(self.world, &self.table))
+    pub fn scratch(&self) -> Scratch<LpeTape<'_>> {
+        Scratch::new(LpeTape::new(self.world, &self.automaton))
     }
 
     /// The images so far; `places` has for each pixel its tile, its number there, and its samples.
@@ -242,9 +242,9 @@ impl Recorder<'_> {
 
     /// Ends the path; returns what it has brought to the main image. One that is no finite number counts nowhere.
     #[inline]
-    pub fn finish(&mut self) -> Vec3 {
+    pub fn end_path(&mut self) -> Vec3 {
         if self.beauty.is_finite() {
-            self.trail.finish(|list, light| self.sums[list] += light.as_dvec3());
+            self.trail.end(|list, light| self.sums[list] += light.as_dvec3());
         }
         self.beauty
     }
@@ -256,7 +256,7 @@ impl Recorder<'_> {
             kept[pixel * layers.width..][..layers.width].split_at_mut(3 * layers.outputs.expressions.len());
         let (colours, _) = colours.as_chunks_mut::<3>();
         // What a list of expressions shares is added to each of them.
-        let lists = layers.table.lists().iter().zip(sums);
+        let lists = layers.automaton.lists().iter().zip(sums);
         for (list, sum) in lists.filter(|(_, sum)| **sum != DVec3::ZERO) {
             let light = sum.as_vec3();
             for &expression in list {
@@ -282,7 +282,7 @@ impl Recorder<'_> {
         let Self { layers, sums, .. } = self;
         let (colours, surfaces) = totals.split_at_mut(3 * layers.outputs.expressions.len());
         let (colours, _) = colours.as_chunks_mut::<3>();
-        let lists = layers.table.lists().iter().zip(sums);
+        let lists = layers.automaton.lists().iter().zip(sums);
         for (list, sum) in lists.filter(|(_, sum)| **sum != DVec3::ZERO) {
             for &expression in list {
                 let total = &mut colours[usize::from(expression)];
@@ -306,29 +306,29 @@ impl Recorder<'_> {
 
 impl Observer for Recorder<'_> {
     #[inline(always)]
-    fn add(&mut self, source: LightSource, importance: Vec3, emission: Vec3, found: Found) {
+    fn add(&mut self, source: LightSource, importance: Vec3, emission: Vec3, strategy: Strategy) {
         let contribution = importance * emission;
         self.beauty += contribution;
-        self.trail.add(self.layers.world, contribution.into(), source, found);
+        self.trail.add(self.layers.world, contribution.into(), source, strategy);
     }
 
     #[inline]
-    fn meet(&mut self, seen: impl FnOnce() -> Seen) {
+    fn primary_hit(&mut self, seen: impl FnOnce() -> PrimaryHit) {
         if self.layers.outputs.aovs.is_empty() {
             return;
         }
         let seen = seen();
         let depth = (seen.position - self.layers.eye).dot(self.layers.forward);
-        self.surfaces.meet(self.layers.world, &seen, depth);
+        self.surfaces.add(self.layers.world, &seen, depth);
     }
 
     #[inline]
-    fn scatter(&mut self, mesh: u32, kind: Kind, lobes: Lobes) {
+    fn scatter(&mut self, mesh: u32, kind: ScatterKind, lobes: Lobes) {
         self.trail.scatter(mesh, kind, lobes);
     }
 
     #[inline]
     fn panes(&mut self) -> Option<&mut Vec<Pane>> {
-        self.trail.wants_panes()
+        self.trail.panes_wanted()
     }
 }

@@ -17,13 +17,13 @@
 mod aov;
 mod ballot;
 mod bsdf;
+mod compiled_material;
 pub mod denoise;
 mod distribution;
 mod emissive;
 mod environment;
 mod facet;
 mod film;
-mod finish;
 mod ggx;
 pub mod illuminance;
 mod layers;
@@ -40,7 +40,7 @@ mod vertex;
 mod world;
 
 pub use aov::Aov;
-pub use film::probe::{self, Probe};
+pub use film::pilot::{self, Pilot};
 pub use layers::{Layer, Outputs};
 pub use requirements::Requirements;
 pub use world::World;
@@ -49,7 +49,7 @@ use crate::error::{Error, Result, check_range};
 use crate::image::{Image, MAX_SIDE};
 use crate::job::{Job, Monitor};
 use crate::scene::Camera;
-use film::{Canvas, Clock, Plan};
+use film::{AdaptiveSampler, Canvas, Clock};
 use glam::{Vec2, Vec3};
 use sampler::Sampler;
 use vertex::Vertex;
@@ -226,7 +226,7 @@ impl Film {
 /// added to be worth its time. To be called on the library's own pool.
 ///
 /// Without a target the estimate of each pixel is unbiased. With one, where the next paths go depends on those before, and
-/// pixels whose bright paths are rare come out too dark by a small part of their standard error (see `film::plan`).
+/// pixels whose bright paths are rare come out too dark by a small part of their standard error (see `film::adaptive`).
 ///
 /// # Errors
 /// Parameters out of range, a camera that cannot see, no memory; cancelled, when the film last published stays good.
@@ -238,30 +238,30 @@ pub fn run(world: &World, camera: &Camera, params: &Params, job: Job, publish: &
     let mut clock = Clock::start(params.time_budget_ms);
     let guided = preview::guided(params);
     let mut canvas = Canvas::new(world, camera, &guided)?;
-    let mut plan = Plan::new(params);
-    let mut show = |canvas: &Canvas, clock: &mut Clock| {
-        clock.show(|| {
+    let mut plan = AdaptiveSampler::new(params);
+    let mut publish_film = |canvas: &Canvas, clock: &mut Clock| {
+        clock.publish(|| {
             let mut film = canvas.film(always.job())?;
-            preview::finish(&mut film, canvas, params, always.job())?;
+            preview::add_preview(&mut film, canvas, params, always.job())?;
             publish(&film);
             Ok(film)
         })
     };
-    let (mut shown, mut done) = (None, 0.0);
+    let (mut published, mut done) = (None, 0.0);
     while let Some(pass) = plan.next(&canvas, &clock, job.part(done, done))? {
         let next = canvas.progress(&pass, params.samples).clamp(done, 1.0);
         let cut = clock.sample(|deadline| canvas.extend(&pass, deadline, job.part(done, next)));
         done = next.max(clock.spent());
         job.report(done);
-        shown = None;
-        if clock.is_worth_showing() || cut.is_err() {
-            shown = Some(show(&canvas, &mut clock)?);
+        published = None;
+        if clock.is_publish_due() || cut.is_err() {
+            published = Some(publish_film(&canvas, &mut clock)?);
         }
         cut?;
     }
-    let film = match shown {
+    let film = match published {
         Some(film) => film,
-        None => show(&canvas, &mut clock)?,
+        None => publish_film(&canvas, &mut clock)?,
     };
     job.report(1.0);
     Ok(film)

@@ -20,7 +20,7 @@ pub fn guided(params: &Params) -> Params {
 }
 
 /// Adds the preview to a film made with [`guided`] parameters, and leaves the outputs that were asked for.
-pub fn finish(film: &mut Film, canvas: &Canvas, params: &Params, job: Job) -> Result<()> {
+pub fn add_preview(film: &mut Film, canvas: &Canvas, params: &Params, job: Job) -> Result<()> {
     if params.preview > 0.0 {
         let guide = |aov: Aov| {
             let layer = film.layers.iter().find(|l| l.expression.is_none() && l.name == aov.name());

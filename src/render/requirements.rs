@@ -6,7 +6,7 @@
 //! to renders that ask for it (`bounce_error`): otherwise paths end by chance alone.
 
 use super::bsdf::{MIRROR_ROUGHNESS, Substance};
-use super::finish::{self, Finish};
+use super::compiled_material::{self, CompiledMaterial};
 use super::ggx::{self, AlbedoTable};
 use crate::scene::{AlphaMode, Environment, Material, PunctualLight, Scene, TextureRef};
 use glam::{Vec3, Vec4};
@@ -124,27 +124,27 @@ impl Range {
 }
 
 /// Looks at all of a scene whose indices have been checked; gives its requirements and how to look at each material.
-pub fn analyse(scene: &Scene, table: Option<&AlbedoTable>) -> (Requirements, Vec<Finish>) {
+pub fn analyse(scene: &Scene, table: Option<&AlbedoTable>) -> (Requirements, Vec<CompiledMaterial>) {
     let ranges: Vec<Range> = scene.textures.iter().map(|t| range_of(&t.image)).collect();
     let range = |t: &Option<TextureRef>| t.as_ref().map_or(Range::ONE, |t| ranges[t.texture]);
     let mut used = vec![false; scene.materials.len()];
     scene.meshes.iter().filter(|m| !m.triangles.is_empty()).for_each(|m| used[m.material] = true);
     let mut needed = Requirements { textures_given: scene.textures.len(), ..Requirements::default() };
     let mut varied = vec![false; scene.textures.len()];
-    let mut finishes = Vec::with_capacity(scene.materials.len());
+    let mut compiled_materials = Vec::with_capacity(scene.materials.len());
     for (index, material) in scene.materials.iter().enumerate() {
         let base = range(&material.base_color_texture);
         let layers = range(&material.metallic_roughness_texture);
         let emission = range(&material.emission_texture);
-        let finish = finish_of(material, base, layers, range(&material.normal_texture));
-        finishes.push(finish);
+        let compiled = compile_material(material, base, layers, range(&material.normal_texture));
+        compiled_materials.push(compiled);
         if !used[index] {
             continue;
         }
-        needed.alpha |= finish.partial;
-        needed.normal_maps |= finish.bumpy;
+        needed.alpha |= compiled.has_alpha;
+        needed.normal_maps |= compiled.has_normal_map;
         for substance in extremes(material, base, layers) {
-            needed.see(&substance);
+            needed.include(&substance);
             if substance.transmission != Vec3::ZERO && substance.roughness >= MIRROR_ROUGHNESS {
                 needed.frosted.get_or_insert(index);
             }
@@ -159,9 +159,9 @@ pub fn analyse(scene: &Scene, table: Option<&AlbedoTable>) -> (Requirements, Vec
             needed.textured_surfaces |= !emission.is_constant();
         }
         for (texture, counts) in [
-            (&material.base_color_texture, finish.varies || finish.partial),
-            (&material.metallic_roughness_texture, finish.varies),
-            (&material.normal_texture, finish.bumpy),
+            (&material.base_color_texture, compiled.is_textured || compiled.has_alpha),
+            (&material.metallic_roughness_texture, compiled.is_textured),
+            (&material.normal_texture, compiled.has_normal_map),
             (&material.emission_texture, material.emission.max_element() > 0.0),
         ] {
             if let Some(t) = texture {
@@ -191,11 +191,11 @@ pub fn analyse(scene: &Scene, table: Option<&AlbedoTable>) -> (Requirements, Vec
         Some(Environment::Constant(radiance)) => radiance.max_element() > 0.0,
         Some(Environment::Image(image)) => range_of(image).high.truncate().max_element() > 0.0,
     };
-    (needed, finishes)
+    (needed, compiled_materials)
 }
 
 impl Requirements {
-    fn see(&mut self, s: &Substance) {
+    fn include(&mut self, s: &Substance) {
         self.diffuse |= s.diffuse != Vec3::ZERO;
         self.glass |= s.transmission != Vec3::ZERO;
         self.mirror |= s.f90 > 0.0 && s.roughness < MIRROR_ROUGHNESS;
@@ -217,12 +217,12 @@ fn range_of(image: &crate::image::Image) -> Range {
     Range { low, high }
 }
 
-fn finish_of(material: &Material, base: Range, layers: Range, normals: Range) -> Finish {
-    let least = (material.alpha * base.low.w).min(material.alpha * base.high.w);
-    let partial = match material.alpha_mode {
+fn compile_material(material: &Material, base: Range, layers: Range, normals: Range) -> CompiledMaterial {
+    let min_alpha = (material.alpha * base.low.w).min(material.alpha * base.high.w);
+    let has_alpha = match material.alpha_mode {
         AlphaMode::Opaque => false,
-        AlphaMode::Mask(cutoff) => least < cutoff,
-        AlphaMode::Blend => least < 1.0,
+        AlphaMode::Mask(cutoff) => min_alpha < cutoff,
+        AlphaMode::Blend => min_alpha < 1.0,
     };
     // A neutral map has x and y of 1/2, which mean 0, and a positive z.
     let bends = (normals.low.truncate() * 2.0 - 1.0).abs().max((normals.high.truncate() * 2.0 - 1.0).abs());
@@ -231,13 +231,13 @@ fn finish_of(material: &Material, base: Range, layers: Range, normals: Range) ->
     let layers_vary = (layers.low.y, layers.low.z) != (layers.high.y, layers.high.z);
     let colour = material.base_color * base.high.truncate();
     let (metallic, roughness) = (material.metallic * layers.high.z, material.roughness * layers.high.y);
-    Finish {
-        substance: finish::substance(material, colour, metallic, roughness),
-        varies: base_varies || layers_vary,
+    CompiledMaterial {
+        substance: compiled_material::substance(material, colour, metallic, roughness),
+        is_textured: base_varies || layers_vary,
         layered: extremes(material, base, layers).any(|s| s.f90 > 0.0 || s.transmission != Vec3::ZERO),
-        bumpy: material.normal_texture.is_some() && !is_neutral,
-        partial,
-        see_through: partial || material.transmission > 0.0,
+        has_normal_map: material.normal_texture.is_some() && !is_neutral,
+        has_alpha,
+        lets_light_through: has_alpha || material.transmission > 0.0,
     }
 }
 
@@ -250,7 +250,7 @@ fn extremes(material: &Material, base: Range, layers: Range) -> impl Iterator<It
     let colour = (material.base_color * base.low.truncate()).max(material.base_color * base.high.truncate());
     let metallic = ends(material.metallic, layers.low.z, layers.high.z);
     let roughness = ends(material.roughness, layers.low.y, layers.high.y);
-    metallic.into_iter().flat_map(move |m| roughness.map(|r| finish::substance(material, colour, m, r)))
+    metallic.into_iter().flat_map(move |m| roughness.map(|r| compiled_material::substance(material, colour, m, r)))
 }
 
 /// The largest share of light a substance sends on, over all directions.

@@ -9,9 +9,9 @@
 //! Only surfaces that spread light take part, at both ends: a mirror sends to each pixel something else. All others'
 //! paths go on alone.
 
-use super::bsdf::{Bsdf, Kind, Lobes};
+use super::bsdf::{Bsdf, Lobes, ScatterKind};
 use super::light::{LightSample, Receiver};
-use super::path::{self, Found, Leg, Length, Observer, Seen};
+use super::path::{self, Leg, Observer, PathLength, PrimaryHit, Strategy};
 use super::sampler::Sampler;
 use super::vertex::{Surface, Vertex};
 use super::world::{Pane, World};
@@ -19,10 +19,10 @@ use crate::scene::accel::Ray;
 use glam::Vec3;
 
 /// Most paths that share.
-pub const MOST: usize = 8;
+pub const MAX_SHARED: usize = 8;
 
 /// An observer of several paths that begin with the same first leg.
-pub trait Witness: Observer {
+pub trait ReplayObserver: Observer {
     type Tape: Tape;
 
     /// Goes back to the eye, from where the path leaves on another way. What it has brought stays.
@@ -75,44 +75,44 @@ pub struct Start {
     /// Of unit direction.
     pub ray: Ray,
     /// Chooses the light for the first surface, as a point of the unit square.
-    pub lighting: (f64, f32),
-    pub length: Length,
+    pub light_u: (f64, f32),
+    pub length: PathLength,
     pub sampler: Sampler,
 }
 
 /// The first surface a path meets, where it takes part.
-struct Sight<'w> {
+struct PrimaryVertex<'w> {
     vertex: Vertex,
     bsdf: Bsdf<'w>,
-    /// What light from the surfaces it sees is worth, as [`Length::worth`] has it.
-    worth: Vec3,
-    departure: Option<Departure>,
+    /// What light from the surfaces it sees is worth, as [`PathLength::roulette_weight`] has it.
+    roulette_weight: Vec3,
+    continuation: Option<Continuation>,
 }
 
 /// Where a path goes from there.
-struct Departure {
+struct Continuation {
     direction: Vec3,
     lobes: Lobes,
-    density: f32,
+    pdf: f32,
     leg: Leg,
 }
 
 /// A point that a path has come to from there, and the light it has for all that see it.
-struct Find<'w> {
+struct SecondaryVertex<'w> {
     vertex: Vertex,
-    light: Light<'w>,
+    light: SecondaryLight<'w>,
 }
 
-enum Light<'w> {
+enum SecondaryLight<'w> {
     /// It sends the same to all.
-    Alike,
+    ViewIndependent,
     /// What it sends depends on who sees it.
-    Turned {
+    ViewDependent {
         surface: Surface<'w>,
         /// A light, and what its emission counts for before it is scattered.
-        chosen: Option<(LightSample, Vec3)>,
+        light_sample: Option<(LightSample, Vec3)>,
         /// Direction and density with which the path goes on.
-        beyond: Option<(Vec3, f32)>,
+        continuation: Option<(Vec3, f32)>,
     },
 }
 
@@ -124,240 +124,280 @@ struct Viewer {
     direction: Vec3,
     lobes: Lobes,
     /// Density per steradian with which it could have found it.
-    density: f32,
+    pdf: f32,
     /// Steradians it has of a square metre there.
-    angle: f32,
+    solid_angle_per_area: f32,
 }
 
 /// Makes one estimate of the radiance along each of some rays. Each witness is told of its own.
-pub fn trace<W: Witness>(world: &World, starts: &mut [Start], witnesses: &mut [W], scratch: &mut Scratch<W::Tape>) {
-    let mut sights: [Option<Sight>; MOST] = [const { None }; MOST];
-    for ((sight, start), witness) in sights.iter_mut().zip(&mut *starts).zip(&mut *witnesses) {
-        *sight = look(world, start, witness);
+pub fn trace<W: ReplayObserver>(
+    world: &World,
+    starts: &mut [Start],
+    observers: &mut [W],
+    scratch: &mut Scratch<W::Tape>,
+) {
+    let mut primaries: [Option<PrimaryVertex>; MAX_SHARED] = [const { None }; MAX_SHARED];
+    for ((primary, start), observer) in primaries.iter_mut().zip(&mut *starts).zip(&mut *observers) {
+        *primary = trace_primary(world, start, observer);
     }
     // Light that any of them may see must not be given up because it means little to one.
-    let worth = sights.iter().flatten().map(|s| s.worth).fold(Vec3::ZERO, Vec3::max);
-    scratch.tape.expect(sights.iter().flatten().map(|s| (s.vertex.mesh, !s.bsdf.is_diffuse())));
+    let roulette_weight = primaries.iter().flatten().map(|s| s.roulette_weight).fold(Vec3::ZERO, Vec3::max);
+    scratch.tape.expect(primaries.iter().flatten().map(|s| (s.vertex.mesh, !s.bsdf.is_diffuse())));
     for number in 0..starts.len() {
-        let departure = sights[number].as_mut().and_then(|s| s.departure.take());
-        if let (Some(sight), Some(departure)) = (&sights[number], &departure)
-            && let Some(find) =
-                find(world, sight, departure, worth, &mut starts[number], &mut witnesses[number], scratch)
+        let continuation = primaries[number].as_mut().and_then(|s| s.continuation.take());
+        if let (Some(primary), Some(continuation)) = (&primaries[number], &continuation)
+            && let Some(secondary) = trace_secondary(
+                world,
+                primary,
+                continuation,
+                roulette_weight,
+                &mut starts[number],
+                &mut observers[number],
+                scratch,
+            )
         {
-            let viewers = Viewers::of(world, &find, number, departure, &sights);
-            viewers.tell(&find, &sights, witnesses, scratch);
+            let viewers = Viewers::of(world, &secondary, number, continuation, &primaries);
+            viewers.replay(&secondary, &primaries, observers, scratch);
         }
     }
 }
 
 /// Follows a path to the first surface; one that takes no part to its end.
-fn look<'w, W: Witness>(world: &'w World, start: &mut Start, witness: &mut W) -> Option<Sight<'w>> {
-    let Start { ray, lighting, length, sampler } = start;
-    let leg = Leg::from_eye(*ray, *lighting);
-    let (vertex, distance) = path::arrive(world, &leg, sampler, witness)?;
-    if length.most == 0 {
+fn trace_primary<'w, W: ReplayObserver>(
+    world: &'w World,
+    start: &mut Start,
+    observer: &mut W,
+) -> Option<PrimaryVertex<'w>> {
+    let Start { ray, light_u, length, sampler } = start;
+    let leg = Leg::from_eye(*ray, *light_u);
+    let (vertex, distance) = path::intersect(world, &leg, sampler, observer)?;
+    if length.max_bounces == 0 {
         return None;
     }
     let bsdf = vertex.bsdf(world, -leg.ray.direction);
     if !bsdf.is_shareable() {
-        if let Some(next) = path::go_on(world, &leg, &vertex, distance, 0, length, sampler, witness) {
-            path::walk(world, next, 1, *length, sampler, witness);
+        if let Some(next) = path::continue_path(world, &leg, &vertex, distance, 0, length, sampler, observer) {
+            path::walk(world, next, 1, *length, sampler, observer);
         }
         return None;
     }
-    witness.meet(|| Seen::new(&vertex, &bsdf, distance));
+    observer.primary_hit(|| PrimaryHit::new(&vertex, &bsdf, distance));
     let receiver = Receiver { position: vertex.position, normal: bsdf.normal() };
-    if let Some(light) = path::choose_light(world, &receiver, &bsdf, leg.lighting) {
-        path::add_light(world, &vertex, &bsdf, Vec3::ONE, &light, witness);
+    if let Some(light) = path::sample_light(world, &receiver, &bsdf, leg.light_u) {
+        path::add_direct_light(world, &vertex, &bsdf, Vec3::ONE, &light, observer);
     }
-    let departure = path::choose_direction(&bsdf, sampler).and_then(|(scattered, lighting)| {
-        let Kind::Spread(density) = scattered.kind else { return None };
+    let continuation = path::sample_direction(&bsdf, sampler).and_then(|(scattered, light_u)| {
+        let ScatterKind::NonSpecular(pdf) = scattered.kind else { return None };
         let (direction, throughput) = (scattered.direction, scattered.weight);
-        let rival = Some((receiver, density));
-        let leg = Leg { ray: vertex.ray(direction), from: vertex.id, throughput, rival, lighting };
+        let mis = Some((receiver, pdf));
+        let leg = Leg { ray: vertex.ray(direction), from: vertex.id, throughput, mis, light_u };
         let brings = throughput.is_finite() && throughput != Vec3::ZERO;
-        brings.then_some(Departure { direction, lobes: scattered.lobes, density, leg })
+        brings.then_some(Continuation { direction, lobes: scattered.lobes, pdf, leg })
     });
     let colour = bsdf.colour();
-    let worth = colour * *length.worth.get_or_insert_with(|| path::reciprocal(colour));
-    Some(Sight { vertex, bsdf, worth, departure })
+    let roulette_weight = colour * *length.roulette_weight.get_or_insert_with(|| path::reciprocal(colour));
+    Some(PrimaryVertex { vertex, bsdf, roulette_weight, continuation })
 }
 
 /// Follows a path on to what it finds next. What is its own alone the witness is told of: light it meets there, and all
 /// that comes of a point that takes no part.
-fn find<'w, W: Witness>(
+fn trace_secondary<'w, W: ReplayObserver>(
     world: &'w World,
-    sight: &Sight,
-    departure: &Departure,
-    worth: Vec3,
+    primary: &PrimaryVertex,
+    continuation: &Continuation,
+    roulette_weight: Vec3,
     start: &mut Start,
-    witness: &mut W,
+    observer: &mut W,
     scratch: &mut Scratch<W::Tape>,
-) -> Option<Find<'w>> {
-    let Departure { direction, lobes, density, leg } = departure;
+) -> Option<SecondaryVertex<'w>> {
+    let Continuation { direction, lobes, pdf, leg } = continuation;
     let Start { length, sampler, .. } = start;
-    witness.restart();
-    witness.scatter(sight.vertex.mesh, Kind::Spread(*density), *lobes);
-    let (vertex, distance) = path::arrive(world, leg, sampler, witness)?;
-    if length.most == 1 {
+    observer.restart();
+    observer.scatter(primary.vertex.mesh, ScatterKind::NonSpecular(*pdf), *lobes);
+    let (vertex, distance) = path::intersect(world, leg, sampler, observer)?;
+    if length.max_bounces == 1 {
         return None;
     }
     let surface = vertex.surface(world);
     let bsdf = surface.seen_from(-*direction);
-    if !bsdf.is_shareable() || !sees_for_sure(world, sight, &vertex) {
-        if let Some(next) = path::go_on(world, leg, &vertex, distance, 1, length, sampler, witness) {
-            path::walk(world, next, 2, *length, sampler, witness);
+    if !bsdf.is_shareable() || !is_surely_visible(world, primary, &vertex) {
+        if let Some(next) = path::continue_path(world, leg, &vertex, distance, 1, length, sampler, observer) {
+            path::walk(world, next, 2, *length, sampler, observer);
         }
         return None;
     }
     // The path from there on is told of as if it began there.
-    let length = Length { most: length.most, worth: Some(worth) };
-    let light = if bsdf.looks_alike() {
-        send_to_all(world, &vertex, &bsdf, leg.lighting, length, sampler, &mut scratch.tape)
+    let length = PathLength { max_bounces: length.max_bounces, roulette_weight: Some(roulette_weight) };
+    let light = if bsdf.is_view_independent() {
+        record_view_independent(world, &vertex, &bsdf, leg.light_u, length, sampler, &mut scratch.tape)
     } else {
-        send_to_each(world, &vertex, surface, &bsdf, leg.lighting, length, sampler, scratch)
+        record_view_dependent(world, &vertex, surface, &bsdf, leg.light_u, length, sampler, scratch)
     };
-    light.map(|light| Find { vertex, light })
+    light.map(|light| SecondaryVertex { vertex, light })
 }
 
 /// The light of a find that sends the same to all.
-fn send_to_all<'w, T: Tape>(
+fn record_view_independent<'w, T: Tape>(
     world: &World,
     vertex: &Vertex,
     bsdf: &Bsdf,
-    lighting: (f64, f32),
-    length: Length,
+    light_u: (f64, f32),
+    length: PathLength,
     sampler: &mut Sampler,
     tape: &mut T,
-) -> Option<Light<'w>> {
+) -> Option<SecondaryLight<'w>> {
     tape.begin();
-    if let Some(next) = path::scatter(world, vertex, bsdf, Vec3::ONE, None, lighting, sampler, tape) {
+    if let Some(next) = path::scatter(world, vertex, bsdf, Vec3::ONE, None, light_u, sampler, tape) {
         path::walk(world, next, 2, length, sampler, tape);
     }
-    tape.end().then_some(Light::Alike)
+    tape.end().then_some(SecondaryLight::ViewIndependent)
 }
 
 /// The light of a find that sends to each what is theirs.
-fn send_to_each<'w, T: Tape>(
+fn record_view_dependent<'w, T: Tape>(
     world: &World,
     vertex: &Vertex,
     surface: Surface<'w>,
     bsdf: &Bsdf,
-    lighting: (f64, f32),
-    length: Length,
+    light_u: (f64, f32),
+    length: PathLength,
     sampler: &mut Sampler,
     scratch: &mut Scratch<T>,
-) -> Option<Light<'w>> {
+) -> Option<SecondaryLight<'w>> {
     let Scratch { tape, panes } = scratch;
     tape.begin_behind(vertex.mesh);
     panes.clear();
     let receiver = Receiver { position: vertex.position, normal: bsdf.normal() };
-    let light = path::choose_light(world, &receiver, bsdf, lighting).filter(|l| l.emission != Vec3::ZERO);
-    let chosen = light.and_then(|light| {
-        let (lobes, density) = bsdf.eval(light.direction);
+    let light = path::sample_light(world, &receiver, bsdf, light_u).filter(|l| l.emission != Vec3::ZERO);
+    let light_sample = light.and_then(|light| {
+        let (lobes, pdf) = bsdf.eval(light.direction);
         if lobes.sum() == Vec3::ZERO {
             return None;
         }
-        let importance = path::reach(world, vertex, &light, density, Some(panes));
+        let importance = path::connection_weight(world, vertex, &light, pdf, Some(panes));
         (importance != Vec3::ZERO).then_some((light, importance))
     });
-    let beyond = path::choose_direction(bsdf, sampler).and_then(|(scattered, lighting)| {
-        let Kind::Spread(density) = scattered.kind else { return None };
+    let continuation = path::sample_direction(bsdf, sampler).and_then(|(scattered, light_u)| {
+        let ScatterKind::NonSpecular(pdf) = scattered.kind else { return None };
         let leg = Leg {
             ray: vertex.ray(scattered.direction),
             from: vertex.id,
             throughput: Vec3::ONE,
-            rival: Some((receiver, density)),
-            lighting,
+            mis: Some((receiver, pdf)),
+            light_u,
         };
-        let length = Length { worth: length.worth.map(|worth| worth * scattered.weight), ..length };
+        let length = PathLength {
+            roulette_weight: length.roulette_weight.map(|roulette_weight| roulette_weight * scattered.weight),
+            ..length
+        };
         path::walk(world, leg, 2, length, sampler, tape);
-        tape.end().then_some((scattered.direction, density))
+        tape.end().then_some((scattered.direction, pdf))
     });
-    let has_light = chosen.is_some() || beyond.is_some();
-    has_light.then_some(Light::Turned { surface, chosen, beyond })
+    let has_light = light_sample.is_some() || continuation.is_some();
+    has_light.then_some(SecondaryLight::ViewDependent { surface, light_sample, continuation })
 }
 
 /// Whether nothing stands between, not even what lets light pass: a path that came that way came by chance, or met it.
-fn sees(world: &World, from: &Vertex, to: &Vertex, direction: Vec3) -> bool {
+fn is_visible(world: &World, from: &Vertex, to: &Vertex, direction: Vec3) -> bool {
     let origin = from.off_surface(direction);
     let target = to.off_surface(-direction);
     world.is_clear(&Ray { origin, direction: target - origin, t_max: 1.0 }, [from.id, to.id])
 }
 
 /// The same of a point that was found from there: nothing is to be asked where all surfaces are solid.
-fn sees_for_sure(world: &World, sight: &Sight, found: &Vertex) -> bool {
-    let direction = found.position - sight.vertex.position;
-    !world.is_see_through() || sees(world, &sight.vertex, found, direction)
+fn is_surely_visible(world: &World, primary: &PrimaryVertex, secondary: &Vertex) -> bool {
+    let direction = secondary.position - primary.vertex.position;
+    !world.is_see_through() || is_visible(world, &primary.vertex, secondary, direction)
 }
 
 /// All that see a find.
 struct Viewers {
-    list: [Option<Viewer>; MOST],
+    list: [Option<Viewer>; MAX_SHARED],
     /// Sum of their densities per square metre.
-    density: f32,
+    area_pdf: f32,
 }
 
 impl Viewers {
-    fn of(world: &World, find: &Find, finder: usize, departure: &Departure, sights: &[Option<Sight>; MOST]) -> Self {
-        let surface = &find.vertex;
-        let angle = |from: &Vertex, cosine: f32| cosine.abs() / from.position.distance_squared(surface.position);
-        let cosine = surface.normal.dot(departure.direction);
+    fn of(
+        world: &World,
+        secondary: &SecondaryVertex,
+        owner: usize,
+        continuation: &Continuation,
+        primaries: &[Option<PrimaryVertex>; MAX_SHARED],
+    ) -> Self {
+        let surface = &secondary.vertex;
+        let solid_angle_per_area =
+            |from: &Vertex, cosine: f32| cosine.abs() / from.position.distance_squared(surface.position);
+        let cosine = surface.normal.dot(continuation.direction);
         let list = std::array::from_fn(|number| {
-            let sight = sights[number].as_ref()?;
-            if number == finder {
-                let Departure { direction, lobes, density, .. } = *departure;
-                return Some(Viewer { number, direction, lobes, density, angle: angle(&sight.vertex, cosine) });
+            let primary = primaries[number].as_ref()?;
+            if number == owner {
+                let Continuation { direction, lobes, pdf, .. } = *continuation;
+                return Some(Viewer {
+                    number,
+                    direction,
+                    lobes,
+                    pdf,
+                    solid_angle_per_area: solid_angle_per_area(&primary.vertex, cosine),
+                });
             }
-            let direction = (surface.position - sight.vertex.position).normalize_or_zero();
+            let direction = (surface.position - primary.vertex.position).normalize_or_zero();
             let theirs = surface.normal.dot(direction);
             // They must be on the same side of it.
             if !(theirs * cosine > 0.0) {
                 return None;
             }
-            let (lobes, density) = sight.bsdf.eval(direction);
-            let sees = density > 0.0 && sees(world, &sight.vertex, surface, direction);
-            sees.then_some(Viewer { number, direction, lobes, density, angle: angle(&sight.vertex, theirs) })
+            let (lobes, pdf) = primary.bsdf.eval(direction);
+            let is_visible = pdf > 0.0 && is_visible(world, &primary.vertex, surface, direction);
+            is_visible.then_some(Viewer {
+                number,
+                direction,
+                lobes,
+                pdf,
+                solid_angle_per_area: solid_angle_per_area(&primary.vertex, theirs),
+            })
         });
-        let density = list.iter().flatten().map(|v: &Viewer| v.density * v.angle).sum();
-        let mut viewers = Self { list, density };
+        let area_pdf = list.iter().flatten().map(|v: &Viewer| v.pdf * v.solid_angle_per_area).sum();
+        let mut viewers = Self { list, area_pdf };
         // Points of surfaces that touch are the finder's own.
-        if !(density.is_finite() && density > 0.0) {
-            viewers.list.iter_mut().flatten().for_each(|v| v.angle = f32::from(v.number == finder));
-            viewers.density = departure.density;
+        if !(area_pdf.is_finite() && area_pdf > 0.0) {
+            viewers.list.iter_mut().flatten().for_each(|v| v.solid_angle_per_area = f32::from(v.number == owner));
+            viewers.area_pdf = continuation.pdf;
         }
         viewers
     }
 
     /// Tells the witnesses what light they get from it.
-    fn tell<W: Witness>(
+    fn replay<W: ReplayObserver>(
         &self,
-        find: &Find,
-        sights: &[Option<Sight>; MOST],
-        witnesses: &mut [W],
+        secondary: &SecondaryVertex,
+        primaries: &[Option<PrimaryVertex>; MAX_SHARED],
+        observers: &mut [W],
         scratch: &Scratch<W::Tape>,
     ) {
-        let mesh = find.vertex.mesh;
+        let mesh = secondary.vertex.mesh;
         for viewer in self.list.iter().flatten() {
-            let (Some(sight), witness) = (&sights[viewer.number], &mut witnesses[viewer.number]) else { continue };
-            let importance = viewer.lobes.sum() * (viewer.angle / self.density);
-            let Light::Turned { surface, chosen, beyond } = &find.light else {
-                witness.replay_from(sight.vertex.mesh, viewer.lobes, &scratch.tape, importance);
+            let (Some(primary), observer) = (&primaries[viewer.number], &mut observers[viewer.number]) else {
                 continue;
             };
-            witness.restart();
-            witness.scatter(sight.vertex.mesh, Kind::Spread(viewer.density), viewer.lobes);
+            let importance = viewer.lobes.sum() * (viewer.solid_angle_per_area / self.area_pdf);
+            let SecondaryLight::ViewDependent { surface, light_sample, continuation } = &secondary.light else {
+                observer.replay_from(primary.vertex.mesh, viewer.lobes, &scratch.tape, importance);
+                continue;
+            };
+            observer.restart();
+            observer.scatter(primary.vertex.mesh, ScatterKind::NonSpecular(viewer.pdf), viewer.lobes);
             let bsdf = surface.seen_from(-viewer.direction);
-            if let Some((light, reach)) = chosen {
+            if let Some((light, weight)) = light_sample {
                 let (lobes, _) = bsdf.eval(light.direction);
-                witness.take_panes(&scratch.panes);
-                let importance = importance * lobes.sum() * *reach;
-                witness.add(light.source, importance, light.emission, Found::Chosen { mesh, lobes });
+                observer.take_panes(&scratch.panes);
+                let importance = importance * lobes.sum() * *weight;
+                observer.add(light.source, importance, light.emission, Strategy::LightSample { mesh, lobes });
             }
-            if let Some((direction, density)) = beyond {
+            if let Some((direction, pdf)) = continuation {
                 let (lobes, _) = bsdf.eval(*direction);
-                witness.scatter(mesh, Kind::Spread(*density), lobes);
-                witness.replay(&scratch.tape, importance * lobes.sum() / *density);
+                observer.scatter(mesh, ScatterKind::NonSpecular(*pdf), lobes);
+                observer.replay(&scratch.tape, importance * lobes.sum() / *pdf);
             }
         }
     }

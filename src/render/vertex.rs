@@ -1,8 +1,8 @@
 //! A point of a surface that a path has reached: where it is, how it is oriented, and what it is made of there.
 
 use super::bsdf::{Bsdf, Substance};
+use super::compiled_material::{self, CompiledMaterial};
 use super::facet::{self, Facet};
-use super::finish::{self, Finish};
 use super::ggx::AlbedoTable;
 use super::world::{NONE, World};
 use crate::scene::accel::{Hit, Ray};
@@ -75,20 +75,21 @@ impl Vertex {
     #[inline]
     pub fn surface<'w>(&self, world: &'w World) -> Surface<'w> {
         let facet = world.facet(self.id);
-        let finish = world.finish(facet);
+        let compiled = world.compiled_material(facet);
         // Most surfaces are flat and of one substance.
-        let shading = if facet.is_smooth() || finish.bumpy { self.shading_normal(world, facet) } else { self.normal };
-        let substance = if finish.varies {
-            Spot::new(world, facet, self.triangle, self.barycentric).substance(finish)
+        let shading =
+            if facet.is_smooth() || compiled.has_normal_map { self.shading_normal(world, facet) } else { self.normal };
+        let substance = if compiled.is_textured {
+            TextureContext::new(world, facet, self.triangle, self.barycentric).substance(compiled)
         } else {
-            finish.substance
+            compiled.substance
         };
-        Surface { substance, layered: finish.layered, normals: [shading, self.normal], table: world.albedo_table() }
+        Surface { substance, layered: compiled.layered, normals: [shading, self.normal], table: world.albedo_table() }
     }
 
     fn shading_normal(&self, world: &World, facet: &Facet) -> Vec3 {
-        let spot = Spot::new(world, facet, self.triangle, self.barycentric);
-        let (mesh, material) = (spot.mesh, spot.material);
+        let context = TextureContext::new(world, facet, self.triangle, self.barycentric);
+        let (mesh, material) = (context.mesh, context.material);
         let mut normal = self.normal;
         if !mesh.normals.is_empty() {
             let [a, b, c] = mesh.triangles[self.triangle as usize].map(|i| mesh.normals[i as usize]);
@@ -98,8 +99,8 @@ impl Vertex {
             normal = if n.dot(normal) < 0.0 { -n } else { n };
         }
         let Some(texture) = &material.normal_texture else { return normal };
-        let Some((along_u, along_v)) = spot.tangents(facet, texture) else { return normal };
-        let texel = spot.look_up(texture).truncate();
+        let Some((along_u, along_v)) = context.tangents(facet, texture) else { return normal };
+        let texel = context.look_up(texture).truncate();
         let n = texel * 2.0 - Vec3::ONE;
         let t = (along_u - normal * normal.dot(along_u)).normalize_or_zero();
         // Green points up in the image, which is towards smaller v.
@@ -128,7 +129,7 @@ impl<'w> Surface<'w> {
 }
 
 /// A point of a triangle with all that its textures hang on.
-pub struct Spot<'w> {
+pub struct TextureContext<'w> {
     world: &'w World,
     pub mesh: &'w Mesh,
     pub material: &'w Material,
@@ -136,7 +137,7 @@ pub struct Spot<'w> {
     barycentric: Vec2,
 }
 
-impl<'w> Spot<'w> {
+impl<'w> TextureContext<'w> {
     /// `triangle` is the index in the mesh.
     pub fn new(world: &'w World, facet: &Facet, triangle: u32, barycentric: Vec2) -> Self {
         let scene = world.scene();
@@ -151,9 +152,9 @@ impl<'w> Spot<'w> {
     }
 
     /// What is there.
-    pub fn substance(&self, finish: &Finish) -> Substance {
-        if !finish.varies {
-            return finish.substance;
+    pub fn substance(&self, compiled: &CompiledMaterial) -> Substance {
+        if !compiled.is_textured {
+            return compiled.substance;
         }
         let material = self.material;
         let mut base = material.base_color;
@@ -165,7 +166,7 @@ impl<'w> Spot<'w> {
             let texel = self.look_up(texture);
             (roughness, metallic) = (roughness * texel.y, metallic * texel.z);
         }
-        finish::substance(material, base, metallic, roughness)
+        compiled_material::substance(material, base, metallic, roughness)
     }
 
     fn look_up(&self, texture: &TextureRef) -> Vec4 {

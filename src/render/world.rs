@@ -1,12 +1,12 @@
 //! A scene made ready for tracing.
 
+use super::compiled_material::CompiledMaterial;
 use super::emissive::Emitters;
 use super::facet::{self, Facet};
-use super::finish::Finish;
 use super::ggx::AlbedoTable;
 use super::light::Lights;
 use super::requirements::{self, Requirements};
-use super::vertex::Spot;
+use super::vertex::TextureContext;
 use crate::error::{Error, Result};
 use crate::image::try_vec;
 use crate::job::Job;
@@ -25,7 +25,7 @@ pub struct World {
     /// Number of the first triangle of each mesh, and of all triangles at the end.
     first: Vec<u32>,
     facets: Vec<Facet>,
-    finishes: Vec<Finish>,
+    compiled_materials: Vec<CompiledMaterial>,
     lights: Lights,
     albedo_table: Option<AlbedoTable>,
     requirements: Requirements,
@@ -86,11 +86,22 @@ impl World {
         // Find out what can be left out.
         let has_top = |m: &Material| m.ior > 1.0 || m.metallic > 0.0;
         let albedo_table = scene.materials.iter().any(has_top).then(AlbedoTable::new);
-        let (mut requirements, finishes) = requirements::analyse(&scene, albedo_table.as_ref());
+        let (mut requirements, compiled_materials) = requirements::analyse(&scene, albedo_table.as_ref());
         requirements.flat_triangles = accel.dropped();
         let any_see_through = requirements.glass || requirements.alpha;
         job.report(1.0);
-        Ok(Self { scene, accel, centre, first, facets, finishes, lights, albedo_table, requirements, any_see_through })
+        Ok(Self {
+            scene,
+            accel,
+            centre,
+            first,
+            facets,
+            compiled_materials,
+            lights,
+            albedo_table,
+            requirements,
+            any_see_through,
+        })
     }
 
     /// What the scene requires, and what tracing leaves out.
@@ -101,8 +112,8 @@ impl World {
     /// Forgets what the scene does not require: every hit then asks every question. Estimates stay the same but for
     /// rounding; this is to measure what the analysis saves.
     pub fn generalise(&mut self) {
-        self.finishes.iter_mut().for_each(|f| *f = f.unanalysed());
-        self.facets.iter_mut().for_each(|f| *f = f.unanalysed());
+        self.compiled_materials.iter_mut().for_each(|f| *f = f.without_analysis());
+        self.facets.iter_mut().for_each(|f| *f = f.without_analysis());
         self.any_see_through = true;
     }
 
@@ -153,8 +164,8 @@ impl World {
     }
 
     #[inline]
-    pub(super) fn finish(&self, facet: &Facet) -> &Finish {
-        &self.finishes[facet.material()]
+    pub(super) fn compiled_material(&self, facet: &Facet) -> &CompiledMaterial {
+        &self.compiled_materials[facet.material()]
     }
 
     #[inline]
@@ -191,16 +202,16 @@ impl World {
 
     fn is_there(&self, hit: &Hit, seed: &impl Fn() -> u64) -> bool {
         let facet = self.facet(hit.triangle);
-        if !self.finish(facet).partial {
+        if !self.compiled_material(facet).has_alpha {
             return true;
         }
-        let spot = self.spot(facet, hit);
-        match spot.material.alpha_mode {
+        let context = self.context(facet, hit);
+        match context.material.alpha_mode {
             AlphaMode::Opaque => true,
-            AlphaMode::Mask(cutoff) => spot.opacity() >= cutoff,
+            AlphaMode::Mask(cutoff) => context.opacity() >= cutoff,
             AlphaMode::Blend => {
                 let u = (rng::hash(seed(), &[u64::from(hit.triangle)]) >> 40) as f32 / (1 << 24) as f32;
-                u < spot.opacity()
+                u < context.opacity()
             }
         }
     }
@@ -248,26 +259,26 @@ impl World {
 
     fn pane(&self, hit: &Hit, direction: Vec3) -> Pane {
         let facet = self.facet(hit.triangle);
-        let finish = self.finish(facet);
-        if !finish.see_through {
+        let compiled = self.compiled_material(facet);
+        if !compiled.lets_light_through {
             return Pane { t: hit.t, triangle: hit.triangle, beside: 0.0, through: Vec3::ZERO };
         }
-        let spot = self.spot(facet, hit);
-        let there = match spot.material.alpha_mode {
+        let context = self.context(facet, hit);
+        let there = match context.material.alpha_mode {
             AlphaMode::Opaque => 1.0,
-            AlphaMode::Mask(cutoff) => f32::from(u8::from(spot.opacity() >= cutoff)),
-            AlphaMode::Blend => spot.opacity().clamp(0.0, 1.0),
+            AlphaMode::Mask(cutoff) => f32::from(u8::from(context.opacity() >= cutoff)),
+            AlphaMode::Blend => context.opacity().clamp(0.0, 1.0),
         };
-        let through = if spot.material.transmission > 0.0 && there > 0.0 {
-            spot.substance(finish).through(facet.normal.dot(direction.normalize_or_zero()))
+        let through = if context.material.transmission > 0.0 && there > 0.0 {
+            context.substance(compiled).through(facet.normal.dot(direction.normalize_or_zero()))
         } else {
             Vec3::ZERO
         };
         Pane { t: hit.t, triangle: hit.triangle, beside: 1.0 - there, through: through * there }
     }
 
-    fn spot(&self, facet: &Facet, hit: &Hit) -> Spot<'_> {
-        Spot::new(self, facet, hit.triangle - self.first(facet.mesh), Vec2::new(hit.u, hit.v))
+    fn context(&self, facet: &Facet, hit: &Hit) -> TextureContext<'_> {
+        TextureContext::new(self, facet, hit.triangle - self.first(facet.mesh), Vec2::new(hit.u, hit.v))
     }
 }
 

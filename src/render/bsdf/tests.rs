@@ -65,9 +65,9 @@ fn directions_come_with_the_density_that_is_stated() {
                 for j in 0..COLUMNS * SUB {
                     let cosine = (i as f32 + 0.5) / (ROWS * SUB) as f32;
                     let angle = TAU * (j as f32 + 0.5) / (COLUMNS * SUB) as f32;
-                    let density = f64::from(bsdf.eval(direction(cosine, angle)).1);
+                    let pdf = f64::from(bsdf.eval(direction(cosine, angle)).1);
                     let solid_angle = f64::from(TAU) / (ROWS * COLUMNS * SUB * SUB) as f64;
-                    expected[i / SUB * COLUMNS + j / SUB] += f64::from(n) * density * solid_angle;
+                    expected[i / SUB * COLUMNS + j / SUB] += f64::from(n) * pdf * solid_angle;
                 }
             }
             let inside: f64 = expected.iter().sum();
@@ -79,10 +79,10 @@ fn directions_come_with_the_density_that_is_stated() {
             for _ in 0..n {
                 let sample = bsdf.sample(Vec2::new(rng.next_f32(), rng.next_f32()));
                 let bin = sample.map_or(ROWS * COLUMNS, |s| {
-                    let (lobes, density) = bsdf.eval(s.direction);
-                    let Kind::Spread(stated) = s.kind else { panic!("{:?}", s.kind) };
-                    assert!((stated / density - 1.0).abs() < 1e-4, "{stated} and {density}");
-                    let weight = lobes.sum() / density;
+                    let (lobes, pdf) = bsdf.eval(s.direction);
+                    let ScatterKind::NonSpecular(stated) = s.kind else { panic!("{:?}", s.kind) };
+                    assert!((stated / pdf - 1.0).abs() < 1e-4, "{stated} and {pdf}");
+                    let weight = lobes.sum() / pdf;
                     assert!((s.weight - weight).abs().max_element() <= 1e-5, "{} and {weight}", s.weight);
                     let row = ((s.direction.z * ROWS as f32) as usize).min(ROWS - 1);
                     let angle = s.direction.y.atan2(s.direction.x).rem_euclid(TAU) / TAU;

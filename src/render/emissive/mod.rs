@@ -165,7 +165,7 @@ impl Emitters {
 
     /// Probability per m² with which [`Emitters::sample`] chooses a point of a piece that emits `brightness`, the mean of
     /// the channels.
-    pub fn density(&self, piece: usize, brightness: f32) -> f32 {
+    pub fn area_pdf(&self, piece: usize, brightness: f32) -> f32 {
         match piece.checked_sub(self.even.len()) {
             Some(tile) => brightness / self.tiles[tile].intensity,
             None => 1.0 / self.emitters[self.even[piece].emitter as usize].area,

@@ -15,7 +15,7 @@ pub const SIDE: usize = 8;
 /// Beyond this many texels, and four times those of the texture, a triangle is not cut up.
 const MAX_TEXELS: f64 = (1 << 26) as f64;
 /// Where single-precision texture coordinates no longer tell neighbouring texels apart.
-const FARTHEST: f64 = 8e6;
+const MAX_TEXEL_COORDINATE: f64 = 8e6;
 
 /// How a triangle is cut into tiles.
 pub struct Tiling {
@@ -56,7 +56,10 @@ impl Tiling {
         let texels = texture.image.width as f64 * texture.image.height as f64;
         let texels_spanned = span.element_product();
         let countable = texels_spanned > 1.0 && texels_spanned <= MAX_TEXELS.max(4.0 * texels);
-        if !(countable && low.abs().max(high.abs()).max_element() < FARTHEST && area > 1e-6 * texels_spanned) {
+        if !(countable
+            && low.abs().max(high.abs()).max_element() < MAX_TEXEL_COORDINATE
+            && area > 1e-6 * texels_spanned)
+        {
             return None;
         }
         let to_barycentric = DMat2::from_cols(b - a, c - a).inverse();
@@ -183,7 +186,7 @@ impl Tiling {
         let (width, height) = (texture.image.width, texture.image.height);
         let span = high - low + 1.0;
         // More texels than the texture has: all of them.
-        let fits = span.x <= width as f64 && span.y <= height as f64 && low.abs().max_element() < FARTHEST;
+        let fits = span.x <= width as f64 && span.y <= height as f64 && low.abs().max_element() < MAX_TEXEL_COORDINATE;
         let (low, columns, rows) =
             if fits { (low, span.x as usize, span.y as usize) } else { (DVec2::ZERO, width, height) };
         let mut sum = 0.0;

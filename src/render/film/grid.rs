@@ -52,7 +52,7 @@ impl Grid {
     }
 
     /// For values of the tiles, for each the mean of its own and those around it, or its own if that is larger.
-    pub fn heeding_neighbours(&self, values: &[f64]) -> Result<Vec<f64>> {
+    pub fn max_with_neighbourhood_mean(&self, values: &[f64]) -> Result<Vec<f64>> {
         let (across, down) = (self.across(), self.down());
         let around = |i: usize, n: usize| i.saturating_sub(1)..(i + 2).min(n);
         let at = |tile: usize| {
@@ -91,7 +91,7 @@ mod tests {
         let grid = Grid { width: 4 * TILE, height: 3 * TILE };
         let mut values = vec![0.0; grid.tiles()];
         values[0] = 12.0;
-        let heeded = grid.heeding_neighbours(&values).unwrap();
+        let heeded = grid.max_with_neighbourhood_mean(&values).unwrap();
         assert_eq!(heeded[..6], [12.0, 2.0, 0.0, 0.0, 2.0, 12.0 / 9.0]);
         assert!(heeded[6..].iter().all(|&v| v == 0.0));
     }

@@ -1,36 +1,36 @@
 //! The image under way: which paths each pixel has had, their means, and how sure they are.
 //!
 //! `tile` makes the paths of a tile, `block` those of the pixels that share what they find → `pixel` adds up those of one
-//! pixel → `plan` decides between passes where the next ones go, `worth` how long they are
+//! pixel → `plan` decides between passes where the next ones go, `roulette_weight` how long they are
 //! → `interval` says how far off the image may be. A pass only ever extends the paths of each pixel up to a count. So one that is cut short
 //! leaves a valid image with fewer paths here and there; and as the counts follow from the pixels of the pass before,
 //! they are the same for any number of threads.
 //!
 //! For renders that are done in parts, `sums` adds up the paths of some pixels apart from all others, by the light of a
-//! `survey` instead of the passes before. What an image will take, a `probe` tells from a few of its tiles, which it chooses
+//! `prepass` instead of the passes before. What an image will take, a `probe` tells from a few of its tiles, which it chooses
 //! at a `glance` of all.
 
+mod adaptive;
 mod block;
 mod clock;
-mod glance;
 mod grid;
 mod interval;
+pub mod pilot;
 mod pixel;
-mod plan;
-pub mod probe;
+mod prepass;
+mod roulette;
 mod sums;
-mod survey;
 mod tile;
-mod worth;
+mod tile_moments;
 
+pub use adaptive::{AdaptiveSampler, Pass};
 pub use clock::Clock;
 pub use grid::TILE;
 pub use interval::pooled;
-pub use plan::{Pass, Plan};
 pub use sums::Sums;
 
 use super::layers::{Layers, Recorder};
-use super::path::{self, Length, MOST_SCATTERINGS};
+use super::path::{self, MAX_BOUNCES, PathLength};
 use super::sampler::Sampler;
 use super::shared::Start;
 use super::tape::Sum;
@@ -47,7 +47,7 @@ use pixel::Pixel;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
-use tile::{Setting, Tile};
+use tile::{Tile, TileContext};
 
 /// Sums of the paths so far.
 pub struct Canvas<'a> {
@@ -98,13 +98,13 @@ impl<'a> Canvas<'a> {
     pub fn extend(&mut self, pass: &Pass, deadline: Option<Instant>, job: Job) -> Result<()> {
         let Self { world, eye, seed, grid, pixels, layers, discarded } = self;
         let layers = layers.as_ref();
-        let level = worth::level(pixels, job.part(0.0, 0.0))?;
+        let median_radiance = roulette::median_radiance(pixels, job.part(0.0, 0.0))?;
         let is_over = || job.is_cancelled() || deadline.is_some_and(|d| Instant::now() >= d);
-        let setting = Setting { world, eye, seed: *seed, grid: *grid, level, discarded };
+        let context = TileContext { world, eye, seed: *seed, grid: *grid, median_radiance, discarded };
         exec::for_rows(pixels, AREA, job, |tile, pixels| {
             // Coarse passes leave most tiles alone.
             if !pass.passes_over(grid.corner(tile)) {
-                Tile::new(setting, tile, pixels, layers).extend(pass, is_over);
+                Tile::new(context, tile, pixels, layers).extend(pass, is_over);
             }
         })?;
         job.check()
@@ -203,7 +203,7 @@ fn paths(
     world: &World,
     eye: &Eye,
     at: [usize; 2],
-    length: Length,
+    length: PathLength,
     (seed, indices): (u64, Range<u32>),
     mut recorder: Option<&mut Recorder>,
     discarded: &AtomicU64,
@@ -225,21 +225,21 @@ fn radiance(
     world: &World,
     eye: &Eye,
     at: [usize; 2],
-    length: Length,
+    length: PathLength,
     sampler: Sampler,
     recorder: Option<&mut Recorder>,
 ) -> Vec3 {
-    let Start { ray, lighting, length, mut sampler } = eye.start(world, at, length, sampler);
+    let Start { ray, light_u, length, mut sampler } = eye.start(world, at, length, sampler);
     match recorder {
         None => {
             let mut sum = Sum::default();
-            path::trace(world, ray, lighting, length, &mut sampler, &mut sum);
+            path::trace(world, ray, light_u, length, &mut sampler, &mut sum);
             sum.0
         }
         Some(recorder) => {
             recorder.start();
-            path::trace(world, ray, lighting, length, &mut sampler, recorder);
-            recorder.finish()
+            path::trace(world, ray, light_u, length, &mut sampler, recorder);
+            recorder.end_path()
         }
     }
 }
@@ -251,26 +251,26 @@ struct Eye {
     right: Vec3,
     down: Vec3,
     /// How often the light it sees has scattered at most.
-    most: u32,
+    max_bounces: u32,
 }
 
 impl Eye {
     fn new(world: &World, camera: &Camera, params: &Params) -> Self {
-        let most = world.requirements().bounces(params.bounce_error).unwrap_or(MOST_SCATTERINGS).min(MOST_SCATTERINGS);
+        let max_bounces = world.requirements().bounces(params.bounce_error).unwrap_or(MAX_BOUNCES).min(MAX_BOUNCES);
         let aspect = params.width as f32 / params.height as f32;
         let at = |x: f32, y: f32| camera.direction(x, y, aspect);
         let corner = at(0.0, 0.0);
         let right = (at(1.0, 0.0) - corner) / params.width as f32;
         let down = (at(0.0, 1.0) - corner) / params.height as f32;
-        Self { position: camera.position, corner, right, down, most }
+        Self { position: camera.position, corner, right, down, max_bounces }
     }
 
     /// A path's beginning: the first block of numbers places it in the pixel (box filter) and chooses the light for what is
     /// seen there.
-    fn start(&self, world: &World, at: [usize; 2], length: Length, mut sampler: Sampler) -> Start {
+    fn start(&self, world: &World, at: [usize; 2], length: PathLength, mut sampler: Sampler) -> Start {
         let place = sampler.next();
         let direction = self.direction(at[0] as f64 + place.fine(0), at[1] as f64 + place.fine(1));
-        Start { ray: world.ray(self.position, direction), lighting: (place.fine(2), place.get(3)), length, sampler }
+        Start { ray: world.ray(self.position, direction), light_u: (place.fine(2), place.get(3)), length, sampler }
     }
 
     /// The direction through a point of the image, in pixels.

@@ -20,7 +20,7 @@ pub struct Pixel {
 }
 
 /// How many of a pixel's first `count` paths belong to a replication.
-pub fn share(count: u32, replication: u32) -> u32 {
+pub fn paths_of_replication(count: u32, replication: u32) -> u32 {
     (count + REPLICATIONS - 1 - replication) / REPLICATIONS
 }
 
@@ -37,7 +37,7 @@ impl Pixel {
     /// Adds paths until there are `count` of them; `path(replication, indices)` sums those with indices in a range.
     pub fn extend(&mut self, count: u32, mut path: impl FnMut(u32, std::ops::Range<u32>) -> DVec3) {
         for (replication, sum) in (0..REPLICATIONS).zip(&mut self.sums) {
-            let indices = share(self.count, replication)..share(count, replication);
+            let indices = paths_of_replication(self.count, replication)..paths_of_replication(count, replication);
             if !indices.is_empty() {
                 *sum += path(replication, indices).as_vec3();
             }
@@ -64,7 +64,7 @@ impl Pixel {
     pub fn halves(&self) -> [DVec3; 2] {
         [0, 1].map(|first| {
             let of = || (0..REPLICATIONS).zip(&self.sums).filter(|(replication, _)| replication % 2 == first);
-            match of().map(|(replication, _)| share(self.count, replication)).sum() {
+            match of().map(|(replication, _)| paths_of_replication(self.count, replication)).sum() {
                 0 => self.mean(),
                 paths => of().map(|(_, s)| s.as_dvec3()).sum::<DVec3>() / f64::from(paths),
             }
@@ -73,9 +73,9 @@ impl Pixel {
 
     /// What it shows but for the luck of a single bright path: the mean of the replications between the brightest and the
     /// darkest, averaged over the channels.
-    pub fn middling(&self) -> f64 {
+    pub fn trimmed_mean(&self) -> f64 {
         let mut means: [f64; REPLICATIONS as usize] = std::array::from_fn(|i| {
-            let paths = share(self.count, i as u32).max(1);
+            let paths = paths_of_replication(self.count, i as u32).max(1);
             f64::from(self.sums[i].element_sum()) / 3.0 / f64::from(paths)
         });
         means.sort_unstable_by(f64::total_cmp);
@@ -91,7 +91,7 @@ impl Pixel {
         let mean = self.mean();
         let (mut squares, mut used) = (DVec3::ZERO, 0u32);
         for (replication, sum) in (0..REPLICATIONS).zip(&self.sums) {
-            let paths = share(self.count, replication);
+            let paths = paths_of_replication(self.count, replication);
             if paths > 0 {
                 // Weighed as if a replication's variance fell with its paths; they differ by one path at most.
                 let distance = sum.as_dvec3() / f64::from(paths) - mean;
@@ -120,7 +120,7 @@ mod tests {
             assert_eq!((pixel.count(), pixel.mean()), (count, DVec3::ONE));
             assert_eq!(pixel.halves(), [DVec3::ONE; 2]);
         }
-        assert_eq!(pixel.middling(), 1.0);
+        assert_eq!(pixel.trimmed_mean(), 1.0);
         seen.sort_unstable();
         assert!(seen.iter().copied().eq(0..64));
         assert_eq!(pixel.variance(), DVec3::ZERO);

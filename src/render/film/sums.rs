@@ -5,17 +5,17 @@
 //! matters for an image in f32 in which order, or in how many parts, it was added up.
 
 use super::Eye;
-use super::block::{Maker, Member, blocks};
+use super::block::{BlockPixel, BlockTracer, blocks};
 use super::grid::{AREA, Grid, TILE};
-use super::pixel::{REPLICATIONS, share};
-use super::survey::Survey;
+use super::pixel::{REPLICATIONS, paths_of_replication};
+use super::prepass::Prepass;
 use crate::error::Result;
 use crate::exec;
 use crate::image::try_vec;
 use crate::job::Job;
 use crate::render::layers::Layers;
 use crate::render::parts::Part;
-use crate::render::path::Length;
+use crate::render::path::PathLength;
 use crate::render::{Params, World};
 use crate::scene::Camera;
 use glam::DVec3;
@@ -55,13 +55,16 @@ impl Sums {
         let layers = Layers::new(world, camera, &params.outputs, 0, AREA)?;
         let mut sums = Self::new(part, layers.as_ref())?;
         let eye = Eye::new(world, camera, params);
-        let survey = Survey::new(world, &eye, params, job.part(0.0, 0.01))?;
+        let prepass = Prepass::new(world, &eye, params, job.part(0.0, 0.01))?;
         let discarded = AtomicU64::new(0);
         let Self { corner, grid, width, numbers, .. } = &mut sums;
         exec::for_rows(numbers, AREA * *width, job.part(0.01, 1.0), |tile, numbers| {
             let (left, top) = grid.corner(tile);
-            let length = Length { most: eye.most, worth: survey.worth([corner[0] + left, corner[1] + top]) };
-            let mut maker = Maker::new(layers.as_ref());
+            let length = PathLength {
+                max_bounces: eye.max_bounces,
+                roulette_weight: prepass.weight([corner[0] + left, corner[1] + top]),
+            };
+            let mut tracer = BlockTracer::new(layers.as_ref());
             // What neighbours in another part bring is not wanted here; what they find is.
             let mut others_of_neighbours = vec![0.0; *width - LIGHT];
             for replication in 0..REPLICATIONS {
@@ -69,12 +72,14 @@ impl Sums {
                     let at = |i: usize| [corner[0] + left + i % TILE, corner[1] + top + i / TILE];
                     let is_there = |[x, y]: [usize; 2]| x < params.width && y < params.height;
                     let there = block.iter().map(|&i| (i, at(i))).filter(|(_, at)| is_there(*at));
-                    let members: Vec<Member> =
-                        there.map(|(i, at)| Member::new(i, at, length, params.seed, replication)).collect();
+                    let members: Vec<BlockPixel> =
+                        there.map(|(i, at)| BlockPixel::new(i, at, length, params.seed, replication)).collect();
                     if !members.iter().any(|m| part.has(m.at)) {
                         continue;
                     }
-                    for index in share(part.first, replication)..share(part.first + part.samples, replication) {
+                    for index in paths_of_replication(part.first, replication)
+                        ..paths_of_replication(part.first + part.samples, replication)
+                    {
                         if index % SLICE == 0 && job.is_cancelled() {
                             return;
                         }
@@ -83,12 +88,12 @@ impl Sums {
                                 discarded.fetch_add(1, Ordering::Relaxed);
                             }
                         };
-                        let sums = maker.paths(world, &eye, &members, index..index + 1, discard);
+                        let sums = tracer.paths(world, &eye, &members, index..index + 1, discard);
                         for (k, (member, sum)) in members.iter().zip(sums).enumerate() {
                             let numbers = &mut numbers[member.pixel * *width..][..*width];
                             let (light, others) = numbers.split_at_mut(LIGHT);
                             let is_wanted = part.has(member.at);
-                            if let Some(recorders) = maker.recorders() {
+                            if let Some(recorders) = tracer.recorders() {
                                 recorders[k].add_to(if is_wanted { others } else { &mut others_of_neighbours });
                             }
                             if is_wanted {

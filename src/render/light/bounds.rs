@@ -23,7 +23,7 @@ pub struct Bounds {
     /// Unit, or 0 where `reach` is all there is; no light goes farther than `reach` (radians) off it. Reaching 90 degrees,
     /// the intensity falls with the cosine; reaching farther, it is full up to 90 degrees less.
     pub axis: Vec3,
-    pub reach: f32,
+    pub cone_angle: f32,
     /// Whether every light shines backwards as well.
     pub two_sided: bool,
     /// Sum of luminous intensities along the axis in cd, mean of the channels.
@@ -31,7 +31,7 @@ pub struct Bounds {
 }
 
 /// Reaching all directions at full intensity.
-const ALL_AROUND: f32 = PI + FRAC_PI_2;
+const FULL_SPHERE: f32 = PI + FRAC_PI_2;
 
 impl Bounds {
     /// A flat surface with some of its points, which enclose it.
@@ -40,16 +40,16 @@ impl Bounds {
         for point in points {
             (low, high) = (low.min(point), high.max(point));
         }
-        Self { low, high, axis: normal, reach: FRAC_PI_2, two_sided, intensity }
+        Self { low, high, axis: normal, cone_angle: FRAC_PI_2, two_sided, intensity }
     }
 
     pub fn of_point(position: Vec3, intensity: f32) -> Self {
-        Self { low: position, high: position, axis: Vec3::ZERO, reach: ALL_AROUND, two_sided: false, intensity }
+        Self { low: position, high: position, axis: Vec3::ZERO, cone_angle: FULL_SPHERE, two_sided: false, intensity }
     }
 
     /// A point that shines up to an angle off its axis.
     pub fn of_cone(position: Vec3, axis: Vec3, angle: f32, intensity: f32) -> Self {
-        Self { axis, reach: angle, ..Self::of_point(position, intensity) }
+        Self { axis, cone_angle: angle, ..Self::of_point(position, intensity) }
     }
 
     /// Bounds of all the lights of several bounds, at least one.
@@ -67,17 +67,18 @@ impl Bounds {
             sum += if flipped { -part.axis } else { part.axis } * part.intensity;
         }
         whole.axis = sum.normalize_or_zero();
-        whole.reach = 0.0;
+        whole.cone_angle = 0.0;
         for part in parts {
             let cosine = whole.axis.dot(part.axis);
             let cosine = if whole.two_sided { cosine.abs() } else { cosine };
             let one_way = whole.two_sided || !part.two_sided;
             // Axes that agree up to rounding are the same: flat clusters are the common case.
             let angle = if cosine > 1.0 - 1e-6 { 0.0 } else { cosine.clamp(-1.0, 1.0).acos() };
-            whole.reach = whole.reach.max(if one_way { angle + part.reach } else { ALL_AROUND }).min(ALL_AROUND);
+            whole.cone_angle =
+                whole.cone_angle.max(if one_way { angle + part.cone_angle } else { FULL_SPHERE }).min(FULL_SPHERE);
         }
         if whole.axis == Vec3::ZERO {
-            whole.reach = ALL_AROUND;
+            whole.cone_angle = FULL_SPHERE;
         }
         whole
     }
@@ -112,12 +113,12 @@ pub struct BoundsLanes {
     inverse_square: Lanes,
     axis: [Lanes; 3],
     /// How far the box reaches along the axis, or in any direction where the axis is not all.
-    pad: Lanes,
+    box_extent: Lanes,
     /// -1 for two-sided lights, else 1.
-    back: Lanes,
+    back_sign: Lanes,
     /// Sine and cosine of `reach` less 90 degrees, and the cosine from which on the intensity is full.
-    turn: [Lanes; 2],
-    full_from: Lanes,
+    cone_rotation: [Lanes; 2],
+    full_cosine: Lanes,
     intensity: Lanes,
 }
 
@@ -133,10 +134,10 @@ impl BoundsLanes {
             half: [zero; 3],
             inverse_square: zero,
             axis: [zero; 3],
-            pad: zero,
-            back: [1.0; LANES],
-            turn: [zero; 2],
-            full_from: zero,
+            box_extent: zero,
+            back_sign: [1.0; LANES],
+            cone_rotation: [zero; 2],
+            full_cosine: zero,
             intensity: zero,
         };
         for (i, b) in bounds.into_iter().take(LANES).enumerate() {
@@ -149,14 +150,14 @@ impl BoundsLanes {
                 lanes.axis[axis][i] = b.axis[axis];
             }
             lanes.inverse_square[i] = half.length_squared().max(f32::MIN_POSITIVE).recip();
-            let flat = b.reach == FRAC_PI_2;
-            lanes.pad[i] = if flat { half.dot(b.axis.abs()) } else { half.length() };
-            lanes.back[i] = if b.two_sided { -1.0 } else { 1.0 };
-            let (sine, cosine) = if flat { (0.0, 1.0) } else { (b.reach - FRAC_PI_2).sin_cos() };
-            lanes.turn[0][i] = sine;
-            lanes.turn[1][i] = cosine;
-            let narrow = b.reach < FRAC_PI_2;
-            lanes.full_from[i] = if narrow { 2.0 } else { cosine };
+            let flat = b.cone_angle == FRAC_PI_2;
+            lanes.box_extent[i] = if flat { half.dot(b.axis.abs()) } else { half.length() };
+            lanes.back_sign[i] = if b.two_sided { -1.0 } else { 1.0 };
+            let (sine, cosine) = if flat { (0.0, 1.0) } else { (b.cone_angle - FRAC_PI_2).sin_cos() };
+            lanes.cone_rotation[0][i] = sine;
+            lanes.cone_rotation[1][i] = cosine;
+            let narrow = b.cone_angle < FRAC_PI_2;
+            lanes.full_cosine[i] = if narrow { 2.0 } else { cosine };
             // Narrow cones are to count in full on their axis.
             lanes.intensity[i] = b.intensity * scale / if narrow { cosine.max(0.05) } else { 1.0 };
         }
@@ -174,11 +175,11 @@ impl BoundsLanes {
             let inverse = 1.0 / squared.sqrt();
             // The largest cosine at any emitter: of the angle less `reach` and more 90 degrees, widened by the box.
             let cosine = -(self.axis[0][i] * d[0] + self.axis[1][i] * d[1] + self.axis[2][i] * d[2]) * inverse;
-            let cosine = larger(cosine, cosine * self.back[i]);
+            let cosine = larger(cosine, cosine * self.back_sign[i]);
             let sine = larger(1.0 - cosine * cosine, 0.0).sqrt();
-            let turned = cosine * self.turn[1][i] + sine * self.turn[0][i];
-            let turned = if cosine >= self.full_from[i] { 1.0 } else { turned };
-            let emitted = turned + self.pad[i] * inverse;
+            let turned = cosine * self.cone_rotation[1][i] + sine * self.cone_rotation[0][i];
+            let turned = if cosine >= self.full_cosine[i] { 1.0 } else { turned };
+            let emitted = turned + self.box_extent[i] * inverse;
             // The largest cosine at the receiver.
             let reached = n.x * d[0] + n.y * d[1] + n.z * d[2];
             let widened = m.x * self.half[0][i] + m.y * self.half[1][i] + m.z * self.half[2][i];

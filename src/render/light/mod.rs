@@ -46,9 +46,9 @@ pub struct LightSample {
     /// Radiance in cd/m², intensity in cd, or illuminance in lux, by the kind of light.
     pub emission: Vec3,
     /// What the emission is to be divided by for an estimate of the illuminance on a surface that faces it.
-    pub density: f32,
+    pub pdf: f32,
     /// The density per steradian that competes with scattering; none for lights that only sampling can find.
-    pub solid_angle_density: Option<f32>,
+    pub mis_pdf: Option<f32>,
 }
 
 pub enum LightEnd {
@@ -106,27 +106,27 @@ impl Lights {
         let [near, directional, environment] = self.groups;
         let within = |start: f64, share: f64| ((u - start) / share).clamp(0.0, 1.0 - f64::EPSILON);
         if u < near {
-            let (light, probability, rest) = self.tree.sample(receiver, within(0.0, near))?;
-            let probability = probability * near as f32;
+            let (light, pmf, rest) = self.tree.sample(receiver, within(0.0, near))?;
+            let pmf = pmf * near as f32;
             match light.checked_sub(self.pieces) {
-                None => self.sample_surface(scene, receiver, light, probability, (rest, v)),
-                Some(i) => self.sample_punctual(receiver, self.near[i], probability),
+                None => self.sample_surface(scene, receiver, light, pmf, (rest, v)),
+                Some(i) => self.sample_punctual(receiver, self.near[i], pmf),
             }
         } else if u < near + directional {
             let index = self.directional.sample(within(near, directional)).0;
-            let probability = directional * self.directional.probability(index);
-            self.sample_punctual(receiver, index as u32, probability as f32)
+            let pmf = directional * self.directional.pmf(index);
+            self.sample_punctual(receiver, index as u32, pmf as f32)
         } else if environment > 0.0 {
-            let (direction, density) = self.environment.as_ref()?.sample(within(near + directional, environment), v);
-            let density = density * environment as f32;
+            let (direction, pdf) = self.environment.as_ref()?.sample(within(near + directional, environment), v);
+            let pdf = pdf * environment as f32;
             let emission = environment::radiance(scene.environment.as_ref()?, direction);
             Some(LightSample {
                 source: LightSource::Environment,
                 direction,
                 end: None,
                 emission,
-                density,
-                solid_angle_density: Some(density),
+                pdf,
+                mis_pdf: Some(pdf),
             })
         } else {
             None
@@ -138,7 +138,7 @@ impl Lights {
         scene: &Scene,
         receiver: &Receiver,
         piece: usize,
-        probability: f32,
+        pmf: f32,
         at: (f64, f32),
     ) -> Option<LightSample> {
         let (index, barycentric) = self.emitters.sample(piece, at)?;
@@ -150,9 +150,9 @@ impl Lights {
             return None;
         }
         let (emission, uv) = emitter.emission(scene, barycentric);
-        let density = probability * self.emitters.density(piece, mean_channel(emission));
-        let density = to_solid_angle(density, emitter.normal.dot(direction), distance);
-        if !(density.is_finite() && density > 0.0) {
+        let pdf = pmf * self.emitters.area_pdf(piece, mean_channel(emission));
+        let pdf = to_solid_angle(pdf, emitter.normal.dot(direction), distance);
+        if !(pdf.is_finite() && pdf > 0.0) {
             return None;
         }
         Some(LightSample {
@@ -160,36 +160,36 @@ impl Lights {
             direction,
             end: Some(LightEnd::Emitter(index, barycentric)),
             emission,
-            density,
-            solid_angle_density: Some(density),
+            pdf,
+            mis_pdf: Some(pdf),
         })
     }
 
-    fn sample_punctual(&self, receiver: &Receiver, index: u32, probability: f32) -> Option<LightSample> {
-        let (direction, end, emission, density) = match &self.punctual[index as usize] {
+    fn sample_punctual(&self, receiver: &Receiver, index: u32, pmf: f32) -> Option<LightSample> {
+        let (direction, end, emission, pdf) = match &self.punctual[index as usize] {
             Punctual::Near { position, intensity, shape } => {
                 let offset = position - receiver.position;
                 let distance = offset.length();
                 let direction = offset / distance;
                 let factor = shape.factor(-direction);
-                (direction, Some(LightEnd::Point(*position)), intensity * factor, probability * distance * distance)
+                (direction, Some(LightEnd::Point(*position)), intensity * factor, pmf * distance * distance)
             }
-            Punctual::Far { towards, illuminance } => (*towards, None, *illuminance, probability),
+            Punctual::Far { towards, illuminance } => (*towards, None, *illuminance, pmf),
         };
-        let lights = density > 0.0 && direction.is_finite() && direction != Vec3::ZERO && emission != Vec3::ZERO;
+        let lights = pdf > 0.0 && direction.is_finite() && direction != Vec3::ZERO && emission != Vec3::ZERO;
         lights.then_some(LightSample {
             source: LightSource::Punctual(index),
             direction,
             end,
             emission,
-            density,
-            solid_angle_density: None,
+            pdf,
+            mis_pdf: None,
         })
     }
 
     /// Density per steradian with which [`Lights::sample`] chooses a point of an emitter seen along a unit direction, its
     /// emission and its texture coordinates being what [`super::emissive::Emitter::emission`] gives.
-    pub fn surface_density(
+    pub fn surface_pdf(
         &self,
         receiver: &Receiver,
         emitter: usize,
@@ -198,20 +198,20 @@ impl Lights {
         distance: f32,
     ) -> f32 {
         let Some(piece) = self.emitters.piece_at(emitter, uv) else { return 0.0 };
-        let probability = self.tree.probability(receiver, piece) * self.groups[0] as f32;
-        let density = probability * self.emitters.density(piece, mean_channel(emission));
-        to_solid_angle(density, self.emitters.emitters[emitter].normal.dot(direction), distance)
+        let pmf = self.tree.pmf(receiver, piece) * self.groups[0] as f32;
+        let pdf = pmf * self.emitters.area_pdf(piece, mean_channel(emission));
+        to_solid_angle(pdf, self.emitters.emitters[emitter].normal.dot(direction), distance)
     }
 
     /// Density per steradian with which [`Lights::sample`] chooses a direction of the environment.
-    pub fn environment_density(&self, direction: Vec3) -> f32 {
-        self.environment.as_ref().map_or(0.0, |e| e.density(direction) * self.groups[2] as f32)
+    pub fn environment_pdf(&self, direction: Vec3) -> f32 {
+        self.environment.as_ref().map_or(0.0, |e| e.pdf(direction) * self.groups[2] as f32)
     }
 }
 
 /// From a density per m² to one per steradian.
-fn to_solid_angle(density: f32, cosine: f32, distance: f32) -> f32 {
-    density * distance * distance / cosine.abs()
+fn to_solid_angle(pdf: f32, cosine: f32, distance: f32) -> f32 {
+    pdf * distance * distance / cosine.abs()
 }
 
 #[cfg(test)]

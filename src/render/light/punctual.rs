@@ -84,9 +84,9 @@ impl Punctual {
             PunctualLight::Luminaire { position, axis, colour, distribution, .. } => {
                 let luminaire = &*distributions[distribution];
                 // In full as far as there is any, and a little farther for rounding.
-                let reach = luminaire.widest().to_radians() as f32 + FRAC_PI_2 + 0.01;
+                let cone_angle = luminaire.widest().to_radians() as f32 + FRAC_PI_2 + 0.01;
                 let peak = luminaire.candela.iter().copied().fold(0.0, f64::max) as f32;
-                Bounds::of_cone(position, axis, reach, peak * mean_channel(colour.max(Vec3::ZERO)))
+                Bounds::of_cone(position, axis, cone_angle, peak * mean_channel(colour.max(Vec3::ZERO)))
             }
         };
         (bounds.intensity > 0.0).then_some(bounds)

@@ -60,7 +60,7 @@ fn lights_are_chosen_as_often_as_the_tree_states() {
         let lights = lights(count, Vec3::ZERO, &mut rng);
         let tree = tree(&lights);
         for receiver in receivers(8, Vec3::ZERO, &mut rng) {
-            let stated: Vec<f64> = (0..count).map(|l| f64::from(tree.probability(&receiver, l))).collect();
+            let stated: Vec<f64> = (0..count).map(|l| f64::from(tree.pmf(&receiver, l))).collect();
             let total: f64 = stated.iter().sum();
             assert!(total < 1.0 + 1e-5);
             let mut counts = vec![0.0; count + 1];
@@ -68,11 +68,11 @@ fn lights_are_chosen_as_often_as_the_tree_states() {
                 // Stratified: chi-squared is then below its limit all the more, unless something is wrong.
                 match tree.sample(&receiver, (f64::from(i) + rng.next_f64()) / f64::from(n)) {
                     None => counts[count] += 1.0,
-                    Some((light, probability, rest)) => {
+                    Some((light, pmf, rest)) => {
                         counts[light] += 1.0;
                         assert!((0.0..1.0).contains(&rest));
                         // The product is taken upwards there and downwards here.
-                        assert!((f64::from(probability) / stated[light] - 1.0).abs() < 1e-5);
+                        assert!((f64::from(pmf) / stated[light] - 1.0).abs() < 1e-5);
                     }
                 }
             }
@@ -93,8 +93,8 @@ fn the_way_down_the_tree_has_a_way_back() {
             let mut starts = vec![None; count];
             for _ in 0..5000 {
                 let u = rng.next_f64();
-                let Some((light, probability, rest)) = tree.sample(&receiver, u) else { continue };
-                let start = u - rest * f64::from(probability);
+                let Some((light, pmf, rest)) = tree.sample(&receiver, u) else { continue };
+                let start = u - rest * f64::from(pmf);
                 let first = *starts[light].get_or_insert(start);
                 assert!((start - first).abs() < 1e-6, "light {light} of {count}: {start} and {first}");
             }
@@ -150,16 +150,16 @@ fn every_kind_of_light_is_chosen_as_often_as_its_density_says() {
                     _ => 1.0,
                 };
                 counts[index as usize] += 1.0;
-                stated[index as usize] = f64::from(sample.density / distance2) * f64::from(n);
+                stated[index as usize] = f64::from(sample.pdf / distance2) * f64::from(n);
             }
             LightSource::Surface { .. } => {
                 counts[6] += 1.0;
                 // The mean of the reciprocal density is the solid angle over the probability of finding it.
-                surface += f64::from(1.0 / sample.density) / f64::from(n);
+                surface += f64::from(1.0 / sample.pdf) / f64::from(n);
             }
             LightSource::Environment => {
                 counts[7] += 1.0;
-                stated[7] = f64::from(sample.density * 4.0 * std::f32::consts::PI) * f64::from(n);
+                stated[7] = f64::from(sample.pdf * 4.0 * std::f32::consts::PI) * f64::from(n);
             }
         }
     }
@@ -194,11 +194,11 @@ fn no_light_that_can_arrive_has_probability_0() {
                 let towards = a + (b - a) * u + (c - a) * v - receiver.position;
                 let off_axis = bounds.axis.angle_between(-towards);
                 let shines = bounds.axis == Vec3::ZERO
-                    || off_axis < bounds.reach
-                    || (bounds.two_sided && std::f32::consts::PI - off_axis < bounds.reach);
+                    || off_axis < bounds.cone_angle
+                    || (bounds.two_sided && std::f32::consts::PI - off_axis < bounds.cone_angle);
                 if shines && towards.dot(receiver.normal) > 0.0 {
                     arriving += 1;
-                    assert!(tree.probability(&receiver, index) > 0.0, "{bounds:?} to {receiver:?}");
+                    assert!(tree.pmf(&receiver, index) > 0.0, "{bounds:?} to {receiver:?}");
                 }
             }
         }
@@ -219,7 +219,7 @@ fn near_lamps_are_preferred_to_far_ones_and_those_behind_are_left_out() {
     let near = |normal: Vec3| -> f32 {
         let receiver = Receiver { position, normal };
         let around = (0..1600).filter(|&i| (bounds[i].low - position).length() < 9.0);
-        around.map(|i| tree.probability(&receiver, i)).sum()
+        around.map(|i| tree.pmf(&receiver, i)).sum()
     };
     // E = ∫ h² / (h² + r²)² dA: the share within r = √72 of 3 m is 72 / 81.
     assert!((near(Vec3::Y) - 72.0 / 81.0).abs() < 0.05, "{}", near(Vec3::Y));
@@ -250,13 +250,13 @@ fn lights_all_in_one_place_or_of_all_sizes_make_a_tree() {
     for lights in [same, growing] {
         let tree = LightTree::build(&lights).unwrap();
         let receiver = Receiver { position: Vec3::NEG_X, normal: Vec3::X };
-        let sum: f32 = (0..lights.len()).map(|l| tree.probability(&receiver, l)).sum();
+        let sum: f32 = (0..lights.len()).map(|l| tree.pmf(&receiver, l)).sum();
         assert!((sum - 1.0).abs() < 1e-3, "{sum}");
     }
     let halves = [1.0, 3.0].map(|intensity| Bounds::of_point(Vec3::ONE, intensity));
     let tree = LightTree::build(&halves).unwrap();
     let receiver = Receiver { position: Vec3::NEG_X, normal: Vec3::X };
-    assert_eq!([0, 1].map(|l| tree.probability(&receiver, l)), [0.25, 0.75]);
+    assert_eq!([0, 1].map(|l| tree.pmf(&receiver, l)), [0.25, 0.75]);
     assert_eq!(tree.sample(&receiver, 0.5), Some((1, 0.75, 1.0 / 3.0)));
     let none = LightTree::build(&[]).unwrap();
     assert!(none.sample(&Receiver { position: Vec3::ZERO, normal: Vec3::X }, 0.5).is_none());
@@ -491,11 +491,11 @@ fn a_sample_states_the_density_that_scattering_into_it_would() {
                 let emitter = &world.lights().emitters.emitters[index];
                 let distance = emitter.point(b).distance(receiver.position);
                 let emission = emitter.emission(world.scene(), b);
-                world.lights().surface_density(&receiver, index, emission, sample.direction, distance)
+                world.lights().surface_pdf(&receiver, index, emission, sample.direction, distance)
             }
-            _ => world.lights().environment_density(sample.direction),
+            _ => world.lights().environment_pdf(sample.direction),
         };
-        disagreed += usize::from((stated / sample.density - 1.0).abs() > 1e-4);
+        disagreed += usize::from((stated / sample.pdf - 1.0).abs() > 1e-4);
     }
     // Only points within rounding of a tile's border.
     assert!(surfaces > 5000 && disagreed <= 5, "{disagreed} of {surfaces}");

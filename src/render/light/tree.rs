@@ -27,7 +27,7 @@ pub struct LightTree {
     fixed: Vec<f64>,
     nodes: Vec<Node>,
     /// For every light the place that holds it: eight times its node plus its lane.
-    places: Vec<u32>,
+    slots: Vec<u32>,
     /// Squared; see [`BoundsLanes::importance`].
     nearest: f32,
 }
@@ -52,7 +52,7 @@ struct Item {
 /// A cluster of several lights, divided in two. In the list of all clusters it stands at the number of its second part's
 /// first light, which is that of no other cluster.
 #[derive(Clone, Copy, Default)]
-struct Halved {
+struct Cluster {
     /// What there is to gain by dividing it.
     cost: f32,
     /// Where the two parts stand in the list; of a part that is a light its number, marked.
@@ -62,7 +62,7 @@ struct Halved {
 impl LightTree {
     /// Over fewer than 2^31 lights, each of some intensity.
     pub fn build(lights: &[Bounds]) -> Result<Self> {
-        let mut tree = Self { fixed: Vec::new(), nodes: Vec::new(), places: Vec::new(), nearest: f32::MIN_POSITIVE };
+        let mut tree = Self { fixed: Vec::new(), nodes: Vec::new(), slots: Vec::new(), nearest: f32::MIN_POSITIVE };
         if lights.len() <= LANES && lights.windows(2).all(|pair| pair[0].differs_only_in_intensity(&pair[1])) {
             let sum: f64 = lights.iter().map(|b| f64::from(b.intensity)).sum();
             tree.fixed = lights.iter().map(|b| f64::from(b.intensity) / sum).collect();
@@ -75,38 +75,38 @@ impl LightTree {
             light,
         };
         let mut items = try_collect(lights.iter().zip(0..).map(item))?;
-        let mut halved = try_vec(lights.len(), Halved::default())?;
-        let root = halve(&mut items, &mut halved, 0, 0);
-        tree.places = try_vec(lights.len(), NONE)?;
+        let mut clusters = try_vec(lights.len(), Cluster::default())?;
+        let root = divide(&mut items, &mut clusters, 0, 0);
+        tree.slots = try_vec(lights.len(), NONE)?;
         // Intensities relative to their sum and distances to the scene's size keep importances far from overflow.
         let whole = Bounds::union(lights);
         tree.nearest = (whole.radius() * 1e-9).powi(2).max(1e-30);
-        tree.add(&items, &halved, root, NONE, 1.0 / whole.intensity.max(f32::MIN_POSITIVE));
+        tree.add(&items, &clusters, root, NONE, 1.0 / whole.intensity.max(f32::MIN_POSITIVE));
         Ok(tree)
     }
 
     /// Lays a cluster out, each node before the nodes under it. Returns what it is as a child, and its bounds.
-    fn add(&mut self, items: &[Item], halved: &[Halved], cluster: u32, place: u32, scale: f32) -> (u32, Bounds) {
+    fn add(&mut self, items: &[Item], clusters: &[Cluster], cluster: u32, slot: u32, scale: f32) -> (u32, Bounds) {
         if cluster & LIGHT != 0 {
             let item = &items[(cluster & !LIGHT) as usize];
-            self.places[item.light as usize] = place;
+            self.slots[item.light as usize] = slot;
             return (LIGHT | item.light, item.bounds);
         }
         // The parts with the most to gain are divided until there are eight, or each is a light.
         let mut parts = vec![cluster];
         while parts.len() < LANES {
             let divisible = (0..parts.len()).filter(|&i| parts[i] & LIGHT == 0);
-            let cost = |i: usize| halved[parts[i] as usize].cost;
+            let cost = |i: usize| clusters[parts[i] as usize].cost;
             let Some(most) = divisible.max_by(|&a, &b| cost(a).total_cmp(&cost(b))) else { break };
-            let two = halved[parts[most] as usize].parts;
+            let two = clusters[parts[most] as usize].parts;
             parts.splice(most..=most, two);
         }
         let index = self.nodes.len();
         let mut children = [NONE; LANES];
-        self.nodes.push(Node { bounds: BoundsLanes::new([], scale), children, parent: place });
+        self.nodes.push(Node { bounds: BoundsLanes::new([], scale), children, parent: slot });
         let mut bounds = Vec::with_capacity(LANES);
         for (lane, part) in parts.into_iter().enumerate() {
-            let (child, of_child) = self.add(items, halved, part, (index * LANES + lane) as u32, scale);
+            let (child, of_child) = self.add(items, clusters, part, (index * LANES + lane) as u32, scale);
             children[lane] = child;
             bounds.push(of_child);
         }
@@ -118,7 +118,7 @@ impl LightTree {
     /// A light by its importance, the probability of the choice, and where within its share `u` fell, in `[0, 1)`.
     #[inline]
     pub fn sample(&self, receiver: &Receiver, u: f64) -> Option<(usize, f32, f64)> {
-        let (mut probability, mut u) = (1.0, u);
+        let (mut pmf, mut u) = (1.0, u);
         for (light, &share) in self.fixed.iter().enumerate() {
             if u < share || light + 1 == self.fixed.len() {
                 return Some((light, share as f32, (u / share).min(1.0 - f64::EPSILON)));
@@ -143,40 +143,40 @@ impl LightTree {
             }
             let share = importance[lane];
             u = ((target - below) / f64::from(share)).clamp(0.0, 1.0 - f64::EPSILON);
-            probability *= share / sum;
+            pmf *= share / sum;
             match node.children[lane] {
                 NONE => return None,
-                child if child & LIGHT != 0 => return Some(((child & !LIGHT) as usize, probability, u)),
+                child if child & LIGHT != 0 => return Some(((child & !LIGHT) as usize, pmf, u)),
                 child => node = &self.nodes[child as usize],
             }
         }
     }
 
     /// The probability with which [`LightTree::sample`] chooses a light.
-    pub fn probability(&self, receiver: &Receiver, light: usize) -> f32 {
+    pub fn pmf(&self, receiver: &Receiver, light: usize) -> f32 {
         if let Some(&share) = self.fixed.get(light) {
             return share as f32;
         }
-        let mut probability = 1.0;
-        let mut place = self.places[light];
-        while place != NONE {
-            let node = &self.nodes[place as usize / LANES];
+        let mut pmf = 1.0;
+        let mut slot = self.slots[light];
+        while slot != NONE {
+            let node = &self.nodes[slot as usize / LANES];
             let importance = node.bounds.importance(receiver, self.nearest);
             let sum: f32 = importance.iter().sum();
-            let share = importance[place as usize % LANES];
+            let share = importance[slot as usize % LANES];
             if !(share > 0.0) {
                 return 0.0;
             }
-            probability *= share / sum;
-            place = node.parent;
+            pmf *= share / sum;
+            slot = node.parent;
         }
-        probability
+        pmf
     }
 }
 
-/// Divides a cluster down to its lights, in parallel, and returns where it stands in the list, of which `halved` are the
+/// Divides a cluster down to its lights, in parallel, and returns where it stands in the list, of which `clusters` are the
 /// places from its `first` light on.
-fn halve(items: &mut [Item], halved: &mut [Halved], first: usize, depth: u32) -> u32 {
+fn divide(items: &mut [Item], clusters: &mut [Cluster], first: usize, depth: u32) -> u32 {
     if items.len() == 1 {
         return LIGHT | first as u32;
     }
@@ -184,11 +184,11 @@ fn halve(items: &mut [Item], halved: &mut [Halved], first: usize, depth: u32) ->
     let at = if depth < MAX_HEURISTIC_DEPTH { split(items) } else { items.len() / 2 };
     let in_parallel = items.len() >= PARALLEL_FROM;
     let (left, right) = items.split_at_mut(at);
-    let (halved_left, halved_right) = halved.split_at_mut(at);
-    let mut halve_left = || halve(left, halved_left, first, depth + 1);
-    let mut halve_right = || halve(right, halved_right, first + at, depth + 1);
-    let parts = if in_parallel { rayon::join(halve_left, halve_right) } else { (halve_left(), halve_right()) };
-    halved_right[0] = Halved { cost: extent.cost(), parts: parts.into() };
+    let (clusters_left, clusters_right) = clusters.split_at_mut(at);
+    let mut divide_left = || divide(left, clusters_left, first, depth + 1);
+    let mut divide_right = || divide(right, clusters_right, first + at, depth + 1);
+    let parts = if in_parallel { rayon::join(divide_left, divide_right) } else { (divide_left(), divide_right()) };
+    clusters_right[0] = Cluster { cost: extent.cost(), parts: parts.into() };
     (first + at) as u32
 }
 

@@ -34,12 +34,12 @@ pub struct Alphabet {
 
 /// The patches of an emission texture, each a light of its own.
 struct Lamps {
-    texture: Arc<Lit>,
+    texture: Arc<LampTexture>,
     /// The light of each patch, after that of what belongs to none.
     lights: Vec<u32>,
 }
 
-struct Lit {
+struct LampTexture {
     size: [usize; 2],
     wrap: [Wrap; 2],
     patches: Patches,
@@ -52,16 +52,16 @@ impl Alphabet {
         let names = |mesh: &Mesh| {
             [mesh.name.clone(), scene.materials.get(mesh.material).map_or(String::new(), |m| m.name.clone())]
         };
-        let mut borne: BTreeSet<String> = scene.meshes.iter().flat_map(names).collect();
-        borne.extend((0..scene.lights.len()).map(punctual_label));
-        borne.insert(ENVIRONMENT.to_string());
-        let lit = lit_textures(scene, expressions, names)?;
-        for (mesh, texture) in scene.meshes.iter().filter_map(|m| Some((m, lit.get(&m.material)?))) {
-            borne.extend((0..texture.patches.count).flat_map(|i| names(mesh).map(|name| lamp_label(&name, i))));
+        let mut existing: BTreeSet<String> = scene.meshes.iter().flat_map(names).collect();
+        existing.extend((0..scene.lights.len()).map(punctual_label));
+        existing.insert(ENVIRONMENT.to_string());
+        let lamp_textures = lamp_textures(scene, expressions, names)?;
+        for (mesh, texture) in scene.meshes.iter().filter_map(|m| Some((m, lamp_textures.get(&m.material)?))) {
+            existing.extend((0..texture.patches.count).flat_map(|i| names(mesh).map(|name| lamp_label(&name, i))));
         }
-        let wanted = wanted(expressions, &borne)?;
-        let told = |names: &[String]| -> Vec<String> {
-            let set: BTreeSet<&String> = names.iter().filter(|n| wanted.contains(*n)).collect();
+        let named_labels = named_labels(expressions, &existing)?;
+        let keep_named = |names: &[String]| -> Vec<String> {
+            let set: BTreeSet<&String> = names.iter().filter(|n| named_labels.contains(*n)).collect();
             set.into_iter().cloned().collect()
         };
         // Meshes of the same labels are one class; that of none is always there, so that what an expression can match
@@ -78,7 +78,7 @@ impl Alphabet {
             })
         };
         class(Vec::new());
-        let class_of_mesh: Vec<u32> = scene.meshes.iter().map(|mesh| class(told(&names(mesh)))).collect();
+        let class_of_mesh: Vec<u32> = scene.meshes.iter().map(|mesh| class(keep_named(&names(mesh)))).collect();
         // So with lights without a surface.
         let mut by_labels = BTreeMap::new();
         let mut light = |kinds: u8, labels: Vec<String>| {
@@ -90,15 +90,15 @@ impl Alphabet {
         for kinds in [kind::LIGHT, kind::OBJECT, kind::BACKGROUND] {
             light(kinds, Vec::new());
         }
-        let punctual = (0..scene.lights.len()).map(|i| light(kind::LIGHT, told(&[punctual_label(i)]))).collect();
-        let environment = light(environment_kinds(emitter_as), told(&[ENVIRONMENT.to_string()]));
+        let punctual = (0..scene.lights.len()).map(|i| light(kind::LIGHT, keep_named(&[punctual_label(i)]))).collect();
+        let environment = light(environment_kinds(emitter_as), keep_named(&[ENVIRONMENT.to_string()]));
         let lamps = scene.meshes.iter().zip(&class_of_mesh).map(|(mesh, class)| {
-            let texture = lit.get(&mesh.material)?.clone();
+            let texture = lamp_textures.get(&mesh.material)?.clone();
             let of_lamp = |i: usize| {
                 let of_it = names(mesh).map(|name| lamp_label(&name, i));
                 // One that no expression names is like the rest of the mesh.
-                if of_it.iter().any(|name| wanted.contains(name)) {
-                    light(surface_kinds(emitter_as), told(&[names(mesh), of_it].concat()))
+                if of_it.iter().any(|name| named_labels.contains(name)) {
+                    light(surface_kinds(emitter_as), keep_named(&[names(mesh), of_it].concat()))
                 } else {
                     *class
                 }
@@ -136,33 +136,33 @@ impl Alphabet {
 
 impl Lamps {
     fn light(&self, uv: Vec2) -> u32 {
-        let Lit { size, wrap, patches } = &*self.texture;
+        let LampTexture { size, wrap, patches } = &*self.texture;
         self.lights[patches.labels[texel_at(uv, *size, *wrap)] as usize]
     }
 }
 
 /// The emission textures of materials whose lamps an expression may name: `'Ceiling#3'`, after mesh or material.
-fn lit_textures(
+fn lamp_textures(
     scene: &Scene,
     expressions: &[&Expression],
     names: impl Fn(&Mesh) -> [String; 2],
-) -> Result<BTreeMap<usize, Arc<Lit>>> {
+) -> Result<BTreeMap<usize, Arc<LampTexture>>> {
     let mut named = BTreeSet::new();
     for expression in expressions {
         expression.tree.labels(&mut |name, _| {
             named.extend(name.rsplit_once('#').map(|(owner, _)| owner.to_string()));
         });
     }
-    let mut lit = BTreeMap::new();
+    let mut lamp_textures = BTreeMap::new();
     for mesh in scene.meshes.iter().filter(|mesh| names(mesh).iter().any(|name| named.contains(name))) {
         let Some(map) = scene.materials.get(mesh.material).and_then(|m| m.emission_texture) else { continue };
-        if !lit.contains_key(&mesh.material) {
+        if !lamp_textures.contains_key(&mesh.material) {
             let Texture { image, wrap, .. } = &scene.textures[map.texture];
             let (size, patches) = ([image.width, image.height], Patches::of(image)?);
-            lit.insert(mesh.material, Arc::new(Lit { size, wrap: *wrap, patches }));
+            lamp_textures.insert(mesh.material, Arc::new(LampTexture { size, wrap: *wrap, patches }));
         }
     }
-    Ok(lit)
+    Ok(lamp_textures)
 }
 
 fn lamp_label(owner: &str, index: usize) -> String {
@@ -200,29 +200,29 @@ fn environment_kinds(emitter_as: EmitterAs) -> u8 {
 }
 
 /// The labels that expressions name; those that an event must bear have to be borne by something.
-fn wanted(expressions: &[&Expression], borne: &BTreeSet<String>) -> Result<BTreeSet<String>> {
-    let mut wanted = BTreeSet::new();
+fn named_labels(expressions: &[&Expression], existing: &BTreeSet<String>) -> Result<BTreeSet<String>> {
+    let mut named_labels = BTreeSet::new();
     for expression in expressions {
         let mut missing = None;
         expression.tree.labels(&mut |name, must| {
-            if must && !borne.contains(name) {
+            if must && !existing.contains(name) {
                 missing = missing.take().or(Some(name.to_string()));
             }
-            wanted.insert(name.to_string());
+            named_labels.insert(name.to_string());
         });
         if let Some(name) = missing {
             let known: Vec<String> =
-                borne.iter().filter(|n| !n.is_empty()).take(12).map(|n| format!("'{n}'")).collect();
+                existing.iter().filter(|n| !n.is_empty()).take(12).map(|n| format!("'{n}'")).collect();
             return Err(Error::new(
                 ErrorKind::NotFound,
                 format!(
                     "expression {:?}: no object, material or light is called '{name}'; there are {}{}",
                     expression.text(),
                     known.join(", "),
-                    if borne.len() > 12 { ", ..." } else { "" }
+                    if existing.len() > 12 { ", ..." } else { "" }
                 ),
             ));
         }
     }
-    Ok(wanted)
+    Ok(named_labels)
 }

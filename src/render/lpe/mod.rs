@@ -31,12 +31,12 @@
 
 mod alphabet;
 mod automaton;
-mod ledger;
 mod parse;
+mod sparse_sums;
 mod trail;
 
-pub(super) use automaton::Table;
-pub(super) use trail::{Brought, Trail};
+pub(super) use automaton::Automaton;
+pub(super) use trail::{PathOutcome, Trail};
 
 use crate::error::Result;
 

@@ -3,9 +3,9 @@
 use crate::error::{Error, Result};
 
 /// Longest text and deepest nesting that are read, and the most often a part can be repeated by number.
-const MOST_CHARACTERS: usize = 2048;
-const DEEPEST: usize = 32;
-const MOST_REPEATS: u32 = 64;
+const MAX_CHARACTERS: usize = 2048;
+const MAX_DEPTH: usize = 32;
+const MAX_REPEATS: u32 = 64;
 
 /// Bits of an event's type.
 pub mod kind {
@@ -130,9 +130,9 @@ impl Node {
 /// Reads an expression in either order.
 pub fn parse(text: &str) -> Result<Node> {
     let characters: Vec<char> = text.chars().collect();
-    if characters.len() > MOST_CHARACTERS {
+    if characters.len() > MAX_CHARACTERS {
         return Err(Error::argument(format!(
-            "the expression has {} characters; at most {MOST_CHARACTERS} are read",
+            "the expression has {} characters; at most {MAX_CHARACTERS} are read",
             characters.len()
         )));
     }
@@ -218,8 +218,8 @@ impl Parser<'_> {
 
     fn either(&mut self) -> Result<Node> {
         self.depth += 1;
-        if self.depth > DEEPEST {
-            return Err(self.error(self.at, &format!("parentheses nest deeper than {DEEPEST}")));
+        if self.depth > MAX_DEPTH {
+            return Err(self.error(self.at, &format!("parentheses nest deeper than {MAX_DEPTH}")));
         }
         let mut nodes = vec![self.sequence()?];
         while self.next_if('|') {
@@ -239,7 +239,7 @@ impl Parser<'_> {
 
     fn repeated(&mut self) -> Result<Node> {
         let node = self.atom()?;
-        let (least, most) = match self.peek() {
+        let (min, max) = match self.peek() {
             Some('*') => (0, None),
             Some('+') => (1, None),
             Some('?') => (0, Some(1)),
@@ -251,25 +251,25 @@ impl Parser<'_> {
             _ => return Ok(node),
         };
         self.at += 1;
-        Ok(Node::Repeat(node.into(), least, most))
+        Ok(Node::Repeat(node.into(), min, max))
     }
 
     /// `n}`, `n,}` or `n,m}`.
     fn counts(&mut self) -> Result<(u32, Option<u32>)> {
         let start = self.at;
-        let least = self.number()?;
-        let most = match self.next_if(',') {
-            false => Some(least),
+        let min = self.number()?;
+        let max = match self.next_if(',') {
+            false => Some(min),
             true if self.peek() == Some('}') => None,
             true => Some(self.number()?),
         };
         if !self.next_if('}') {
             return Err(self.unexpected("'}'"));
         }
-        if most.is_some_and(|m| m < least.max(1)) {
+        if max.is_some_and(|m| m < min.max(1)) {
             return Err(self.error(start, "a repetition must allow at least one, and its second number not be smaller"));
         }
-        Ok((least, most))
+        Ok((min, max))
     }
 
     fn number(&mut self) -> Result<u32> {
@@ -282,8 +282,8 @@ impl Parser<'_> {
         if digits.is_empty() {
             return Err(self.unexpected("a number"));
         }
-        digits.parse().ok().filter(|&n| n <= MOST_REPEATS).ok_or_else(|| {
-            self.error(start, &format!("found {digits}; expected a number of at most {MOST_REPEATS} repetitions"))
+        digits.parse().ok().filter(|&n| n <= MAX_REPEATS).ok_or_else(|| {
+            self.error(start, &format!("found {digits}; expected a number of at most {MAX_REPEATS} repetitions"))
         })
     }
 

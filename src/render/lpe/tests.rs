@@ -2,7 +2,7 @@
 
 use super::alphabet::Scatter;
 use super::automaton::DEAD;
-use super::{BUILT_IN, EmitterAs, Expression, Table};
+use super::{Automaton, BUILT_IN, EmitterAs, Expression};
 use crate::error::{Error, ErrorKind};
 use crate::render::LightSource;
 use crate::scene::{Material, Mesh, PunctualLight, Scene};
@@ -21,22 +21,22 @@ fn scene() -> Scene {
     }
 }
 
-fn table(expressions: &[&str], emitter_as: EmitterAs) -> Table {
+fn automaton(expressions: &[&str], emitter_as: EmitterAs) -> Automaton {
     let parsed: Vec<Expression> = expressions.iter().map(|e| Expression::parse(e).unwrap()).collect();
-    Table::new(&scene(), &parsed.iter().collect::<Vec<_>>(), emitter_as).unwrap()
+    Automaton::new(&scene(), &parsed.iter().collect::<Vec<_>>(), emitter_as).unwrap()
 }
 
 /// The expressions that accept a path, camera first, as `D G@Ball S T L`: modes, `T` for a pane, and at its end `L` a
 /// lamp, `P` or `Q` one of two punctual lights, `B` the environment. Objects are the floor, the ball for `S`, the window
 /// for `T`, unless named.
-fn accepted(table: &Table, path: &str) -> Vec<u16> {
-    let mut state = table.start();
+fn accepted(automaton: &Automaton, path: &str) -> Vec<u16> {
+    let mut state = automaton.start();
     for event in path.split_whitespace() {
         let (letter, object) = event.split_once('@').unwrap_or((event, ""));
         let mesh = |default: u32| MESHES.iter().position(|m| m.0 == object).map_or(default, |i| i as u32);
         let lamp = |mesh| LightSource::Surface { mesh, triangle: 0, uv: Vec2::ZERO };
-        let go = |mesh, scatter| table.next(state, table.class(mesh))[scatter as usize];
-        let end = |source| table.lists()[usize::from(table.accepting(state, table.light(source)))].clone();
+        let go = |mesh, scatter| automaton.next(state, automaton.class(mesh))[scatter as usize];
+        let end = |source| automaton.lists()[usize::from(automaton.accepting(state, automaton.light(source)))].clone();
         state = match letter {
             "D" => go(mesh(0), Scatter::Diffuse),
             "G" => go(mesh(0), Scatter::Glossy),
@@ -121,10 +121,10 @@ const CAMERA_FIRST: &[Row] = &[
 fn expressions_accept_the_paths_they_say_and_no_others() {
     let mut rows = 0;
     for &(expression, yes, no) in LIGHT_FIRST.iter().chain(CAMERA_FIRST) {
-        let table = table(&[expression], EmitterAs::Both);
+        let automaton = automaton(&[expression], EmitterAs::Both);
         for (paths, expected) in [(yes, vec![0]), (no, vec![])] {
             for path in paths {
-                assert_eq!(accepted(&table, path), expected, "{expression} and {path}");
+                assert_eq!(accepted(&automaton, path), expected, "{expression} and {path}");
                 rows += 1;
             }
         }
@@ -136,14 +136,14 @@ fn expressions_accept_the_paths_they_say_and_no_others() {
 fn all_expressions_together_accept_what_each_accepts_alone() {
     let rows: Vec<&Row> = LIGHT_FIRST.iter().chain(CAMERA_FIRST).collect();
     let expressions: Vec<&str> = rows.iter().map(|r| r.0).collect();
-    let together = table(&expressions, EmitterAs::Both);
+    let together = automaton(&expressions, EmitterAs::Both);
     for (number, (expression, yes, no)) in rows.iter().enumerate() {
         let number = number as u16;
         assert!(yes.iter().all(|p| accepted(&together, p).contains(&number)), "{expression}");
         assert!(!no.iter().any(|p| accepted(&together, p).contains(&number)), "{expression}");
     }
     // The paper's five need few states, so paths have few parts.
-    let five = table(&["L.*E", "LDE", "LSE", "L.*DDE", "LD{1,2}E"], EmitterAs::Both);
+    let five = automaton(&["L.*E", "LDE", "LSE", "L.*DDE", "LD{1,2}E"], EmitterAs::Both);
     assert!(five.states() <= 8, "{} states", five.states());
 }
 
@@ -155,10 +155,10 @@ fn emitters_are_the_letters_they_are_asked_to_be() {
         (EmitterAs::Light, vec![0], vec![0]),
         (EmitterAs::Object, vec![1], vec![2]),
     ] {
-        let table = table(&expressions, emitter_as);
-        assert_eq!(accepted(&table, "D L"), lamp, "{emitter_as:?}");
-        assert_eq!(accepted(&table, "D B"), sky, "{emitter_as:?}");
-        assert_eq!(accepted(&table, "D P"), [0], "{emitter_as:?}");
+        let automaton = automaton(&expressions, emitter_as);
+        assert_eq!(accepted(&automaton, "D L"), lamp, "{emitter_as:?}");
+        assert_eq!(accepted(&automaton, "D B"), sky, "{emitter_as:?}");
+        assert_eq!(accepted(&automaton, "D P"), [0], "{emitter_as:?}");
     }
 }
 
@@ -180,11 +180,11 @@ fn built_in_kinds_of_light_add_up_to_the_whole() {
     ];
     for emitter_as in [EmitterAs::Both, EmitterAs::Light, EmitterAs::Object] {
         for parts in parts {
-            let table = table(parts, emitter_as);
+            let automaton = automaton(parts, emitter_as);
             for path in paths {
                 // A punctual light cannot be seen.
                 if path != "P" {
-                    assert_eq!(accepted(&table, path).len(), 1, "{path}, {emitter_as:?}");
+                    assert_eq!(accepted(&automaton, path).len(), 1, "{path}, {emitter_as:?}");
                 }
             }
         }
@@ -196,11 +196,11 @@ fn built_in_kinds_of_light_add_up_to_the_whole() {
 
 #[test]
 fn what_leads_nowhere_is_dropped_at_once() {
-    let table = table(&["LDE", "LSE"], EmitterAs::Both);
-    let class = table.class(0);
-    let [diffuse, ..] = *table.next(table.start(), class);
+    let automaton = automaton(&["LDE", "LSE"], EmitterAs::Both);
+    let class = automaton.class(0);
+    let [diffuse, ..] = *automaton.next(automaton.start(), class);
     assert_ne!(diffuse, DEAD);
-    assert_eq!(table.next(diffuse, class)[Scatter::Diffuse as usize], DEAD);
+    assert_eq!(automaton.next(diffuse, class)[Scatter::Diffuse as usize], DEAD);
 }
 
 #[test]
@@ -249,13 +249,13 @@ fn what_is_no_expression_is_refused_where_it_ceases_to_be_one() {
 
 fn refused(text: &str) -> Error {
     let expression = Expression::parse(text).unwrap();
-    Table::new(&scene(), &[&expression], EmitterAs::Both).err().unwrap()
+    Automaton::new(&scene(), &[&expression], EmitterAs::Both).err().unwrap()
 }
 
 #[test]
 fn what_needs_too_many_states_is_refused() {
     // The last 12 of any number of scatterings have to be kept in mind: 2^12 ways and more.
-    table(&["C.*D.{8}L"], EmitterAs::Both);
+    automaton(&["C.*D.{8}L"], EmitterAs::Both);
     for text in ["C.*D.{12}L", "L(DD|....+.(DD|....+...S?){8}E?){6}E"] {
         let error = refused(text);
         assert!(error.kind == ErrorKind::InvalidArgument && error.message.contains("4096 states"), "{text}: {error}");

@@ -6,7 +6,7 @@
 //!
 //! Pixels next to a part whose block it cuts are traced with it, for what their paths find: parts at multiples of 8 pixels
 //! cost nothing extra. Otherwise a part cannot know what others have found. So all have a fixed number of paths: no target, no time budget. And how long
-//! paths are follows from a few paths ahead of the image (`film::survey`), not from those of the passes before as in
+//! paths are follows from a few paths ahead of the image (`film::prepass`), not from those of the passes before as in
 //! [`super::run`]; both are unbiased, but the images of the two differ within their errors.
 //!
 //! `cover` tells whether the parts are all there, `identity` whether they are of one render.
@@ -156,7 +156,7 @@ fn film(world: &World, camera: &Camera, params: &Params, sums: &Sums, job: Job) 
     let guided = preview::guided(params);
     let canvas = Canvas::of_sums(world, camera, &guided, sums, job.part(0.0, 0.2))?;
     let mut film = canvas.film(job.part(0.2, 0.6))?;
-    preview::finish(&mut film, &canvas, params, job.part(0.6, 1.0))?;
+    preview::add_preview(&mut film, &canvas, params, job.part(0.6, 1.0))?;
     job.report(1.0);
     Ok(film)
 }

@@ -133,12 +133,12 @@ fn a_render_makes_its_own_preview_and_shows_only_what_was_asked_for() {
     assert!(weak.data.iter().zip(&film.beauty.data).all(|(a, b)| (a - b).abs() <= 1e-4 * b.abs()));
     // From the first coarse pass on there is one.
     let monitor = Monitor::default();
-    let mut shown = 0;
+    let mut published = 0;
     let all = run(&world, &camera, &params, monitor.job(), &mut |film| {
-        shown += usize::from(film.preview.as_ref().is_some_and(|p| p.image.count_non_finite() == 0));
+        published += usize::from(film.preview.as_ref().is_some_and(|p| p.image.count_non_finite() == 0));
         monitor.cancel();
     });
-    assert!(all.is_err() && shown > 0, "{shown}");
+    assert!(all.is_err() && published > 0, "{published}");
 }
 
 #[test]

@@ -91,8 +91,8 @@ fn intervals_hold_the_truth_and_the_errors_are_those_of_the_image() {
         relative_ratios.push(stated / measured);
     }
     // It converges from the safe side: few paths leave pixels in the shade less sure than they are.
-    for (ratio, most) in relative_ratios.iter().zip([1.3, 1.2, 1.1]) {
-        assert!((0.95..most).contains(ratio), "stated over measured: {relative_ratios:?}");
+    for (ratio, max_bounces) in relative_ratios.iter().zip([1.3, 1.2, 1.1]) {
+        assert!((0.95..max_bounces).contains(ratio), "stated over measured: {relative_ratios:?}");
     }
 }
 

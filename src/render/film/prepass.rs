@@ -1,19 +1,19 @@
-//! A look at a scene before it is rendered, for what light is worth to its pixels (`worth`).
+//! A look at a scene before it is rendered, for what light is worth to its pixels (`roulette_weight`).
 //!
 //! A render of the whole image learns that from its own paths as they come. Parts of one, done on many machines, know
 //! nothing of each other's; so each makes the same few paths over the image and, within a tile, over the tile, which tell
 //! all of them the same. These paths have seeds of their own and are no part of the image: no estimate is biased by them.
 
+use super::adaptive::coarse_stride;
 use super::block::seed_of;
 use super::grid::TILE;
 use super::pixel::Pixel;
-use super::plan::coarse_stride;
-use super::worth::{Surroundings, median};
+use super::roulette::{RouletteWeights, median};
 use super::{Eye, paths};
 use crate::error::Result;
 use crate::exec;
 use crate::job::Job;
-use crate::render::path::Length;
+use crate::render::path::PathLength;
 use crate::render::{Params, World};
 use glam::{DVec3, Vec3};
 use std::sync::atomic::AtomicU64;
@@ -25,43 +25,44 @@ const STEP: usize = 2;
 /// Tells the paths of the survey from those of the image.
 const SALT: u64 = 0x7375_7276_6579_6564;
 
-pub struct Survey<'a> {
+pub struct Prepass<'a> {
     world: &'a World,
     eye: &'a Eye,
     params: &'a Params,
-    level: Option<DVec3>,
+    median_radiance: Option<DVec3>,
 }
 
-impl<'a> Survey<'a> {
+impl<'a> Prepass<'a> {
     pub fn new(world: &'a World, eye: &'a Eye, params: &'a Params, job: Job) -> Result<Self> {
-        let mut survey = Self { world, eye, params, level: None };
+        let mut prepass = Self { world, eye, params, median_radiance: None };
         let stride = coarse_stride(params.width, params.height);
         let across = params.width.div_ceil(stride);
         let means = exec::map(across * params.height.div_ceil(stride), job, |i| {
-            survey.look([i % across * stride, i / across * stride], PATHS).mean()
+            prepass.sample_pixel([i % across * stride, i / across * stride], PATHS).mean()
         })?;
-        survey.level = median(&means);
-        Ok(survey)
+        prepass.median_radiance = median(&means);
+        Ok(prepass)
     }
 
     /// The brightness of the middling tile, per channel; none of nothing.
-    pub fn level(&self) -> Option<DVec3> {
-        self.level
+    pub fn median_radiance(&self) -> Option<DVec3> {
+        self.median_radiance
     }
 
     /// What light of the brightness of the middling tile is worth in the tile with this corner.
-    pub fn worth(&self, [left, top]: [usize; 2]) -> Option<Vec3> {
+    pub fn weight(&self, [left, top]: [usize; 2]) -> Option<Vec3> {
         let end = |start: usize, size: usize| (start + TILE).min(size);
         let (right, bottom) = (end(left, self.params.width), end(top, self.params.height));
         let columns = || (left..right).step_by(STEP);
         let pixels = (top..bottom).step_by(STEP).flat_map(|y| columns().map(move |x| [x, y]));
-        let pixels: Vec<Pixel> = pixels.map(|at| self.look(at, 1)).collect();
-        self.level.map(|level| Surroundings::of(&pixels, level).worth(&Pixel::default()))
+        let pixels: Vec<Pixel> = pixels.map(|at| self.sample_pixel(at, 1)).collect();
+        self.median_radiance
+            .map(|median_radiance| RouletteWeights::of(&pixels, median_radiance).weight(&Pixel::default()))
     }
 
     /// Some paths of a pixel.
-    pub fn look(&self, at: [usize; 2], count: u32) -> Pixel {
-        let length = Length { most: self.eye.most, worth: None };
+    pub fn sample_pixel(&self, at: [usize; 2], count: u32) -> Pixel {
+        let length = PathLength { max_bounces: self.eye.max_bounces, roulette_weight: None };
         // What is no number is left out of the survey as of the image, but counted only there.
         let (mut pixel, discarded) = (Pixel::default(), AtomicU64::new(0));
         pixel.extend(count, |replication, indices| {

@@ -3,13 +3,13 @@
 use glam::Vec3A;
 
 #[derive(Default)]
-pub struct Ledger {
+pub struct SparseSums {
     sums: Vec<Vec3A>,
     /// A bit for each sum that may differ from none.
     touched: Vec<u64>,
 }
 
-impl Ledger {
+impl SparseSums {
     /// Begins anew with as many sums.
     #[inline]
     pub fn begin(&mut self, count: usize) {
@@ -46,18 +46,18 @@ mod tests {
 
     #[test]
     fn sums_are_taken_once_in_order_and_nothing_is_left() {
-        let mut ledger = Ledger::default();
-        ledger.begin(200);
+        let mut sums = SparseSums::default();
+        sums.begin(200);
         for (number, light) in [(130, 1.0), (3, 2.0), (64, 4.0), (3, 8.0), (199, 16.0)] {
-            ledger.add(number, Vec3A::splat(light));
+            sums.add(number, Vec3A::splat(light));
         }
         let mut taken = Vec::new();
-        ledger.drain(|number, light| taken.push((number, light.x)));
+        sums.drain(|number, light| taken.push((number, light.x)));
         assert_eq!(taken, [(3, 10.0), (64, 4.0), (130, 1.0), (199, 16.0)]);
-        ledger.drain(|number, _| panic!("{number} was taken before"));
+        sums.drain(|number, _| panic!("{number} was taken before"));
         // What was left behind does not show in the next.
-        ledger.add(5, Vec3A::ONE);
-        ledger.begin(10);
-        ledger.drain(|number, _| panic!("{number} was forgotten"));
+        sums.add(5, Vec3A::ONE);
+        sums.begin(10);
+        sums.drain(|number, _| panic!("{number} was forgotten"));
     }
 }

@@ -6,25 +6,32 @@ use glam::Vec3;
 
 /// How a material is to be looked at.
 #[derive(Clone, Copy, Debug)]
-pub struct Finish {
+pub struct CompiledMaterial {
     /// What it is made of, where no texture varies it.
     pub substance: Substance,
     /// Whether textures vary what it is made of.
-    pub varies: bool,
+    pub is_textured: bool,
     /// Whether there may be more to it than a diffuse layer.
     pub layered: bool,
     /// Whether a texture bends its normals.
-    pub bumpy: bool,
+    pub has_normal_map: bool,
     /// Whether parts of it may not be there.
-    pub partial: bool,
+    pub has_alpha: bool,
     /// Whether light may go straight through it, for either reason.
-    pub see_through: bool,
+    pub lets_light_through: bool,
 }
 
-impl Finish {
+impl CompiledMaterial {
     /// The same with every question left open.
-    pub fn unanalysed(&self) -> Self {
-        Self { varies: true, layered: true, bumpy: true, partial: true, see_through: true, ..*self }
+    pub fn without_analysis(&self) -> Self {
+        Self {
+            is_textured: true,
+            layered: true,
+            has_normal_map: true,
+            has_alpha: true,
+            lets_light_through: true,
+            ..*self
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Where the next paths go.
 //!
 //! First a coarse image, then a few paths for every pixel, then twice as many, and so on: at powers of two the points are
-//! stratified best. With a target, tiles go on alone from [`EVEN`] paths on. For the error of the whole image the least
+//! stratified best. With a target, tiles go on alone from [`MIN_UNIFORM_PATHS`] paths on. For the error of the whole image the least
 //! paths are those in proportion to the standard deviation of a tile's paths (Neyman 1934), or to that relative to what its
 //! pixels show; for the error of each pixel they follow from the tile's own. The tiles that lack most of what they need are
 //! doubled first.
@@ -14,7 +14,7 @@
 use super::grid::{AREA, TILE};
 use super::interval::{NORMAL_95, pooled};
 use super::pixel::Pixel;
-use super::worth::{mean, trust};
+use super::roulette::{mean, shrinkage};
 use super::{Canvas, Clock};
 use crate::error::Result;
 use crate::exec;
@@ -24,18 +24,18 @@ use crate::render::Params;
 use glam::DVec3;
 
 /// Pixels of the coarsest image.
-const COARSE: usize = 1024;
+const COARSE_PIXELS: usize = 1024;
 /// Paths of the first pass over all pixels.
-const FIRST: u32 = 4;
+const FIRST_PASS_PATHS: u32 = 4;
 /// Paths of every pixel before anything is decided from them.
-const EVEN: u32 = 16;
+const MIN_UNIFORM_PATHS: u32 = 16;
 /// Paths that a pixel of a tile gets at most, relative to what pixels are allowed on the average. Light that few paths find
 /// would take all there are: a caustic, the image of a small lamp in polish.
-const SHARE: u32 = 64;
+const MAX_TILE_RATIO: u32 = 64;
 /// Pixels darker than this share of the mean luminance count as if they were as bright.
-const DARK: f64 = 0.1;
+const MIN_RELATIVE_LUMINANCE: f64 = 0.1;
 /// The same where the errors of all pixels are one figure: darker ones may count for more in it, as none holds up the others.
-const BLACK: f64 = 0.01;
+const MIN_RELATIVE_RADIANCE: f64 = 0.01;
 
 /// How many paths pixels are to have.
 pub struct Pass {
@@ -47,7 +47,7 @@ pub struct Pass {
 
 impl Pass {
     /// So many paths for every pixel.
-    pub fn alike(tiles: usize, count: u32) -> Result<Self> {
+    pub fn uniform(tiles: usize, count: u32) -> Result<Self> {
         Ok(Self { counts: try_vec(tiles, count)?, stride: 1 })
     }
 
@@ -73,83 +73,83 @@ impl Pass {
 
 /// Sums over a tile, or over the image.
 #[derive(Clone, Copy, Default)]
-pub struct Tally {
+pub struct Statistics {
     pub paths: u64,
     pixels: u32,
     /// Most paths of a pixel.
-    most: u32,
+    max_paths: u32,
     /// Of the means of the pixels, averaged over the channels.
     mean: f64,
     /// Of the variances of those means.
     variance: f64,
     /// Of the variances of single paths.
-    spread: f64,
+    path_variance: f64,
 }
 
-impl Tally {
+impl Statistics {
     fn add(&mut self, other: &Self) {
         self.paths += other.paths;
         self.pixels += other.pixels;
-        self.most = self.most.max(other.most);
+        self.max_paths = self.max_paths.max(other.max_paths);
         self.mean += other.mean;
         self.variance += other.variance;
-        self.spread += other.spread;
+        self.path_variance += other.path_variance;
     }
 
     /// Mean of the pixels.
-    fn level(&self) -> f64 {
+    fn mean_radiance(&self) -> f64 {
         self.mean / f64::from(self.pixels.max(1))
     }
 
     /// Root mean square of the standard errors, relative to the mean.
     pub fn error(&self) -> f64 {
         let variance = self.variance / f64::from(self.pixels.max(1));
-        if variance == 0.0 { 0.0 } else { variance.sqrt() / self.level() }
+        if variance == 0.0 { 0.0 } else { variance.sqrt() / self.mean_radiance() }
     }
 }
 
 impl Canvas<'_> {
     /// Of the whole image.
-    pub fn total(&self, job: Job) -> Result<Tally> {
-        Ok(whole(&self.tallies(|_, _| 1.0, job)?))
+    pub fn total(&self, job: Job) -> Result<Statistics> {
+        Ok(whole(&self.statistics(|_, _| 1.0, job)?))
     }
 
     /// The same with the error of each pixel relative to what it shows, not to the mean of the image.
-    pub fn relative_total(&self, job: Job) -> Result<Tally> {
-        let mean = self.total(job.part(0.0, 0.0))?.level();
-        Ok(whole(&self.relative_tallies(mean, job)?))
+    pub fn relative_total(&self, job: Job) -> Result<Statistics> {
+        let mean = self.total(job.part(0.0, 0.0))?.mean_radiance();
+        Ok(whole(&self.relative_statistics(mean, job)?))
     }
 
     /// A pixel with a rare bright path is bright where its scatter is large; it counts for what it shows without. Few paths
     /// leave the word to the tile.
-    fn relative_tallies(&self, mean: f64, job: Job) -> Result<Vec<Tally>> {
+    fn relative_statistics(&self, mean: f64, job: Job) -> Result<Vec<Statistics>> {
         let weight = |pixel: &Pixel, tile: f64| {
-            let shown = tile + (pixel.middling() - tile) * trust(f64::from(pixel.count()));
-            if mean > 0.0 { mean / shown.max(BLACK * mean) } else { 1.0 }
+            let shown = tile + (pixel.trimmed_mean() - tile) * shrinkage(f64::from(pixel.count()));
+            if mean > 0.0 { mean / shown.max(MIN_RELATIVE_RADIANCE * mean) } else { 1.0 }
         };
-        self.tallies(weight, job)
+        self.statistics(weight, job)
     }
 
     /// `weight` is what the error of a pixel counts for, whose tile has this mean.
-    fn tallies(&self, weight: impl Fn(&Pixel, f64) -> f64 + Sync, job: Job) -> Result<Vec<Tally>> {
+    fn statistics(&self, weight: impl Fn(&Pixel, f64) -> f64 + Sync, job: Job) -> Result<Vec<Statistics>> {
         exec::map(self.grid.tiles(), job, |tile| {
-            let mut tally = Tally::default();
+            let mut sum = Statistics::default();
             let shown = mean(self.tile(tile)).map_or(0.0, |(mean, _)| average(mean));
             for pixel in self.tile(tile) {
                 let variance = average(pixel.variance()) * weight(pixel, shown).powi(2);
-                tally.paths += u64::from(pixel.count());
-                tally.pixels += 1;
-                tally.most = tally.most.max(pixel.count());
-                tally.mean += average(pixel.mean());
-                tally.variance += variance;
-                tally.spread += variance * f64::from(pixel.count());
+                sum.paths += u64::from(pixel.count());
+                sum.pixels += 1;
+                sum.max_paths = sum.max_paths.max(pixel.count());
+                sum.mean += average(pixel.mean());
+                sum.variance += variance;
+                sum.path_variance += variance * f64::from(pixel.count());
             }
-            tally
+            sum
         })
     }
 
     /// Per tile, the mean square of the pixels' intervals relative to their luminance.
-    fn doubts(&self, floor: f64, job: Job) -> Result<Vec<f64>> {
+    fn relative_intervals(&self, floor: f64, job: Job) -> Result<Vec<f64>> {
         let variance = pooled(&self.variance(job)?, job)?;
         exec::map(self.grid.tiles(), job, |tile| {
             let pixels = (0..AREA).filter_map(|i| self.grid.place(tile, i));
@@ -165,124 +165,133 @@ impl Canvas<'_> {
 }
 
 /// Decides pass by pass.
-pub struct Plan<'p> {
+pub struct AdaptiveSampler<'p> {
     params: &'p Params,
     /// Stride and paths per pixel of the last pass that treated all alike.
     stride: usize,
-    even: u32,
+    uniform_paths: u32,
 }
 
-impl<'p> Plan<'p> {
+impl<'p> AdaptiveSampler<'p> {
     pub fn new(params: &'p Params) -> Self {
-        Self { params, stride: 2 * coarse_stride(params.width, params.height), even: 0 }
+        Self { params, stride: 2 * coarse_stride(params.width, params.height), uniform_paths: 0 }
     }
 
     /// The next pass; none if the image is as good as was asked for, or there is no time left.
     pub fn next(&mut self, canvas: &Canvas, clock: &Clock, job: Job) -> Result<Option<Pass>> {
         let Params { samples, target_error, relative_error, pixel_error, .. } = *self.params;
-        if self.even > 0 && clock.is_over() {
+        if self.uniform_paths > 0 && clock.is_over() {
             return Ok(None);
         }
         // A coarse image, a finer one, and so on down to one path per pixel.
         if self.stride > 1 {
             self.stride /= 2;
-            self.even = 1;
-            return self.alike(canvas, 1);
+            self.uniform_paths = 1;
+            return self.uniform(canvas, 1);
         }
         let has_target = target_error > 0.0 || relative_error > 0.0 || pixel_error > 0.0;
-        if has_target && self.even >= EVEN.min(samples) {
-            return self.where_needed(canvas, clock, job);
+        if has_target && self.uniform_paths >= MIN_UNIFORM_PATHS.min(samples) {
+            return self.adaptive_pass(canvas, clock, job);
         }
-        if self.even >= samples {
+        if self.uniform_paths >= samples {
             return Ok(None);
         }
         // The same for all: doubled, or as much as there is time for.
-        let doubled = if self.even < FIRST { FIRST } else { self.even.saturating_mul(2) };
-        let afforded = clock.affordable().map_or(u32::MAX, |times| {
-            let more = (f64::from(self.even) * times) as u32 / FIRST * FIRST;
-            self.even.saturating_add(more.max(FIRST))
+        let doubled =
+            if self.uniform_paths < FIRST_PASS_PATHS { FIRST_PASS_PATHS } else { self.uniform_paths.saturating_mul(2) };
+        let affordable = clock.affordable_ratio().map_or(u32::MAX, |times| {
+            let more = (f64::from(self.uniform_paths) * times) as u32 / FIRST_PASS_PATHS * FIRST_PASS_PATHS;
+            self.uniform_paths.saturating_add(more.max(FIRST_PASS_PATHS))
         });
-        self.even = doubled.min(afforded.max(FIRST)).min(samples);
-        self.alike(canvas, self.even)
+        self.uniform_paths = doubled.min(affordable.max(FIRST_PASS_PATHS)).min(samples);
+        self.uniform(canvas, self.uniform_paths)
     }
 
-    fn alike(&self, canvas: &Canvas, count: u32) -> Result<Option<Pass>> {
-        Ok(Some(Pass { stride: self.stride, ..Pass::alike(canvas.grid.tiles(), count)? }))
+    fn uniform(&self, canvas: &Canvas, count: u32) -> Result<Option<Pass>> {
+        Ok(Some(Pass { stride: self.stride, ..Pass::uniform(canvas.grid.tiles(), count)? }))
     }
 
     /// Doubles the tiles that need it most.
-    fn where_needed(&self, canvas: &Canvas, clock: &Clock, job: Job) -> Result<Option<Pass>> {
-        let tallies = canvas.tallies(|_, _| 1.0, job)?;
-        let wanted = self.wanted(canvas, &tallies, job)?;
-        let whole = whole(&tallies);
+    fn adaptive_pass(&self, canvas: &Canvas, clock: &Clock, job: Job) -> Result<Option<Pass>> {
+        let statistics = canvas.statistics(|_, _| 1.0, job)?;
+        let target_paths = self.target_paths(canvas, &statistics, job)?;
+        let whole = whole(&statistics);
 
         // What they need, as far as there are paths and time for it.
-        let most = self.params.samples.saturating_mul(SHARE);
-        let lack = |tile: usize| {
-            (wanted[tile].min(f64::from(most)) - f64::from(tallies[tile].most)).max(0.0)
-                * f64::from(tallies[tile].pixels)
+        let max_paths = self.params.samples.saturating_mul(MAX_TILE_RATIO);
+        let missing = |tile: usize| {
+            (target_paths[tile].min(f64::from(max_paths)) - f64::from(statistics[tile].max_paths)).max(0.0)
+                * f64::from(statistics[tile].pixels)
         };
-        let mut budget: f64 = (0..tallies.len()).map(lack).sum();
-        if let Some(times) = clock.affordable() {
+        let mut budget: f64 = (0..statistics.len()).map(missing).sum();
+        if let Some(times) = clock.affordable_ratio() {
             budget = budget.min(whole.paths as f64 * times);
         }
         let allowed = f64::from(self.params.samples) * f64::from(whole.pixels) - whole.paths as f64;
-        let mut needy: Vec<(f64, usize)> = (0..tallies.len())
-            .map(|tile| (wanted[tile] / f64::from(tallies[tile].most.max(1)), tile))
-            .filter(|&(need, tile)| need > 1.0 && tallies[tile].most < most)
+        let mut candidates: Vec<(f64, usize)> = (0..statistics.len())
+            .map(|tile| (target_paths[tile] / f64::from(statistics[tile].max_paths.max(1)), tile))
+            .filter(|&(need, tile)| need > 1.0 && statistics[tile].max_paths < max_paths)
             .collect();
         // Equal needs in order of the tiles.
-        needy.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        candidates.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
 
-        let mut counts: Vec<u32> = tallies.iter().map(|t| t.most).collect();
+        let mut counts: Vec<u32> = statistics.iter().map(|t| t.max_paths).collect();
         let mut spent = 0.0;
-        for (_, tile) in needy {
-            let cost = f64::from(tallies[tile].most) * f64::from(tallies[tile].pixels);
+        for (_, tile) in candidates {
+            let cost = f64::from(statistics[tile].max_paths) * f64::from(statistics[tile].pixels);
             if spent > 0.0 && spent >= budget || spent + cost > allowed {
                 break;
             }
-            counts[tile] = counts[tile].saturating_mul(2).min(most);
+            counts[tile] = counts[tile].saturating_mul(2).min(max_paths);
             spent += cost;
         }
         Ok((spent > 0.0).then_some(Pass { counts, stride: 1 }))
     }
 
     /// Paths per pixel that each tile should have in the end.
-    fn wanted(&self, canvas: &Canvas, tallies: &[Tally], job: Job) -> Result<Vec<f64>> {
+    fn target_paths(&self, canvas: &Canvas, statistics: &[Statistics], job: Job) -> Result<Vec<f64>> {
         let Params { target_error, relative_error, pixel_error, .. } = *self.params;
-        let mean = whole(tallies).level();
-        let mut wanted = try_vec(tallies.len(), 0.0)?;
+        let mean = whole(statistics).mean_radiance();
+        let mut target_paths = try_vec(statistics.len(), 0.0)?;
         if target_error > 0.0 {
-            self.want_together(canvas, tallies, target_error, &mut wanted)?;
+            self.add_allocation(canvas, statistics, target_error, &mut target_paths)?;
         }
         if relative_error > 0.0 {
-            self.want_together(canvas, &canvas.relative_tallies(mean, job)?, relative_error, &mut wanted)?;
+            self.add_allocation(canvas, &canvas.relative_statistics(mean, job)?, relative_error, &mut target_paths)?;
         }
         if pixel_error > 0.0 {
-            let doubts = canvas.doubts(DARK * mean, job)?;
-            for ((wanted, doubt), tally) in wanted.iter_mut().zip(doubts).zip(tallies) {
-                *wanted = wanted.max(f64::from(tally.most) * doubt / f64::from(pixel_error).powi(2));
+            let relative_intervals = canvas.relative_intervals(MIN_RELATIVE_LUMINANCE * mean, job)?;
+            for ((paths, squared_interval), tile) in target_paths.iter_mut().zip(relative_intervals).zip(statistics) {
+                *paths = paths.max(f64::from(tile.max_paths) * squared_interval / f64::from(pixel_error).powi(2));
             }
         }
-        Ok(wanted)
+        Ok(target_paths)
     }
 
     /// Raises what is wanted to the least paths that bring the error of all tiles together down to a target.
-    fn want_together(&self, canvas: &Canvas, tallies: &[Tally], target: f32, wanted: &mut [f64]) -> Result<()> {
-        let (whole, target) = (whole(tallies), f64::from(target));
+    fn add_allocation(
+        &self,
+        canvas: &Canvas,
+        statistics: &[Statistics],
+        target: f32,
+        target_paths: &mut [f64],
+    ) -> Result<()> {
+        let (whole, target) = (whole(statistics), f64::from(target));
         if whole.error() <= target {
             return Ok(());
         }
-        let spreads: Vec<f64> = tallies.iter().map(|t| t.spread / f64::from(t.pixels)).collect();
-        let deviations: Vec<f64> = canvas.grid.heeding_neighbours(&spreads)?.into_iter().map(f64::sqrt).collect();
+        let path_variances: Vec<f64> = statistics.iter().map(|t| t.path_variance / f64::from(t.pixels)).collect();
+        let deviations: Vec<f64> =
+            canvas.grid.max_with_neighbourhood_mean(&path_variances)?.into_iter().map(f64::sqrt).collect();
         // In proportion n = k d they leave the mean square error mean(s / k d), with s the variance of single paths.
         let mean_of = |value: &dyn Fn(usize) -> f64| {
-            (0..tallies.len()).map(|t| value(t) * f64::from(tallies[t].pixels)).sum::<f64>() / f64::from(whole.pixels)
+            (0..statistics.len()).map(|t| value(t) * f64::from(statistics[t].pixels)).sum::<f64>()
+                / f64::from(whole.pixels)
         };
-        let left = mean_of(&|t| if spreads[t] > 0.0 { spreads[t] / deviations[t] } else { 0.0 });
-        let needed = left / (target * whole.level()).powi(2);
+        let left = mean_of(&|t| if path_variances[t] > 0.0 { path_variances[t] / deviations[t] } else { 0.0 });
+        let needed = left / (target * whole.mean_radiance()).powi(2);
         let allowed = f64::from(self.params.samples) / mean_of(&|t| deviations[t]);
-        wanted.iter_mut().zip(&deviations).for_each(|(w, d)| *w = w.max(needed.min(allowed) * d));
+        target_paths.iter_mut().zip(&deviations).for_each(|(w, d)| *w = w.max(needed.min(allowed) * d));
         Ok(())
     }
 }
@@ -295,14 +304,14 @@ fn average(v: DVec3) -> f64 {
 /// Distance between the pixels of the coarsest image of a size: a power of two.
 pub fn coarse_stride(width: usize, height: usize) -> usize {
     let mut stride = 1;
-    while width.div_ceil(stride) * height.div_ceil(stride) > COARSE {
+    while width.div_ceil(stride) * height.div_ceil(stride) > COARSE_PIXELS {
         stride *= 2;
     }
     stride
 }
 
-fn whole(tallies: &[Tally]) -> Tally {
-    let mut whole = Tally::default();
-    tallies.iter().for_each(|t| whole.add(t));
+fn whole(statistics: &[Statistics]) -> Statistics {
+    let mut whole = Statistics::default();
+    statistics.iter().for_each(|t| whole.add(t));
     whole
 }
