@@ -14,7 +14,7 @@ pub(super) struct Problem<'a> {
     pub matrix: &'a [f64],
     pub right: &'a [f64],
     /// `λ` > 0.
-    pub pull: f64,
+    pub regularisation: f64,
     /// `p`, for every unknown.
     pub preferred: &'a [f64],
     /// `u`, ≥ 0, may be infinite.
@@ -22,31 +22,31 @@ pub(super) struct Problem<'a> {
 }
 
 /// Newton steps: each but the last few changes which unknowns are at a bound.
-const STEPS: usize = 200;
+const MAX_STEPS: usize = 200;
 /// Residual, relative to the right-hand side, that is rounding only.
-const ROUNDING: f64 = 1e-12;
+const CONVERGED: f64 = 1e-12;
 /// Residual that counts as settled all the same.
-const FLICKER: f64 = 1e-8;
+const CONVERGED_AT_BOUND: f64 = 1e-8;
 
 /// At a bound, or between them.
 #[derive(Clone, Copy, PartialEq)]
 enum State {
-    Least,
-    Between,
-    Most,
+    AtLower,
+    Free,
+    AtUpper,
 }
 
 impl Problem<'_> {
     /// # Errors
     /// `Internal` if the method does not end, which it must.
     pub fn solve(&self) -> Result<Vec<f64>> {
-        let (m, lambda) = (self.right.len(), self.pull);
+        let (m, lambda) = (self.right.len(), self.regularisation);
         let size = self.right.iter().map(|b| b.abs()).fold(0.0, f64::max);
         let mut z = vec![0.0; m];
         let mut gradient = self.gradient(lambda, &z);
         let scale = size.max(norm(&gradient));
-        for _ in 0..STEPS {
-            if norm(&gradient) <= ROUNDING * scale {
+        for _ in 0..MAX_STEPS {
+            if norm(&gradient) <= CONVERGED * scale {
                 return Ok(self.clipped(&z));
             }
             let states = self.states(&z);
@@ -54,13 +54,13 @@ impl Problem<'_> {
             let t = self.line_search(lambda, &z, &step, &gradient);
             z.iter_mut().zip(&step).for_each(|(z, d)| *z += t * d);
             // Where no unknown came to a bound or left one, the function is a parabola, and the step ends at its foot.
-            if t > 1.0 - ROUNDING && self.states(&z) == states {
+            if t > 1.0 - CONVERGED && self.states(&z) == states {
                 return Ok(self.clipped(&z));
             }
             gradient = self.gradient(lambda, &z);
         }
         // At a bound to rounding an unknown may flicker.
-        if norm(&gradient) <= FLICKER * scale {
+        if norm(&gradient) <= CONVERGED_AT_BOUND * scale {
             return Ok(self.clipped(&z));
         }
         Err(Error::new(ErrorKind::Internal, "the powers of the groups did not settle"))
@@ -69,11 +69,11 @@ impl Problem<'_> {
     /// Where each unknown is.
     fn states(&self, z: &[f64]) -> Vec<State> {
         let state = |(x, u): (f64, &f64)| match x {
-            x if x <= 0.0 => State::Least,
-            x if x >= *u => State::Most,
-            _ => State::Between,
+            x if x <= 0.0 => State::AtLower,
+            x if x >= *u => State::AtUpper,
+            _ => State::Free,
         };
-        self.free(z).into_iter().zip(self.upper).map(state).collect()
+        self.unclipped(z).into_iter().zip(self.upper).map(state).collect()
     }
 
     fn row(&self, i: usize) -> &[f64] {
@@ -82,7 +82,7 @@ impl Problem<'_> {
     }
 
     /// `p + Aᵀ z`
-    fn free(&self, z: &[f64]) -> Vec<f64> {
+    fn unclipped(&self, z: &[f64]) -> Vec<f64> {
         let mut x = self.preferred.to_vec();
         for (i, &z) in z.iter().enumerate().filter(|(_, z)| **z != 0.0) {
             x.iter_mut().zip(self.row(i)).for_each(|(x, a)| *x += a * z);
@@ -91,7 +91,7 @@ impl Problem<'_> {
     }
 
     fn clipped(&self, z: &[f64]) -> Vec<f64> {
-        let mut x = self.free(z);
+        let mut x = self.unclipped(z);
         x.iter_mut().zip(self.upper).for_each(|(x, u)| *x = x.clamp(0.0, *u));
         x
     }
@@ -107,7 +107,7 @@ impl Problem<'_> {
         let m = gradient.len();
         let mut hessian = vec![0.0; m * m];
         for i in 0..m {
-            let count = |(a, state): (&f64, &State)| if *state == State::Between { *a } else { 0.0 };
+            let count = |(a, state): (&f64, &State)| if *state == State::Free { *a } else { 0.0 };
             let between: Vec<f64> = self.row(i).iter().zip(states).map(count).collect();
             for k in 0..=i {
                 hessian[i * m + k] = dot(&between, self.row(k));
@@ -130,7 +130,7 @@ impl Problem<'_> {
             along
         };
         let mut slope = Slope { start: dot(gradient, step), growth: lambda * dot(step, step), changes: Vec::new() };
-        for ((x, v), u) in self.free(z).iter().zip(&along).zip(self.upper).filter(|((_, v), _)| **v != 0.0) {
+        for ((x, v), u) in self.unclipped(z).iter().zip(&along).zip(self.upper).filter(|((_, v), _)| **v != 0.0) {
             let (enters, leaves) = if *v > 0.0 { (-x / v, (u - x) / v) } else { ((u - x) / v, -x / v) };
             slope.add(enters, leaves, v * v);
         }
@@ -181,9 +181,16 @@ mod tests {
     use crate::rng::Rng;
 
     /// The pull is relative to the mean square of a row.
-    fn solve(rows: usize, matrix: &[f64], right: &[f64], pull: f64, preferred: &[f64], upper: &[f64]) -> Vec<f64> {
-        let pull = pull * dot(matrix, matrix) / rows as f64;
-        Problem { matrix, right, pull, preferred, upper }.solve().unwrap()
+    fn solve(
+        rows: usize,
+        matrix: &[f64],
+        right: &[f64],
+        regularisation: f64,
+        preferred: &[f64],
+        upper: &[f64],
+    ) -> Vec<f64> {
+        let regularisation = regularisation * dot(matrix, matrix) / rows as f64;
+        Problem { matrix, right, regularisation, preferred, upper }.solve().unwrap()
     }
 
     const FREE: f64 = f64::INFINITY;
@@ -208,7 +215,7 @@ mod tests {
         assert!((x[0] - 1.0).abs() < 1e-8 && (x[1] - 3.0).abs() < 1e-8, "{x:?}");
         // No equation at all.
         assert_eq!(
-            Problem { matrix: &[], right: &[], pull: 1.0, preferred: &[0.7], upper: &[0.5] }.solve().unwrap(),
+            Problem { matrix: &[], right: &[], regularisation: 1.0, preferred: &[0.7], upper: &[0.5] }.solve().unwrap(),
             [0.5]
         );
     }
@@ -227,9 +234,9 @@ mod tests {
             let preferred = vec![1.0; n];
             let upper: Vec<f64> =
                 (0..n).map(|_| if rng.next_f64() < 0.5 { FREE } else { 3.0 * rng.next_f64() }).collect();
-            let pull = 10f64.powf(-9.0 * rng.next_f64());
-            let x = solve(m, &matrix, &right, pull, &preferred, &upper);
-            let lambda = pull * matrix.iter().map(|a| a * a).sum::<f64>() / m as f64;
+            let regularisation = 10f64.powf(-9.0 * rng.next_f64());
+            let x = solve(m, &matrix, &right, regularisation, &preferred, &upper);
+            let lambda = regularisation * matrix.iter().map(|a| a * a).sum::<f64>() / m as f64;
             for j in 0..n {
                 let slope: f64 =
                     (0..m).map(|i| matrix[i * n + j] * (dot(&matrix[i * n..][..n], &x) - right[i])).sum::<f64>()

@@ -10,7 +10,7 @@
 //! The least squares are between goals, each a mean over many paths: texels, whose noise would make the answer dark, are
 //! never compared one by one.
 
-use super::Reach;
+use super::TargetStatus;
 use super::estimate::{BATCHES, STUDENT_T, mean, standard_error};
 use super::responses::{Aspect, Estimate, Goal, Responses};
 use super::sided::{self, Problem, Sense};
@@ -40,7 +40,7 @@ pub enum Colour {
 pub struct GroupParams {
     pub colour: Colour,
     /// Largest multiplier of each group, ≥ 0, infinite for none; empty if none has a bound.
-    pub most: Vec<f64>,
+    pub max_scale: Vec<f64>,
     /// Multipliers that there are, each ≥ 0, at most [`MAX_LEVELS`]; empty if all are. Groups get those that together are
     /// best for the goals ([`super::steps`]); their intervals are wider by the steps: they still hold what the powers would
     /// be without any.
@@ -54,7 +54,7 @@ pub struct GroupParams {
 
 impl Default for GroupParams {
     fn default() -> Self {
-        Self { colour: Colour::Kept, most: Vec::new(), levels: Vec::new(), evenness: 1e-6, tolerance: 0.01 }
+        Self { colour: Colour::Kept, max_scale: Vec::new(), levels: Vec::new(), evenness: 1e-6, tolerance: 0.01 }
     }
 }
 
@@ -65,7 +65,7 @@ pub struct Outcome {
     pub achieved: DVec3,
     /// Half-widths of 95 % intervals: how far the truth may be from `achieved`, the powers as they are.
     pub half_width: DVec3,
-    pub reach: [Reach; 3],
+    pub status: [TargetStatus; 3],
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -112,7 +112,7 @@ pub fn solve_groups(responses: &Responses, goals: &[Goal], params: &GroupParams,
 }
 
 /// Groups that are worked on at once, of as many as there may be.
-const RUN: usize = 1024;
+const GROUPS_PER_RUN: usize = 1024;
 
 /// The power of each group: one list for all channels, or one for each of the three.
 struct Powers(Vec<Vec<f64>>);
@@ -131,9 +131,9 @@ impl Powers {
         let n = BATCHES as f64;
         let width = |list: usize| {
             let mut widths = try_vec(self.0[list].len(), 0.0)?;
-            exec::for_runs(&mut widths, RUN, job, |first, widths| {
+            exec::for_runs(&mut widths, GROUPS_PER_RUN, job, |first, widths| {
                 let answers = || without.iter().map(|powers| &powers.0[list][first..]);
-                let mut means = [0.0; RUN];
+                let mut means = [0.0; GROUPS_PER_RUN];
                 for answer in answers() {
                     means.iter_mut().zip(answer).for_each(|(mean, power)| *mean += power / n);
                 }
@@ -173,14 +173,14 @@ fn check(responses: &Responses, goals: &[Goal], params: &GroupParams) -> Result<
     }
     check_range("evenness", params.evenness, 1e-9, 1e3)?;
     check_range("tolerance", params.tolerance, 1e-6, 1.0)?;
-    if !params.most.is_empty() && params.most.len() != responses.lamps() {
+    if !params.max_scale.is_empty() && params.max_scale.len() != responses.lamps() {
         return Err(Error::argument(format!(
             "bounds are given for {} of {} groups",
-            params.most.len(),
+            params.max_scale.len(),
             responses.lamps()
         )));
     }
-    params.most.iter().try_for_each(|&most| check_range("most", most, 0.0, f64::INFINITY).map(drop))?;
+    params.max_scale.iter().try_for_each(|&most| check_range("most", most, 0.0, f64::INFINITY).map(drop))?;
     if params.levels.len() > MAX_LEVELS {
         return Err(Error::argument(format!("there are {} levels; at most {MAX_LEVELS} may be", params.levels.len())));
     }
@@ -206,10 +206,10 @@ impl Equations {
     fn solve(&self, upper: &[f64], evenness: f64) -> Result<Vec<f64>> {
         // Equal lamps that come nearest, where the goals leave it open.
         let together: Vec<f64> = self.matrix.chunks_exact(self.groups).map(|row| row.iter().sum()).collect();
-        let equal = sided::all_alike(&together, &self.right, &self.senses);
+        let equal = sided::common_power(&together, &self.right, &self.senses);
         let preferred: Vec<f64> = upper.iter().map(|u| equal.min(*u)).collect();
         let Self { matrix, right, senses, .. } = self;
-        Problem { matrix, right, senses, pull: evenness, preferred: &preferred, upper }.solve()
+        Problem { matrix, right, senses, regularisation: evenness, preferred: &preferred, upper }.solve()
     }
 }
 
@@ -226,7 +226,7 @@ impl System<'_> {
         let n = BATCHES as f64;
         let mean = |goal: usize| {
             let mut means = try_vec(self.responses.lamps(), DVec3::ZERO)?;
-            exec::for_runs(&mut means, RUN, job, |first, means| {
+            exec::for_runs(&mut means, GROUPS_PER_RUN, job, |first, means| {
                 for b in 0..BATCHES {
                     means.iter_mut().zip(&self.responses.batch(goal, b)[first..]).for_each(|(s, r)| *s += *r);
                 }
@@ -280,7 +280,11 @@ impl System<'_> {
 
     /// Largest power of each group.
     fn upper(&self) -> Vec<f64> {
-        if self.params.most.is_empty() { vec![f64::INFINITY; self.responses.lamps()] } else { self.params.most.clone() }
+        if self.params.max_scale.is_empty() {
+            vec![f64::INFINITY; self.responses.lamps()]
+        } else {
+            self.params.max_scale.clone()
+        }
     }
 
     /// What a solution for some channels says of all.
@@ -330,27 +334,27 @@ impl System<'_> {
             let allowed = self.params.tolerance * brightest + STUDENT_T * standard_error(&batches);
             let dark = (0..BATCHES).all(|b| self.responses.batch(goal, b).iter().all(|r| r.dot(part) == 0.0));
             match () {
-                () if miss.abs() <= allowed => Reach::Met,
-                () if miss > 0.0 => Reach::TooBright,
-                () if dark => Reach::Dark,
-                () => Reach::TooDim,
+                () if miss.abs() <= allowed => TargetStatus::Met,
+                () if miss > 0.0 => TargetStatus::TooBright,
+                () if dark => TargetStatus::Dark,
+                () => TargetStatus::TooDim,
             }
         };
-        let reach = match goal_of.aspect {
+        let status = match goal_of.aspect {
             Aspect::Colour => std::array::from_fn(|c| judge(DVec3::AXES[c], goal_of.sense[c])),
             Aspect::Luminance => [judge(LUMINANCE, goal_of.sense[0]); 3],
         };
-        Ok(Outcome { achieved: all.mean, half_width: all.half_width(), reach })
+        Ok(Outcome { achieved: all.mean, half_width: all.half_width(), status })
     }
 
     /// The reason why goals are missed.
     fn explain(&self, outcomes: &[Outcome], scale: &[DVec3]) -> Option<String> {
         let missed: Vec<usize> = (0..outcomes.len())
-            .filter(|&g| self.goals[g].weight > 0.0 && outcomes[g].reach.iter().any(|r| *r != Reach::Met))
+            .filter(|&g| self.goals[g].weight > 0.0 && outcomes[g].status.iter().any(|r| *r != TargetStatus::Met))
             .collect();
         let &first = missed.first()?;
         let outcome = &outcomes[first];
-        let channel = outcome.reach.iter().position(|r| *r != Reach::Met)?;
+        let channel = outcome.status.iter().position(|r| *r != TargetStatus::Met)?;
         let side = match self.goals[first].sense[channel] {
             Sense::Exactly => "",
             Sense::AtLeast => "at least ",
@@ -361,12 +365,14 @@ impl System<'_> {
             Aspect::Luminance => ("luminance", LUMINANCE),
         };
         let off = scale.iter().all(|x| x[channel] == 0.0);
-        let full =
-            !self.params.most.is_empty() && scale.iter().zip(&self.params.most).all(|(x, most)| x[channel] >= *most);
-        let why = match outcome.reach[channel] {
-            Reach::Dark => "no light of these lamps finds its way there",
-            Reach::TooBright if off => "the other lights alone are brighter: dim or remove them, or raise the target",
-            Reach::TooDim if full => "all groups are at their largest power: allow more, or lower the target",
+        let full = !self.params.max_scale.is_empty()
+            && scale.iter().zip(&self.params.max_scale).all(|(x, most)| x[channel] >= *most);
+        let why = match outcome.status[channel] {
+            TargetStatus::Dark => "no light of these lamps finds its way there",
+            TargetStatus::TooBright if off => {
+                "the other lights alone are brighter: dim or remove them, or raise the target"
+            }
+            TargetStatus::TooDim if full => "all groups are at their largest power: allow more, or lower the target",
             _ if self.goals.iter().all(|g| g.aspect == Aspect::Luminance) => {
                 "the goals ask for different things of the same groups: divide them further, or weigh the goals"
             }

@@ -69,9 +69,9 @@ const MAX_CELLS: usize = 512;
 
 /// Points looked up along each side of a cell: at least so many, fewer where cells are many, and at most so many. Texels
 /// that cells cut would else count too much or too little, all of a periodic pattern alike.
-const LEAST_LOOK_UPS: usize = 16;
+const MIN_LOOK_UPS: usize = 16;
 const LOOK_UPS_ACROSS: usize = 1024;
-const MOST_LOOK_UPS: usize = 64;
+const MAX_LOOK_UPS: usize = 64;
 
 impl Importance {
     /// Traces the importance of a goal on the surfaces of the emitting material, which need texture coordinates; the
@@ -92,7 +92,7 @@ impl Importance {
         let stop = Stop::new(tracing);
         let mut growth = f64::INFINITY;
         loop {
-            batches.trace_round(growth, stop.most, job.part(0.1, 1.0))?;
+            batches.trace_round(growth, stop.max_paths, job.part(0.1, 1.0))?;
             let map = Self::of(&batches, params);
             let error = Estimate::of(|b| map.batches[b].iter().sum()).error();
             match stop.growth(error, batches.paths()) {
@@ -122,8 +122,8 @@ impl Importance {
     }
 
     /// The map at no more than `most` cells along each side, its batches together: what cells mean adds up.
-    pub(super) fn cells(&self, most: usize) -> Cells {
-        let (width, height) = (self.width.min(most), self.height.min(most));
+    pub(super) fn cells(&self, max_cells: usize) -> Cells {
+        let (width, height) = (self.width.min(max_cells), self.height.min(max_cells));
         let mut importance = vec![DVec3::ZERO; width * height];
         for batch in &self.batches {
             for (i, value) in batch.iter().enumerate() {
@@ -192,8 +192,8 @@ impl Importance {
         let texels = Vec2::new(texture.image.width as f32, texture.image.height as f32);
         let along = |side: Vec2, cells: usize| {
             let length = (placement.transform_vector2(side) * texels).abs().max_element().ceil();
-            let least = (LOOK_UPS_ACROSS / cells).clamp(4, LEAST_LOOK_UPS);
-            (length as usize).clamp(least, MOST_LOOK_UPS)
+            let min = (LOOK_UPS_ACROSS / cells).clamp(4, MIN_LOOK_UPS);
+            (length as usize).clamp(min, MAX_LOOK_UPS)
         };
         let (nu, nv) = (along(Vec2::X * cell.x, self.width), along(Vec2::Y * cell.y, self.height));
         let rows = exec::map(self.height, job, |y| {

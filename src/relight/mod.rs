@@ -72,7 +72,7 @@ pub enum Fit {
 
 /// How far an answer could go to meet the target in one colour channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Reach {
+pub enum TargetStatus {
     /// The target is met.
     Met,
     /// Other lights alone exceed the target: the emission is off in this channel.
@@ -154,7 +154,7 @@ pub struct Solution {
     pub scale: DVec3,
     /// Half-widths of the 95 % confidence intervals of `scale`.
     pub half_width: DVec3,
-    pub reach: [Reach; 3],
+    pub status: [TargetStatus; 3],
     /// Mean radiance of the target under the emission at scale 1, in cd/m².
     pub response: DVec3,
     /// Mean radiance of the target under all other light, in cd/m².
@@ -170,7 +170,7 @@ impl Solution {
     /// The widest relative half-width among the channels that met their target; 0 if none did.
     pub fn error(&self) -> f64 {
         (0..3)
-            .filter(|&c| self.reach[c] == Reach::Met && self.scale[c] > 0.0)
+            .filter(|&c| self.status[c] == TargetStatus::Met && self.scale[c] > 0.0)
             .map(|c| self.half_width[c] / self.scale[c])
             .fold(0.0, f64::max)
     }
@@ -192,7 +192,7 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Solution> {
     let stop = Stop::new(params);
     let mut growth = f64::INFINITY;
     loop {
-        batches.trace_round(growth, stop.most, job)?;
+        batches.trace_round(growth, stop.max_paths, job)?;
         let solution = solve::run(&whole(&batches, params.fit), input.target.as_dvec3(), params.sense);
         let error = solution.as_ref().map_or(f64::INFINITY, Solution::error);
         match stop.growth(error, batches.paths()) {

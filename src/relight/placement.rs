@@ -27,9 +27,9 @@ pub enum Aim {
     /// Bring the target's mean radiance nearest to this, in cd/m² per channel, ≥ 0, all other light included.
     Radiance(Vec3),
     /// As much luminance as possible.
-    Most,
+    Brightest,
     /// As little.
-    Least,
+    Darkest,
 }
 
 /// How a texture lies on a surface: from the surface's texture coordinates to its own it is scaled and then turned about the
@@ -68,8 +68,8 @@ pub struct PlaceParams {
     pub aim: Aim,
     /// What may be: offsets in `[-16, 16]`, scales in `[1/64, 64]`, rotations in `[-2π, 2π]`; where both are the same,
     /// nothing changes. Offsets over a whole period or more, and rotations over a whole turn, have no bounds.
-    pub least: Pose,
-    pub most: Pose,
+    pub min: Pose,
+    pub max: Pose,
     /// Places the search starts from, in `[1, 4096]`.
     pub starts: usize,
     pub seed: u64,
@@ -79,7 +79,7 @@ impl Default for PlaceParams {
     /// Any offset, at the scale and rotation there are.
     fn default() -> Self {
         let shifted = |by: f64| Pose { offset: DVec2::splat(by), ..Pose::IDENTITY };
-        Self { aim: Aim::Most, least: shifted(-0.5), most: shifted(0.5), starts: 64, seed: 1 }
+        Self { aim: Aim::Brightest, min: shifted(-0.5), max: shifted(0.5), starts: 64, seed: 1 }
     }
 }
 
@@ -92,9 +92,9 @@ pub struct Placement {
 }
 
 /// Most cells along each side that the search works on.
-const CELLS: usize = 64;
+const MAX_CELLS: usize = 64;
 /// Starts that are followed.
-const FOLLOWED: usize = 8;
+const MAX_DESCENTS: usize = 8;
 
 impl Importance {
     /// The target's light under a placed texture, band-limited as the search sees it, and how that changes with the offset
@@ -103,13 +103,13 @@ impl Importance {
     /// # Errors
     /// Cancelled.
     pub fn slope(&self, texture: &Image, pose: &Pose, job: Job) -> Result<(DVec3, [DVec3; 5])> {
-        Ok(self.search(texture, Aim::Most, job)?.light(pose.numbers()))
+        Ok(self.search(texture, Aim::Brightest, job)?.light(pose.numbers()))
     }
 
     fn search(&self, texture: &Image, aim: Aim, job: Job) -> Result<Search> {
         Ok(Search {
             pyramid: Pyramid::new(texture, job)?,
-            cells: self.cells(CELLS),
+            cells: self.cells(MAX_CELLS),
             texels: DVec2::new(texture.width as f64, texture.height as f64),
             background: self.background(),
             aim,
@@ -133,7 +133,7 @@ impl Importance {
         let values = exec::map(params.starts, job.part(0.1, 0.3), |i| search.value(start(i)))?;
         let mut order: Vec<usize> = (0..params.starts).collect();
         order.sort_by(|&a, &b| values[a].total_cmp(&values[b]).then(a.cmp(&b)));
-        order.truncate(FOLLOWED);
+        order.truncate(MAX_DESCENTS);
         if !order.contains(&0) {
             order.push(0);
         }
@@ -150,7 +150,7 @@ impl Importance {
                 job.part(0.8 + 0.2 * i as f64 / order.len() as f64, 0.8 + 0.2 * (i + 1) as f64 / order.len() as f64);
             let response = self.respond(&texture, &pose.matrix().as_mat3(), part)?;
             let value = search.judge(response.light.mean).0;
-            if best.as_ref().is_none_or(|(least, _)| value < *least) {
+            if best.as_ref().is_none_or(|(min, _)| value < *min) {
                 best = Some((value, Placement { pose, response }));
             }
         }
@@ -175,19 +175,19 @@ impl PlaceParams {
                 check_range("target", channel, 0.0, f32::MAX)?;
             }
         }
-        let (least, most) = (self.least.numbers(), self.most.numbers());
+        let (min, max) = (self.min.numbers(), self.max.numbers());
         let (scale, offset) = (("scale", 1.0 / 64.0, 64.0), ("offset", -16.0, 16.0));
         for (i, (name, low, high)) in [offset, offset, scale, scale, ("rotation", -TAU, TAU)].into_iter().enumerate() {
-            check_range(name, least[i], low, high)?;
-            check_range(name, most[i], low, high)?;
-            if least[i] > most[i] {
+            check_range(name, min[i], low, high)?;
+            check_range(name, max[i], low, high)?;
+            if min[i] > max[i] {
                 return Err(Error::argument(format!(
                     "{name} is to be between {} and {}; the first must not be larger",
-                    least[i], most[i]
+                    min[i], max[i]
                 )));
             }
         }
-        Ok(Bounds { least, most, period: [1.0, 1.0, f64::INFINITY, f64::INFINITY, TAU] })
+        Ok(Bounds { min, max, period: [1.0, 1.0, f64::INFINITY, f64::INFINITY, TAU] })
     }
 }
 
@@ -233,14 +233,14 @@ impl Search {
             let from = DVec2::new((i % width) as f64 + 0.5, (i / width) as f64 + 0.5) * cell - 0.5;
             let scaled = from * pose.scale;
             let turned = rotation * scaled;
-            let look = self.pyramid.look_up(turned + pose.offset + 0.5, level);
-            light += importance * look.value;
-            let along = |way: DVec2| look.along_u * way.x + look.along_v * way.y;
+            let sample = self.pyramid.look_up(turned + pose.offset + 0.5, level);
+            light += importance * sample.value;
+            let along = |way: DVec2| sample.d_du * way.x + sample.d_dv * way.y;
             let changes = [
-                look.along_u,
-                look.along_v,
-                along(rotation.x_axis * from.x) + look.along_level * by_scale.x,
-                along(rotation.y_axis * from.y) + look.along_level * by_scale.y,
+                sample.d_du,
+                sample.d_dv,
+                along(rotation.x_axis * from.x) + sample.d_dlevel * by_scale.x,
+                along(rotation.y_axis * from.y) + sample.d_dlevel * by_scale.y,
                 along(turned.perp()),
             ];
             slopes.iter_mut().zip(changes).for_each(|(slope, change)| *slope += importance * change);
@@ -251,8 +251,8 @@ impl Search {
     /// How bad a light is, and how that changes with it.
     fn judge(&self, light: DVec3) -> (f64, DVec3) {
         match self.aim {
-            Aim::Most => (-light.dot(LUMINANCE), -LUMINANCE),
-            Aim::Least => (light.dot(LUMINANCE), LUMINANCE),
+            Aim::Brightest => (-light.dot(LUMINANCE), -LUMINANCE),
+            Aim::Darkest => (light.dot(LUMINANCE), LUMINANCE),
             Aim::Radiance(target) => {
                 let miss = light + self.background - target.as_dvec3();
                 (0.5 * miss.length_squared(), miss)

@@ -13,9 +13,9 @@ use glam::DVec3;
 pub const MAX_PRIMARIES: usize = 64;
 
 /// How large squared drives count beside the colour: enough to choose between mixtures that are alike.
-const PULL: f64 = 1e-9;
+const REGULARISATION: f64 = 1e-9;
 /// A miss, relative to the colour, that counts as none.
-const REACHED: f64 = 1e-6;
+const MAX_RELATIVE_MISS: f64 = 1e-6;
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mixture {
@@ -58,13 +58,13 @@ pub fn mix_primaries(primaries: &[DVec3], most: f64, wanted: DVec3) -> Result<Mi
     let problem = Problem {
         matrix: &matrix,
         right: &wanted.to_array(),
-        pull: PULL * squares / 3.0,
+        regularisation: REGULARISATION * squares / 3.0,
         preferred: &preferred,
         upper: &upper,
     };
     let drives = problem.solve()?;
     let mixed: DVec3 = primaries.iter().zip(&drives).map(|(p, d)| *p * *d).sum();
-    let reached = (mixed - wanted).length() <= REACHED * wanted.length();
+    let reached = (mixed - wanted).length() <= MAX_RELATIVE_MISS * wanted.length();
     Ok(Mixture { delta_e: colour::delta_e_from(wanted, mixed), drives, colour: mixed, reached })
 }
 

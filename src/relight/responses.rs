@@ -124,7 +124,7 @@ pub fn lamp_responses(
         let mut error = 0.0f64;
         for (i, batch) in batches.iter_mut().enumerate() {
             let part = job.part(share * i as f64, (share * (i + 1) as f64).min(1.0));
-            batch.trace_round(growth, stop.most, part)?;
+            batch.trace_round(growth, stop.max_paths, part)?;
             error = error.max(error_of_all(batch));
         }
         let paths = batches[0].paths();

@@ -39,7 +39,7 @@ pub(super) struct Problem<'a> {
     /// Of each row.
     pub senses: &'a [Sense],
     /// `λ`, relative to the mean square of a row, > 0.
-    pub pull: f64,
+    pub regularisation: f64,
     /// `p`, for every unknown.
     pub preferred: &'a [f64],
     /// `u`, ≥ 0, may be infinite.
@@ -47,7 +47,7 @@ pub(super) struct Problem<'a> {
 }
 
 /// Newton steps, of which a few suffice.
-const STEPS: usize = 200;
+const MAX_STEPS: usize = 200;
 /// A term counts, or ceases to, when it is on its side by more than this share of its parts.
 const ROUNDING: f64 = 1e-12;
 
@@ -55,17 +55,17 @@ impl Problem<'_> {
     /// # Errors
     /// `Internal` if the method does not end, which it must.
     pub fn solve(&self) -> Result<Vec<f64>> {
-        let lambda = self.pull * dot(self.matrix, self.matrix) / self.right.len() as f64;
+        let lambda = self.regularisation * dot(self.matrix, self.matrix) / self.right.len() as f64;
         let mut x: Vec<f64> = self.preferred.iter().zip(self.upper).map(|(p, u)| p.clamp(0.0, *u)).collect();
         if !(lambda > 0.0 && lambda.is_finite()) {
             // Nothing responds: what is preferred is all there is to say.
             return Ok(x);
         }
-        let mut counting = self.counting(&x, &vec![false; self.right.len()]);
-        for _ in 0..STEPS {
-            let next = self.with(&counting, lambda)?;
-            let then = self.counting(&next, &counting);
-            if then == counting {
+        let mut active = self.active(&x, &vec![false; self.right.len()]);
+        for _ in 0..MAX_STEPS {
+            let next = self.solve_active(&active, lambda)?;
+            let then = self.active(&next, &active);
+            if then == active {
                 return Ok(next);
             }
             let (t, slope) = self.line_search(lambda, &x, &next);
@@ -74,7 +74,7 @@ impl Problem<'_> {
             if -slope * t <= ROUNDING * dot(self.right, self.right) {
                 return Ok(x);
             }
-            counting = self.counting(&x, &counting);
+            active = self.active(&x, &active);
         }
         Err(Error::new(ErrorKind::Internal, "the powers for goals with limits did not settle"))
     }
@@ -85,8 +85,8 @@ impl Problem<'_> {
     }
 
     /// Which terms count at `x`; `before` decides on the edge.
-    fn counting(&self, x: &[f64], before: &[bool]) -> Vec<bool> {
-        let counts = |i: usize| {
+    fn active(&self, x: &[f64], before: &[bool]) -> Vec<bool> {
+        let is_active = |i: usize| {
             let (light, right) = (dot(self.row(i), x), self.right[i]);
             let over = light - right;
             let edge = ROUNDING * (light.abs() + right.abs());
@@ -96,19 +96,19 @@ impl Problem<'_> {
                 sense => sense.miss(over) != 0.0,
             }
         };
-        (0..self.right.len()).map(counts).collect()
+        (0..self.right.len()).map(is_active).collect()
     }
 
     /// The answer if just these terms count, on either side.
-    fn with(&self, counting: &[bool], pull: f64) -> Result<Vec<f64>> {
+    fn solve_active(&self, active: &[bool], regularisation: f64) -> Result<Vec<f64>> {
         let Self { matrix, right, preferred, upper, .. } = *self;
-        if counting.iter().all(|counts| *counts) {
-            return bounded::Problem { matrix, right, pull, preferred, upper }.solve();
+        if active.iter().all(|is_active| *is_active) {
+            return bounded::Problem { matrix, right, regularisation, preferred, upper }.solve();
         }
-        let rows = || (0..right.len()).filter(|&i| counting[i]);
+        let rows = || (0..right.len()).filter(|&i| active[i]);
         let matrix: Vec<f64> = rows().flat_map(|i| self.row(i).iter().copied()).collect();
         let right: Vec<f64> = rows().map(|i| right[i]).collect();
-        bounded::Problem { matrix: &matrix, right: &right, pull, preferred, upper }.solve()
+        bounded::Problem { matrix: &matrix, right: &right, regularisation, preferred, upper }.solve()
     }
 
     /// Where between two places the function is least, and its slope at the first.
@@ -136,7 +136,7 @@ impl Problem<'_> {
 
 /// One power `q ≥ 0` for all, in closed form: that which makes `½ Σ ψ(a q − b)²` least, `a ≥ 0`. Of several the least, which
 /// is as little light as serves; where none is asked for, that nearest to 1, the lamps as they are.
-pub(super) fn all_alike(responses: &[f64], right: &[f64], senses: &[Sense]) -> f64 {
+pub(super) fn common_power(responses: &[f64], right: &[f64], senses: &[Sense]) -> f64 {
     let rows =
         || responses.iter().zip(right).zip(senses).map(|((a, b), sense)| (*a, *b, *sense)).filter(|row| row.0 > 0.0);
     // Beyond the last of the values, less light is better.
@@ -170,7 +170,7 @@ mod tests {
     fn closed_forms() {
         let solve = |matrix: &[f64], right: &[f64], senses: &[Sense], preferred: &[f64]| {
             let upper = vec![FREE; preferred.len()];
-            Problem { matrix, right, senses, pull: 1e-9, preferred, upper: &upper }.solve().unwrap()
+            Problem { matrix, right, senses, regularisation: 1e-9, preferred, upper: &upper }.solve().unwrap()
         };
         let near = |x: Vec<f64>, expected: &[f64]| {
             assert!(x.iter().zip(expected).all(|(x, e)| (x - e).abs() < 1e-6), "{x:?}, expected {expected:?}");
@@ -197,7 +197,8 @@ mod tests {
         let (matrix, right) = ([a, a, a, b, b].concat(), [1.07, 0.0, 0.59, 0.81, 1.11]);
         let senses = [AtLeast, AtMost, AtLeast, AtMost, AtLeast];
         let (preferred, upper) = (&[1.0, 1.0, 0.1], &[1.18, 1.2, 0.1]);
-        let problem = Problem { matrix: &matrix, right: &right, senses: &senses, pull: 7e-9, preferred, upper };
+        let problem =
+            Problem { matrix: &matrix, right: &right, senses: &senses, regularisation: 7e-9, preferred, upper };
         let x = problem.solve().unwrap();
         let misses: Vec<f64> = (0..5).map(|i| senses[i].miss(dot(problem.row(i), &x) - right[i])).collect();
         for j in 0..3 {
@@ -211,7 +212,7 @@ mod tests {
     fn one_power_for_all() {
         let alike = |rows: &[(f64, f64, Sense)]| {
             let [a, b] = [0, 1].map(|i| rows.iter().map(|r| [r.0, r.1][i]).collect::<Vec<_>>());
-            all_alike(&a, &b, &rows.iter().map(|r| r.2).collect::<Vec<_>>())
+            common_power(&a, &b, &rows.iter().map(|r| r.2).collect::<Vec<_>>())
         };
         // Least squares, whose misses may differ: q = Σ ab / Σ a².
         assert!((alike(&[(2.0, 6.0, Exactly), (1.0, 1.0, Exactly)]) - 13.0 / 5.0).abs() < 1e-15);
@@ -245,11 +246,17 @@ mod tests {
             let preferred: Vec<f64> = (0..n).map(|_| rng.next_f64()).collect();
             let upper: Vec<f64> =
                 (0..n).map(|_| if rng.next_f64() < 0.5 { FREE } else { 2.0 * rng.next_f64() }).collect();
-            let pull = 10f64.powf(-9.0 * rng.next_f64());
-            let problem =
-                Problem { matrix: &matrix, right: &right, senses: &senses, pull, preferred: &preferred, upper: &upper };
+            let regularisation = 10f64.powf(-9.0 * rng.next_f64());
+            let problem = Problem {
+                matrix: &matrix,
+                right: &right,
+                senses: &senses,
+                regularisation,
+                preferred: &preferred,
+                upper: &upper,
+            };
             let x = problem.solve().unwrap();
-            let lambda = pull * dot(&matrix, &matrix) / m as f64;
+            let lambda = regularisation * dot(&matrix, &matrix) / m as f64;
             let misses: Vec<f64> = (0..m).map(|i| senses[i].miss(dot(problem.row(i), &x) - right[i])).collect();
             for j in 0..n {
                 let slope = (0..m).map(|i| matrix[i * n + j] * misses[i]).sum::<f64>() + lambda * (x[j] - preferred[j]);

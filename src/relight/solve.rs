@@ -3,7 +3,7 @@
 use super::estimate::{BATCHES, STUDENT_T, mean, pseudo_values, standard_error, without};
 use super::sided::Sense;
 use super::transport::Pairs;
-use super::{Reach, Solution};
+use super::{Solution, TargetStatus};
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::colour;
 use glam::DVec3;
@@ -30,7 +30,7 @@ struct Channel {
 struct Answer {
     scale: f64,
     half_width: f64,
-    reach: Reach,
+    status: TargetStatus,
     /// What each batch alone would say, less the answer.
     deviations: [f64; BATCHES],
 }
@@ -46,14 +46,14 @@ pub(super) fn run(measured: &Measured, target: DVec3, sense: [Sense; 3]) -> Resu
     });
     let mut answers: [Answer; 3] = std::array::from_fn(|c| channels[c].solve(target[c]));
     keep_sides(&mut answers, sense);
-    let reach = answers.each_ref().map(|a| a.reach);
-    if reach.iter().all(|&r| r != Reach::Met) {
-        return Err(Error::new(ErrorKind::Unreachable, explain(&reach)));
+    let status = answers.each_ref().map(|a| a.status);
+    if status.iter().all(|&r| r != TargetStatus::Met) {
+        return Err(Error::new(ErrorKind::Unreachable, explain(&status)));
     }
     // A channel without response is set to the mean of the others: neither black nor a guess beyond them.
-    let met: Vec<f64> = answers.iter().filter(|a| a.reach == Reach::Met).map(|a| a.scale).collect();
+    let met: Vec<f64> = answers.iter().filter(|a| a.status == TargetStatus::Met).map(|a| a.scale).collect();
     let neutral = met.iter().sum::<f64>() / met.len() as f64;
-    let scale = answers.each_ref().map(|a| if a.reach == Reach::Dark { neutral } else { a.scale });
+    let scale = answers.each_ref().map(|a| if a.status == TargetStatus::Dark { neutral } else { a.scale });
     let response = DVec3::from(channels.each_ref().map(|c| mean(&c.response)));
     let background = DVec3::from(channels.each_ref().map(|c| mean(&c.background)));
     // What the target shows: what it should, but where it need not be at its limit.
@@ -62,7 +62,7 @@ pub(super) fn run(measured: &Measured, target: DVec3, sense: [Sense; 3]) -> Resu
     Ok(Solution {
         scale: DVec3::from(scale),
         half_width: DVec3::from(answers.each_ref().map(|a| a.half_width)),
-        reach,
+        status,
         response,
         background,
         delta_e: colour_interval(&answers, response, seen),
@@ -75,12 +75,12 @@ pub(super) fn run(measured: &Measured, target: DVec3, sense: [Sense; 3]) -> Resu
 fn keep_sides(answers: &mut [Answer; 3], sense: [Sense; 3]) {
     // Where other light alone is brighter than a least, none is needed.
     for (answer, _) in answers.iter_mut().zip(sense).filter(|(_, sense)| *sense == Sense::AtLeast) {
-        if answer.reach == Reach::TooBright {
-            answer.reach = Reach::Met;
+        if answer.status == TargetStatus::TooBright {
+            answer.status = TargetStatus::Met;
         }
     }
     let exact = |c: &usize| sense[*c] == Sense::Exactly;
-    let met: Vec<Answer> = (0..3).filter(exact).map(|c| answers[c]).filter(|a| a.reach == Reach::Met).collect();
+    let met: Vec<Answer> = (0..3).filter(exact).map(|c| answers[c]).filter(|a| a.status == TargetStatus::Met).collect();
     if met.is_empty() {
         return;
     }
@@ -88,9 +88,9 @@ fn keep_sides(answers: &mut [Answer; 3], sense: [Sense; 3]) {
     let scale = share * met.iter().map(|a| a.scale).sum::<f64>();
     let deviations = std::array::from_fn(|b| share * met.iter().map(|a| a.deviations[b]).sum::<f64>());
     let half_width = STUDENT_T * standard_error(&deviations);
-    let neutral = Answer { scale, half_width, reach: Reach::Met, deviations };
+    let neutral = Answer { scale, half_width, status: TargetStatus::Met, deviations };
     for (answer, sense) in answers.iter_mut().zip(sense).filter(|(_, sense)| *sense != Sense::Exactly) {
-        if answer.reach == Reach::Met && sense.miss(scale - answer.scale) == 0.0 {
+        if answer.status == TargetStatus::Met && sense.miss(scale - answer.scale) == 0.0 {
             *answer = neutral;
         }
     }
@@ -113,7 +113,7 @@ impl Channel {
         // Without any batch there must be something left to divide by.
         let paired = self.squares.is_none_or(|[own, _]| own.iter().filter(|square| **square > 0.0).count() > 1);
         if response.is_nan() || response <= 3.0 * noise || !paired {
-            return Answer { scale: 0.0, half_width: 0.0, reach: Reach::Dark, deviations: [0.0; BATCHES] };
+            return Answer { scale: 0.0, half_width: 0.0, status: TargetStatus::Dark, deviations: [0.0; BATCHES] };
         }
         let rest = std::array::from_fn(|b| self.scale(target, |values| without(mean(values), values[b])));
         let alone = pseudo_values(self.scale(target, mean), &rest);
@@ -121,9 +121,9 @@ impl Channel {
         let half_width = STUDENT_T * standard_error(&alone);
         let deviations = alone.map(|a| a - scale);
         if scale < 0.0 {
-            return Answer { scale: 0.0, half_width, reach: Reach::TooBright, deviations: [0.0; BATCHES] };
+            return Answer { scale: 0.0, half_width, status: TargetStatus::TooBright, deviations: [0.0; BATCHES] };
         }
-        Answer { scale, half_width, reach: Reach::Met, deviations }
+        Answer { scale, half_width, status: TargetStatus::Met, deviations }
     }
 }
 
@@ -138,8 +138,8 @@ fn colour_interval(answers: &[Answer; 3], response: DVec3, target: DVec3) -> f64
     STUDENT_T * (squares.sum::<f64>() / BATCHES as f64).sqrt()
 }
 
-fn explain(reach: &[Reach; 3]) -> String {
-    if reach.iter().all(|&r| r == Reach::Dark) {
+fn explain(status: &[TargetStatus; 3]) -> String {
+    if status.iter().all(|&r| r == TargetStatus::Dark) {
         "no light of the emission finds its way back to the target surface: it may face away from the room, or be \
          all lamps, which are left out, or everything around it may be black; choose another target surface"
             .into()

@@ -16,7 +16,7 @@ pub(super) struct Terms<'a> {
 }
 
 /// Rounds over all groups, of which a few suffice.
-const ROUNDS: usize = 100;
+const MAX_ROUNDS: usize = 100;
 /// A gain, relative to the goals, that is rounding only.
 const ROUNDING: f64 = 1e-14;
 
@@ -31,10 +31,10 @@ struct State {
 impl Terms<'_> {
     /// The levels (rising, not empty) of groups whose powers without steps are `x`, none above its bound unless the lowest is.
     pub fn round(&self, x: &[f64], levels: &[f64], upper: &[f64]) -> Vec<f64> {
-        let most: Vec<usize> = upper.iter().map(|u| levels.partition_point(|l| l <= u).max(1) - 1).collect();
+        let max_level: Vec<usize> = upper.iter().map(|u| levels.partition_point(|l| l <= u).max(1) - 1).collect();
         let nearest = |j: usize| {
             let off = |l: usize| (levels[l] - x[j]).abs();
-            (0..=most[j]).min_by(|&a, &b| off(a).total_cmp(&off(b))).unwrap_or(0)
+            (0..=max_level[j]).min_by(|&a, &b| off(a).total_cmp(&off(b))).unwrap_or(0)
         };
         let chosen: Vec<usize> = (0..x.len()).map(nearest).collect();
         let light = self.matrix.chunks_exact(x.len()).map(|row| dot(row, x)).collect();
@@ -42,20 +42,20 @@ impl Terms<'_> {
         let after = State { powers: x.to_vec(), chosen, light };
         let mut at_once = after.clone();
         (0..x.len()).for_each(|j| self.set(&mut at_once, j, after.chosen[j], levels));
-        let [a, b] = [at_once, after].map(|start| self.descend(start, levels, &most));
+        let [a, b] = [at_once, after].map(|start| self.descend(start, levels, &max_level));
         if self.sum(&a, 0, 0.0) <= self.sum(&b, 0, 0.0) { a.powers } else { b.powers }
     }
 
-    fn descend(&self, mut state: State, levels: &[f64], most: &[usize]) -> State {
+    fn descend(&self, mut state: State, levels: &[f64], max_level: &[usize]) -> State {
         let small = ROUNDING * dot(self.right, self.right);
-        for round in 0..ROUNDS {
+        for round in 0..MAX_ROUNDS {
             let mut changed = false;
             for j in 0..state.powers.len() {
                 let sum = |l: usize| self.sum(&state, j, levels[l] - state.powers[j]);
                 let mut best = (state.chosen[j], sum(state.chosen[j]));
                 for up in [true, false] {
                     while let Some(next) = if up { best.0.checked_add(1) } else { best.0.checked_sub(1) } {
-                        let there = if next <= most[j] { sum(next) } else { break };
+                        let there = if next <= max_level[j] { sum(next) } else { break };
                         if there >= best.1 - small {
                             break;
                         }

@@ -19,7 +19,7 @@ const FIRST_ROUND: u32 = 64;
 /// A later round brings this many times the paths there are, at least and at most.
 const GROWTH: [f64; 2] = [1.25, 4.0];
 /// What is added to a forecast of the paths that a given error takes: an error is itself known to 13 % with 32 batches.
-const MARGIN: f64 = 1.1;
+const FORECAST_MARGIN: f64 = 1.1;
 
 /// When the paths are enough: at the error that is wanted, when the time is up, or when they are as many as allowed.
 pub(super) struct Stop {
@@ -27,25 +27,26 @@ pub(super) struct Stop {
     /// Seconds there are; infinite if nothing limits them.
     budget: f64,
     /// Relative half-width; 0 if none is wanted.
-    wanted: f64,
-    pub most: u32,
+    target_error: f64,
+    pub max_paths: u32,
 }
 
 impl Stop {
     pub fn new(params: &Params) -> Self {
         let milliseconds = f64::from(params.time_budget_ms);
         let budget = if milliseconds > 0.0 { milliseconds / 1e3 } else { f64::INFINITY };
-        Self { clock: Instant::now(), budget, wanted: f64::from(params.target_error), most: params.paths }
+        Self { clock: Instant::now(), budget, target_error: f64::from(params.target_error), max_paths: params.paths }
     }
 
     /// How many times the paths there are should follow, now that they have brought the relative half-width down to
     /// `error`; `None` when they are enough.
     pub fn growth(&self, error: f64, paths: u32) -> Option<f64> {
         let spent = self.clock.elapsed().as_secs_f64().max(1e-6);
-        if error <= self.wanted && self.wanted > 0.0 || spent >= self.budget || paths >= self.most {
+        if error <= self.target_error && self.target_error > 0.0 || spent >= self.budget || paths >= self.max_paths {
             return None;
         }
-        let forecast = if self.wanted > 0.0 { MARGIN * (error / self.wanted).powi(2) } else { f64::INFINITY };
+        let forecast =
+            if self.target_error > 0.0 { FORECAST_MARGIN * (error / self.target_error).powi(2) } else { f64::INFINITY };
         Some(forecast.min(self.budget / spent))
     }
 }
@@ -119,10 +120,10 @@ impl<'a> Batches<'a> {
     /// Traces more paths, but no more than `limit` in all: as many times those there are as `growth` says, which is kept
     /// within bounds.
     pub fn trace_round(&mut self, growth: f64, limit: u32, job: Job) -> Result<()> {
-        let most = limit.div_ceil(BATCHES as u32);
-        let wanted = f64::from(self.traced) * growth.clamp(GROWTH[0], GROWTH[1]);
-        let (first, last) = (self.traced, (wanted as u32).max(FIRST_ROUND).min(most));
-        let part = job.part(f64::from(first) / f64::from(most), f64::from(last) / f64::from(most));
+        let max_per_batch = limit.div_ceil(BATCHES as u32);
+        let wanted_paths = f64::from(self.traced) * growth.clamp(GROWTH[0], GROWTH[1]);
+        let (first, last) = (self.traced, (wanted_paths as u32).max(FIRST_ROUND).min(max_per_batch));
+        let part = job.part(f64::from(first) / f64::from(max_per_batch), f64::from(last) / f64::from(max_per_batch));
         let (world, points, bins) = (self.world, self.points, &self.bins);
         let (seed, paired) = (self.seed, self.paired);
         // A batch is a unit of work: its sums are made in the order of its paths, whatever the number of threads.

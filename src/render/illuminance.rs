@@ -55,9 +55,9 @@ pub struct Output {
     /// Points that there are.
     pub points: usize,
     /// Least, mean and largest illuminance; all 0 if there are no points. Uniformity is least over mean.
-    pub least: f64,
+    pub min: f64,
     pub mean: f64,
-    pub largest: f64,
+    pub max: f64,
     /// Standard error of the mean: points are sampled independently.
     pub mean_error: f64,
 }
@@ -103,7 +103,7 @@ fn summary(params: &Params, estimates: &[Option<(f64, f64)>]) -> Result<Output> 
     let mut lux = Image::new(params.columns, params.rows, 1)?;
     let mut error = Image::new(params.columns, params.rows, 1)?;
     let (mut points, mut sum, mut variances) = (0, 0.0, 0.0);
-    let (mut least, mut largest) = (f64::INFINITY, 0.0f64);
+    let (mut min, mut max) = (f64::INFINITY, 0.0f64);
     for (i, estimate) in estimates.iter().enumerate() {
         let Some((mean, variance)) = *estimate else {
             (lux.data[i], error.data[i]) = (f32::NAN, f32::NAN);
@@ -113,11 +113,11 @@ fn summary(params: &Params, estimates: &[Option<(f64, f64)>]) -> Result<Output> 
         points += 1;
         sum += mean;
         variances += variance;
-        (least, largest) = (least.min(mean), largest.max(mean));
+        (min, max) = (min.min(mean), max.max(mean));
     }
     let n = f64::max(points as f64, 1.0);
-    let least = if points == 0 { 0.0 } else { least };
-    Ok(Output { lux, error, points, least, mean: sum / n, largest, mean_error: variances.sqrt() / n })
+    let min = if points == 0 { 0.0 } else { min };
+    Ok(Output { lux, error, points, min, mean: sum / n, max, mean_error: variances.sqrt() / n })
 }
 
 /// The points to gather at.

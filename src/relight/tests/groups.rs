@@ -74,12 +74,12 @@ fn one_group_is_the_closed_form_and_bounds_hold() {
     let expected = 20.0 / responses.all(0).mean.x;
     assert!((free.scale[0].x / expected - 1.0).abs() < 1e-9, "{free:?}, expected {expected}");
     assert!(free.half_width[0].x > 0.0 && free.half_width[0].x < 0.05 * expected);
-    assert_eq!((free.outcomes[0].reach, &free.unreachable), ([Reach::Met; 3], &None));
+    assert_eq!((free.outcomes[0].status, &free.unreachable), ([TargetStatus::Met; 3], &None));
     // Half of what it takes is allowed: the bound is the nearest answer, and the reason says so.
-    let bounded = GroupParams { most: vec![expected / 2.0], ..GroupParams::default() };
+    let bounded = GroupParams { max_scale: vec![expected / 2.0], ..GroupParams::default() };
     let bounded = powers(&responses, &goals, &bounded).unwrap();
     assert_eq!(bounded.scale[0].x, expected / 2.0);
-    assert_eq!(bounded.outcomes[0].reach, [Reach::TooDim; 3]);
+    assert_eq!(bounded.outcomes[0].status, [TargetStatus::TooDim; 3]);
     assert!((bounded.outcomes[0].achieved.x - 10.0).abs() < 1e-6);
     assert!(bounded.unreachable.unwrap().contains("largest power"));
 }
@@ -98,11 +98,11 @@ fn groups_that_are_alike_unlike_or_dark() {
     // Where the faint one alone could help, it would have to be 1e12 times as strong: the answer stays finite, and says so.
     let ask = [goal(desk(0.9, 0.9), Vec3::splat(20.0)), goal(desk(3.1, 3.1), Vec3::splat(90.0))];
     let (faint, pair) = lamp_room(&[[3, 3], [12, 12]], &[1.0, 1e-12]);
-    let most = GroupParams { most: vec![f64::INFINITY, 2.0], ..GroupParams::default() };
+    let most = GroupParams { max_scale: vec![f64::INFINITY, 2.0], ..GroupParams::default() };
     for params in [GroupParams::default(), most] {
         let solution = powers(&respond(&faint, &pair, &ask), &ask, &params).unwrap();
         let finite = solution.scale.iter().chain(&solution.half_width).all(|x| x.is_finite());
-        let met = solution.outcomes.iter().all(|o| o.reach == [Reach::Met; 3]);
+        let met = solution.outcomes.iter().all(|o| o.status == [TargetStatus::Met; 3]);
         assert!(finite && met == solution.unreachable.is_none(), "{solution:?}");
     }
     // A goal of darkness turns them off.
@@ -116,7 +116,10 @@ fn groups_that_are_alike_unlike_or_dark() {
     let solution = powers(&responses, &goals, &GroupParams::default()).unwrap();
     assert!(solution.scale[0].x > 1.3 * solution.scale[1].x, "{solution:?}");
     for (outcome, want) in solution.outcomes.iter().zip([40.0, 25.0]) {
-        assert!((outcome.achieved.x / want - 1.0).abs() < 1e-3 && outcome.reach == [Reach::Met; 3], "{outcome:?}");
+        assert!(
+            (outcome.achieved.x / want - 1.0).abs() < 1e-3 && outcome.status == [TargetStatus::Met; 3],
+            "{outcome:?}"
+        );
     }
     // One lamp for both cannot: the answer lies between, and the reason names a goal.
     let one = responses.grouped(&[0, 0], 1).unwrap();
@@ -140,13 +143,13 @@ fn other_light_that_is_too_bright_is_named() {
     let params = GroupParams { colour: Colour::Free, ..GroupParams::default() };
     let solution = powers(&responses, &goals, &params).unwrap();
     assert!(solution.scale.iter().all(|x| *x == DVec3::ZERO));
-    assert_eq!(solution.outcomes[0].reach, [Reach::TooBright; 3]);
+    assert_eq!(solution.outcomes[0].status, [TargetStatus::TooBright; 3]);
     assert!(solution.unreachable.unwrap().contains("other lights alone"));
     // Parameters name themselves.
     for bad in [
         GroupParams { evenness: 0.0, ..GroupParams::default() },
-        GroupParams { most: vec![1.0], ..GroupParams::default() },
-        GroupParams { most: vec![1.0, f64::NAN], ..GroupParams::default() },
+        GroupParams { max_scale: vec![1.0], ..GroupParams::default() },
+        GroupParams { max_scale: vec![1.0, f64::NAN], ..GroupParams::default() },
     ] {
         assert_eq!(powers(&responses, &goals, &bad).unwrap_err().kind, ErrorKind::InvalidArgument);
     }
@@ -181,7 +184,7 @@ fn every_reason_is_told() {
         "{reason}"
     );
     // A bound, and other lights (what it takes to be below them would be negative).
-    let reason = told(&world, &[floor(Vec3::splat(1e6))], &GroupParams { most: vec![1.0; 2], ..kept.clone() });
+    let reason = told(&world, &[floor(Vec3::splat(1e6))], &GroupParams { max_scale: vec![1.0; 2], ..kept.clone() });
     assert!(reason.contains("all groups are at their largest power"), "{reason}");
     let mut bright = (**world.scene()).clone();
     bright.lights.push(PunctualLight::Point { position: Vec3::new(2.0, 1.0, 2.0), intensity: Vec3::splat(1e4) });
@@ -209,7 +212,7 @@ fn lux_are_luminance() {
     let responses = respond(&world, &lamps, &[lux]);
     let solution = powers(&responses, &[lux], &GroupParams::default()).unwrap();
     let outcome = &solution.outcomes[0];
-    assert_eq!((outcome.reach, &solution.unreachable), ([Reach::Met; 3], &None));
+    assert_eq!((outcome.status, &solution.unreachable), ([TargetStatus::Met; 3], &None));
     let illuminance = std::f32::consts::PI * crate::image::colour::luminance(outcome.achieved.as_vec3());
     assert!((illuminance - 500.0).abs() < 0.1 && outcome.achieved.x > 1.05 * outcome.achieved.z, "{outcome:?}");
     let free = GroupParams { colour: Colour::Free, ..GroupParams::default() };
@@ -246,7 +249,7 @@ fn limits_count_on_one_side() {
     // What cannot be is told with its side.
     let goals = [at(0.9, 0.9, 40.0, Sense::AtLeast), at(3.1, 3.1, 1.0, Sense::AtMost)];
     let torn = powers(&responses, &goals, &GroupParams::default()).unwrap();
-    assert_eq!([0, 1].map(|goal| torn.outcomes[goal].reach[0]), [Reach::TooDim, Reach::TooBright]);
+    assert_eq!([0, 1].map(|goal| torn.outcomes[goal].status[0]), [TargetStatus::TooDim, TargetStatus::TooBright]);
     assert!(torn.unreachable.unwrap().contains("at least 40.0000 cd/m²"));
     // Luminance has one side only.
     let mixed = [Sense::AtLeast, Sense::AtMost, Sense::Exactly];

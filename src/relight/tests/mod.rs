@@ -120,7 +120,7 @@ fn what_cannot_be_met_is_said() {
     // A channel that walls absorb completely keeps the others' mean.
     let redless = room(Vec3::ONE, Vec3::new(0.0, 0.5, 0.5), Vec3::splat(0.5), Vec3::ONE);
     let solution = solve(&redless, Vec3::ONE, &params).unwrap();
-    assert_eq!(solution.reach, [Reach::Dark, Reach::Met, Reach::Met]);
+    assert_eq!(solution.status, [TargetStatus::Dark, TargetStatus::Met, TargetStatus::Met]);
     assert!((solution.scale.x - (solution.scale.y + solution.scale.z) / 2.0).abs() < 1e-9);
     // Bad parameters name themselves.
     for target in [Vec3::splat(-1.0), Vec3::NAN] {
@@ -143,7 +143,7 @@ fn a_limit_binds_only_where_it_is_broken() {
     let free = least(truth * Vec3::new(0.6, 1.0, 1.0), Sense::AtLeast);
     for c in 0..3 {
         let allowed = 2.0 * (free.half_width[c] + 0.005 * 100.0);
-        assert!((free.scale[c] - 100.0).abs() < allowed && free.reach[c] == Reach::Met, "{free:?}");
+        assert!((free.scale[c] - 100.0).abs() < allowed && free.status[c] == TargetStatus::Met, "{free:?}");
     }
     assert!((free.scale.x - (free.scale.y + free.scale.z) / 2.0).abs() < 1e-9);
     assert!(free.half_width.x > 0.0 && free.error() < 0.006 && free.delta_e < 1.0, "{free:?}");
@@ -164,7 +164,7 @@ fn a_limit_binds_only_where_it_is_broken() {
     let mut bright = scene.clone();
     bright.lights.push(PunctualLight::Point { position: Vec3::ONE, intensity: Vec3::splat(1e3) });
     let none = solve(&bright, Vec3::splat(1e-3), &Params { sense: [Sense::AtLeast; 3], ..params }).unwrap();
-    assert_eq!((none.scale, none.reach), (DVec3::ZERO, [Reach::Met; 3]));
+    assert_eq!((none.scale, none.status), (DVec3::ZERO, [TargetStatus::Met; 3]));
 }
 
 #[test]

@@ -118,8 +118,8 @@ fn a_target_sends_paths_to_where_the_error_is_and_darkens_little() {
             assert!(low >= 16.0 && high <= 1024.0 && film.samples < 512);
             spread = spread.max(high / low);
         }
-        let least = if relative_error > 0.0 { 2.0 } else { 4.0 };
-        assert!(spread >= least, "{target_error} {relative_error} {pixel_error}: {spread}");
+        let min = if relative_error > 0.0 { 2.0 } else { 4.0 };
+        assert!(spread >= min, "{target_error} {relative_error} {pixel_error}: {spread}");
         let bias = sum / count as f64;
         let error = ((square / count as f64 - bias * bias) / count as f64).sqrt();
         assert!(bias.abs() < 0.01 + 3.0 * error, "bias {bias} ± {error}");
@@ -201,15 +201,15 @@ fn a_time_budget_is_kept_but_for_the_first_image() {
                     (film, processor_time() - start)
                 };
                 // The least there is: a path for one pixel in many, and an image of them.
-                let (film, least) = timed(1);
+                let (film, min) = timed(1);
                 let paths: f32 = film.paths.data.iter().sum();
                 assert!(paths > 0.0 && (paths <= 1024.0 || width == 1), "{width} x {height}: {paths}");
                 assert_eq!(film.beauty.count_non_finite(), 0);
                 for budget in [40, 300] {
                     let (film, taken) = timed(budget);
                     assert!(film.samples < 1 << 20 && film.beauty.count_non_finite() == 0);
-                    let allowed = least.max(Duration::from_millis(budget.into())) + Duration::from_millis(50);
-                    assert!(taken < allowed + least, "{width} x {height}, {budget} ms: {taken:?}, at least {least:?}");
+                    let allowed = min.max(Duration::from_millis(budget.into())) + Duration::from_millis(50);
+                    assert!(taken < allowed + min, "{width} x {height}, {budget} ms: {taken:?}, at least {min:?}");
                 }
             }
         }

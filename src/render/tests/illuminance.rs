@@ -52,7 +52,7 @@ fn grids_in_the_air_on_a_floor_and_maps_of_it_agree_with_form_factors() {
             }
         }
         assert!((output.mean - sum).abs() < 4.0 * output.mean_error && output.mean_error < 0.005 * sum);
-        assert!(output.least < output.mean && output.mean < output.largest);
+        assert!(output.min < output.mean && output.mean < output.max);
     }
     // The floor's texture runs along z first, then along x.
     let map = measure(&world, &Place::Mesh { mesh: 0, front: true }, &Params { columns: 3, rows: 5, ..params.clone() });
@@ -64,7 +64,7 @@ fn grids_in_the_air_on_a_floor_and_maps_of_it_agree_with_form_factors() {
         }
     }
     // Nothing arrives from below, nor on the other side.
-    assert_eq!(measure(&world, &Place::Mesh { mesh: 0, front: false }, &params).largest, 0.0);
+    assert_eq!(measure(&world, &Place::Mesh { mesh: 0, front: false }, &params).max, 0.0);
 }
 
 #[test]
