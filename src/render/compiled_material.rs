@@ -1,28 +1,28 @@
-//! Materials made ready for tracing: what no texture varies is worked out once.
+//! Materials prepared for tracing: parameters that no texture varies are computed once.
 
 use super::bsdf::Substance;
 use crate::scene::Material;
 use glam::Vec3;
 
-/// How a material is to be looked at.
+/// A material with the result of its analysis.
 #[derive(Clone, Copy, Debug)]
 pub struct CompiledMaterial {
-    /// What it is made of, where no texture varies it.
+    /// Its parameters, valid where no texture varies them.
     pub substance: Substance,
-    /// Whether textures vary what it is made of.
+    /// Whether textures vary the parameters.
     pub is_textured: bool,
-    /// Whether there may be more to it than a diffuse layer.
+    /// Whether it may have layers besides the diffuse one.
     pub layered: bool,
-    /// Whether a texture bends its normals.
+    /// Whether it has a normal map that is not neutral.
     pub has_normal_map: bool,
-    /// Whether parts of it may not be there.
+    /// Whether its opacity may be below 1.
     pub has_alpha: bool,
-    /// Whether light may go straight through it, for either reason.
+    /// Whether light may pass straight through it, by opacity or by transmission.
     pub lets_light_through: bool,
 }
 
 impl CompiledMaterial {
-    /// The same with every question left open.
+    /// A copy that assumes every shading feature.
     pub fn without_analysis(&self) -> Self {
         Self {
             is_textured: true,
@@ -35,13 +35,13 @@ impl CompiledMaterial {
     }
 }
 
-/// glTF 2.0, appendix B.2: from metallic-roughness to layers.
+/// Converts metallic-roughness parameters to layers (glTF 2.0, appendix B.2).
 pub fn substance(material: &Material, base: Vec3, metallic: f32, roughness: f32) -> Substance {
     let base = base.clamp(Vec3::ZERO, Vec3::ONE);
     let (metallic, roughness) = (metallic.clamp(0.0, 1.0), roughness.clamp(0.0, 1.0));
     let transmission = material.transmission.clamp(0.0, 1.0);
     let dielectric_f0 = ((material.ior - 1.0) / (material.ior + 1.0)).powi(2);
-    // An index of 1 is no interface at all, so it does not reflect at grazing angles either.
+    // An index of refraction of 1 is no interface: it does not reflect at grazing angles either.
     let has_interface = material.ior > 1.0;
     Substance {
         diffuse: base * ((1.0 - metallic) * (1.0 - transmission)),

@@ -1,4 +1,4 @@
-//! Light from the environment, importance-sampled.
+//! Importance sampling of the environment.
 
 use super::distribution::Distribution;
 use super::emissive::mean_channel;
@@ -8,17 +8,17 @@ use crate::scene::Environment;
 use glam::{Vec2, Vec3};
 use std::f32::consts::{PI, TAU};
 
-/// How directions towards the environment are chosen.
+/// A distribution of directions towards the environment.
 pub enum EnvironmentSampler {
     /// Uniform over the sphere.
     Constant,
-    /// By the pixels of an equirectangular image: each weighs its solid angle times the mean of itself and its
-    /// neighbours, which is positive wherever interpolation lets light through.
+    /// By the pixels of an equirectangular image. The weight of a pixel is its solid angle times the mean of its 3 × 3
+    /// neighbourhood, which is positive wherever bilinear interpolation is.
     Image { rows: Distribution, columns: Vec<Distribution> },
 }
 
 impl EnvironmentSampler {
-    /// The sampler and the mean radiance over all directions; none where the environment is dark.
+    /// Builds the sampler; also returns the mean radiance over all directions. `None` for a black environment.
     pub fn build(environment: &Environment) -> Result<Option<(Self, f64)>> {
         let image = match environment {
             Environment::Constant(radiance) => {
@@ -38,7 +38,7 @@ impl EnvironmentSampler {
         Ok((mean > 0.0).then_some((Self::Image { rows, columns }, mean)))
     }
 
-    /// A direction and its density per steradian.
+    /// Samples a direction; also returns its solid-angle pdf.
     pub fn sample(&self, u: f64, v: f32) -> (Vec3, f32) {
         match self {
             Self::Constant => {
@@ -50,7 +50,7 @@ impl EnvironmentSampler {
                 let (y, within) = rows.sample(u);
                 let (x, across) = columns[y].sample(f64::from(v));
                 let (width, height) = (columns[y].len(), columns.len());
-                // Uniform in solid angle within the pixel: uniform in the cosine of the polar angle.
+                // Sample uniformly by solid angle within the pixel: uniform in the cosine of the polar angle.
                 let (top, bottom) = polar_cosines(y, height);
                 let cosine = (top + (bottom - top) * within) as f32;
                 let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
@@ -61,7 +61,7 @@ impl EnvironmentSampler {
         }
     }
 
-    /// The density with which [`EnvironmentSampler::sample`] chooses a unit direction.
+    /// Solid-angle pdf with which [`EnvironmentSampler::sample`] draws a unit direction.
     pub fn pdf(&self, direction: Vec3) -> f32 {
         match self {
             Self::Constant => 1.0 / (4.0 * PI),
@@ -103,7 +103,7 @@ pub fn radiance(environment: &Environment, direction: Vec3) -> Vec3 {
     upper.lerp(lower, y - top)
 }
 
-/// The centre of the image looks along -z, its top along +y, its right along +x.
+/// Texture coordinates of a direction: the centre of the image is -z, its top +y, its right +x.
 fn equirectangular(d: Vec3) -> Vec2 {
     Vec2::new(0.5 + d.x.atan2(-d.z) / TAU, d.y.clamp(-1.0, 1.0).acos() / PI)
 }
@@ -159,7 +159,7 @@ mod tests {
                 assert!((direction.length() - 1.0).abs() < 1e-5);
                 disagreed += usize::from((sampler.pdf(direction) / pdf - 1.0).abs() > 1e-4);
             }
-            // Only directions within rounding of a pixel's border.
+            // Only directions within rounding of a pixel's border may disagree.
             assert!(disagreed < 20, "{disagreed}");
         }
     }
@@ -185,7 +185,7 @@ mod tests {
                 .collect();
             assert_follows(&expected, &counts, 4, &format!("{width} x {height}"));
         }
-        // Of constant light, bins of equal solid angle.
+        // For constant radiance, count in bins of equal solid angle.
         let (mut counts, mut rng) = (vec![0.0; 16 * 16], Rng::new(34, &[]));
         for _ in 0..50_000 {
             let d = EnvironmentSampler::Constant.sample(rng.next_f64(), rng.next_f32()).0;
@@ -205,7 +205,7 @@ mod tests {
             for _ in 0..2000 {
                 let (u, v) = (rng.next_f64(), rng.next_f32());
                 let d = sampler.sample(u, v).0.as_dvec3();
-                // The pixel, and where in it, evenly in solid angle.
+                // Invert the sampling: the pixel, and the position in it by solid angle.
                 let height = columns.len();
                 let row = (d.y.clamp(-1.0, 1.0).acos() / std::f64::consts::PI * height as f64).min(height as f64 - 1.0);
                 let (top, bottom) = polar_cosines(row as usize, height);
@@ -215,7 +215,7 @@ mod tests {
                 let column = (0.5 + d.x.atan2(-d.z) / std::f64::consts::TAU) * table.len() as f64;
                 let at = (column as usize).min(table.len() - 1);
                 let across = running(table, at) + (column - at as f64) * table.pmf(at);
-                // As far as a direction in f32 tells; one within rounding of a border counts for the next pixel.
+                // The tolerance covers the rounding of directions in f32, and directions at pixel borders.
                 let tolerance = 1e-4;
                 assert!((back - u).abs() < tolerance, "{u} became {d}, and that {back}");
                 let near_pole = d.x.hypot(d.z) < 0.02;
@@ -224,7 +224,7 @@ mod tests {
         }
     }
 
-    /// The share of a table's weight before an entry.
+    /// Sum of the pmf before an entry.
     fn running(table: &Distribution, entry: usize) -> f64 {
         (0..entry).map(|i| table.pmf(i)).sum()
     }

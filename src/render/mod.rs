@@ -1,18 +1,21 @@
 //! Rendering: unidirectional path tracing with next-event estimation and multiple importance sampling (Kajiya 1986;
-//! Veach 1997), for images and for the irradiance of surfaces ("Lighting Style Transfer", section 7; StyLit, section 3.2).
+//! Veach 1997), for images and for the irradiance of surfaces ("Lighting Style Transfer", section 7; StyLit, section
+//! 3.2).
 //!
-//! [`World`] makes a scene ready; [`run`] renders a camera's view; [`irradiance`] samples the light that arrives at a point.
-//! Nothing is clamped; estimates are unbiased unless [`run`] is given a target; the same seed gives the same bits on any
-//! number of threads.
+//! [`World`] prepares a scene for tracing; [`run`] renders the view of a camera; [`irradiance`] samples the light that
+//! arrives at a point. Contributions are not clamped. Estimates are unbiased unless [`run`] has an error target. A seed
+//! gives the same bits on any number of threads.
 //!
-//! `sampler` numbers → `path` a walk → (`light` one light of all, by way of `emissive` and `environment`; `vertex` what was
-//! hit; `bsdf` how it scatters, by way of `ggx`) → a [`PathSink`] → `film` means, errors, and which pixels get more paths.
-//! The paths of neighbouring pixels are `shared`: what one finds behind the first surface is light for all that see it.
-//! Beside the image, `layers` makes images of light by the way it came (`lpe`) and of surfaces (`aov`) from the same paths;
-//! [`illuminance`] calculates grids and maps of meshes in lux. For previews, `denoise` filters noise out, with a bias.
+//! A sample passes through these files: `sampler` draws its random numbers → `path` traces it (`vertex` describes a
+//! hit, `bsdf` and `ggx` scatter, `light` samples one of the lights of `emissive` and `environment`) → a [`PathSink`]
+//! receives its contributions → `film` keeps means and errors and decides which pixels get more paths. `shared` lets
+//! the paths of neighbouring pixels reuse each other's secondary vertices. `layers` adds images from the same paths:
+//! light path expressions (`lpe`) and surface attributes (`aov`). [`illuminance`] computes grids and maps of meshes in
+//! lux. `denoise` filters previews, with a bias.
 //!
-//! Not modelled: volumes, refraction in solids, frosted glass, polarisation, wavelengths, depth of field, motion blur. Solids of
-//! glass and frosted glass in a scene are named by [`Requirements::left_out`], in C by `luxfer_scene_requirements_text`.
+//! Not modelled: volumes, refraction in solids, frosted glass, polarisation, wavelengths, depth of field, motion blur.
+//! [`Requirements::left_out`] names the solids of glass and the frosted glass of a scene, as does
+//! `luxfer_scene_requirements_text` in C.
 
 mod aov;
 mod ballot;
@@ -54,40 +57,41 @@ use glam::{Vec2, Vec3};
 use sampler::Sampler;
 use vertex::Vertex;
 
-/// Where light of a path comes from.
+/// The light that a path contribution comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LightSource {
-    /// An emissive triangle; `uv` are the coordinates its emission texture is looked up with.
+    /// An emissive triangle; `uv` are the coordinates of the look-up in its emission texture.
     Surface {
         mesh: u32,
         triangle: u32,
         uv: Vec2,
     },
-    /// Index into the scene's punctual lights.
+    /// Index of a punctual light of the scene.
     Punctual(u32),
     Environment,
 }
 
-/// Takes the contributions of a path: their products sum to the estimate.
+/// Receives the contributions of a path; the sum of their products `importance * emission` is the estimate.
 pub trait PathSink {
-    /// `importance` is all but the emission: throughput, weight and the reciprocal of the probability.
+    /// `importance` is every factor but the emission: throughput × mis_weight / pdf.
     fn add(&mut self, source: LightSource, importance: Vec3, emission: Vec3);
 }
 
-/// A point of a surface that gathers light.
+/// A point of a surface at which irradiance is estimated.
 #[derive(Clone, Copy, Debug)]
 pub struct SurfacePoint {
     pub mesh: u32,
     pub triangle: u32,
     /// Barycentric coordinates of corners 1 and 2.
     pub barycentric: Vec2,
-    /// Whether the side the triangle's winding faces gathers, or the other.
+    /// Whether the point gathers on the front side, which the winding of the triangle faces.
     pub front: bool,
 }
 
-/// Adds one sample of the irradiance (lux) at a point to a sink; `sample` counts up, `seed` separates estimates. Samples of
-/// one seed are stratified among each other: their mean converges faster than independent ones, best at powers of two.
-/// A point that is not on the scene's surfaces, or on a triangle of no area, adds nothing.
+/// Adds one sample of the irradiance (lux) at a point to a sink. `sample` is the index of the sample and `seed` selects
+/// an independent sequence. The samples of one seed are stratified: their mean converges faster than that of
+/// independent samples, best at powers of two. A point outside the scene's surfaces or on a degenerate triangle adds
+/// nothing.
 pub fn irradiance<S: PathSink>(world: &World, point: &SurfacePoint, seed: u64, sample: u32, sink: &mut S) {
     let mesh = world.scene().meshes.get(point.mesh as usize);
     if mesh.is_some_and(|m| (point.triangle as usize) < m.triangles.len()) {
@@ -99,8 +103,8 @@ pub fn irradiance<S: PathSink>(world: &World, point: &SurfacePoint, seed: u64, s
     }
 }
 
-/// The same at a point that is on no surface, of the light that arrives on the side of a normal of any length but 0: a
-/// point of a calculation grid.
+/// Adds one sample of the irradiance at a free point in space, such as a point of a calculation grid, on the side of a
+/// non-zero normal of any length.
 pub fn irradiance_in_air<S: PathSink>(
     world: &World,
     position: Vec3,
@@ -121,28 +125,29 @@ pub struct Params {
     /// Size of the image in pixels, each in `[1, 65536]`.
     pub width: usize,
     pub height: usize,
-    /// Paths per pixel, in `[1, 1 << 20]`: of each pixel if there is no target, on the average over the image if there is.
+    /// Paths per pixel, in `[1, 1 << 20]`: for each pixel without an error target, the mean over the image with one.
     pub samples: u32,
-    /// Stop when the image's [`Film::error`] falls to this, and give paths to where they lower it most; 0 = never.
+    /// Stop when [`Film::error`] falls to this value, with paths allocated to minimise it; 0 = never.
     pub target_error: f32,
-    /// Stop when every part of the image (tiles of 8 × 8 pixels, root mean square) is known to this: half the width of the
-    /// interval that holds the luminance of a pixel with a probability of 95 %, relative to that luminance. 0.1 means
-    /// "within 10 % of its value, 19 times out of 20". Pixels darker than a tenth of the image's mean luminance need not
-    /// be known better than that tenth. A part gets at most 64 times `samples`, though it may miss the target. 0 = never.
-    /// With several targets all are reached.
+    /// Stop when each tile of 8 × 8 pixels reaches this error: the root mean square over its pixels of the half-width
+    /// of the 95 % interval of the luminance, relative to that luminance. 0.1 means "within 10 % of the value, 19 times
+    /// out of 20". Pixels darker than a tenth of the image's mean luminance are measured against that tenth. A tile
+    /// gets at most 64 times `samples` paths per pixel, though it may miss the target. 0 = never. If several targets
+    /// are set, all of them are met.
     pub pixel_error: f32,
-    /// Stop when the image's [`Film::relative_error`] falls to this, and give paths to where they lower it most; 0 = never.
+    /// Stop when [`Film::relative_error`] falls to this value, with paths allocated to minimise it; 0 = never.
     pub relative_error: f32,
     /// Stop after this many milliseconds; 0 = never.
     pub time_budget_ms: u32,
-    /// End every path where what is left is at most this share of all light that surfaces scatter, in `[0, 1)`
-    /// ([`Requirements::bounces`]): the image is too dark by up to that share. 0 = never: paths end by chance alone.
+    /// End every path when its remaining bounces carry at most this share of all scattered light, in `[0, 1)`
+    /// ([`Requirements::bounces`]); the image is too dark by up to that share. 0 = never: only Russian roulette ends
+    /// paths.
     pub bounce_error: f32,
-    /// Strength of the filter that makes [`Film::preview`] (`denoise`), in `[0, 10]`, 1 as a rule; 0 = no preview, for
+    /// Strength of the filter that makes [`Film::preview`] (`denoise`), in `[0, 10]`, usually 1; 0 = no preview, for
     /// final images.
     pub preview: f32,
     pub seed: u64,
-    /// What to render beside the main image.
+    /// Images to render beside the main image.
     pub outputs: Outputs,
 }
 
@@ -179,33 +184,33 @@ impl Params {
     }
 }
 
-/// What has been rendered so far; a render that is cancelled or out of time leaves it usable.
+/// The image rendered so far; it stays usable after a cancel or at the end of the time budget.
 #[derive(Clone, Debug)]
 pub struct Film {
-    /// Mean radiance per pixel, linear RGB in cd/m². A pixel without paths shows one nearby.
+    /// Mean radiance per pixel, linear RGB in cd/m². A pixel without paths shows a nearby pixel.
     pub beauty: Image,
-    /// Variance of that mean, per channel, each pixel from its own paths; infinite below two paths. See
-    /// [`Film::interval`] for what it says about the truth.
+    /// Variance of that mean per channel, each pixel from its own paths; infinite below two paths. [`Film::interval`]
+    /// derives confidence intervals from it.
     pub variance: Image,
     /// Number of paths of each pixel; one channel.
     pub paths: Image,
-    /// Paths per pixel so far, on the average.
+    /// Mean number of paths per pixel so far.
     pub samples: u32,
     /// Root mean square over pixels and channels of the standard error, relative to the mean of the image.
     pub error: f64,
-    /// The same relative to what each pixel shows, the mean of its channels; one darker than a hundredth of the image's mean
-    /// counts as if it were as bright. Of few paths it states rather too much: of 8 about a quarter.
+    /// Root mean square of the standard error relative to the radiance of each pixel (mean of its channels, at least a
+    /// hundredth of the image's mean). With few paths it overestimates: with 8 paths by about a quarter.
     pub relative_error: f64,
-    /// Paths that were left out because their radiance was no finite number.
+    /// Number of paths dropped because their radiance was not finite.
     pub discarded: u64,
-    /// The images beside it: those of expressions in their order, then those of surfaces in theirs.
+    /// The additional images: those of expressions in order, then the AOVs in order.
     pub layers: Vec<Layer>,
-    /// The image with its noise filtered out, and how far that has moved it, if asked for. It is not the expected value.
+    /// The filtered image and an estimate of its bias, if requested. It is not an unbiased estimate.
     pub preview: Option<denoise::Output>,
 }
 
 impl Film {
-    /// A copy, or an error where there is no memory for it.
+    /// Clones the film, or returns an error if there is no memory for the copy.
     pub fn try_clone(&self) -> Result<Self> {
         let layer = |l: &Layer| {
             Ok(Layer { image: l.image.try_clone()?, name: l.name.clone(), expression: l.expression.clone(), ..*l })
@@ -222,18 +227,19 @@ impl Film {
     }
 }
 
-/// Renders a camera's view; `publish` is called with the film after the first pass, and again whenever enough has been
-/// added to be worth its time. To be called on the library's own pool.
+/// Renders the view of a camera. Calls `publish` with the film after the first pass, and again whenever a new film is
+/// worth the time that publishing takes. Call it on the library's own thread pool.
 ///
-/// Without a target the estimate of each pixel is unbiased. With one, where the next paths go depends on those before, and
-/// pixels whose bright paths are rare come out too dark by a small part of their standard error (see `film::adaptive`).
+/// Without an error target the estimate of each pixel is unbiased. With a target, the paths so far decide where the
+/// next ones go, and pixels with rare bright paths come out too dark by a small part of their standard error (see
+/// `film::adaptive`).
 ///
 /// # Errors
-/// Parameters out of range, a camera that cannot see, no memory; cancelled, when the film last published stays good.
+/// Parameters out of range; a degenerate camera; no memory; cancelled. After a cancel the last published film is valid.
 pub fn run(world: &World, camera: &Camera, params: &Params, job: Job, publish: &mut dyn FnMut(&Film)) -> Result<Film> {
     params.check()?;
     check_camera(camera)?;
-    // The images are made also after a cancel.
+    // Assemble images with a job of their own: they are also needed after a cancel.
     let always = Monitor::default();
     let mut clock = Clock::start(params.time_budget_ms);
     let guided = preview::guided(params);

@@ -1,8 +1,8 @@
-//! Paths from the eye to the light: next-event estimation and multiple importance sampling at every vertex.
+//! Path tracing from the eye: next-event estimation and multiple importance sampling at every vertex.
 //!
-//! A path that scatters into a light and the same path made by choosing the light are weighed against each other by the
-//! power heuristic (Veach 1997, 9.2.4). Clear panes are no vertices of a path in that sense: shadow rays pass through them
-//! with their share, and paths keep the density of the vertex before. Nothing is clamped: the estimate is unbiased.
+//! A BSDF sample that hits a light and a light sample of the same path are weighed by the power heuristic (Veach 1997,
+//! 9.2.4). Clear panes are not vertices for MIS: shadow rays pass through them attenuated, and a path keeps the pdf of
+//! the vertex before the pane. Contributions are not clamped: the estimate is unbiased.
 
 use super::bsdf::{Bsdf, BsdfSample, Lobes, ScatterKind};
 use super::environment;
@@ -14,45 +14,46 @@ use super::{LightSource, PathSink};
 use crate::scene::accel::Ray;
 use glam::{Vec2, Vec3};
 
-/// Bounce from which on a path may end by chance.
+/// First bounce at which Russian roulette may end a path. [convention]
 const ROULETTE_START: u32 = 2;
-/// Paths go on for sure that promise this share of what the others bring. Ending them sooner would save less time than
-/// its scatter costs: measured on rooms, the product of time and variance is least about here.
+/// Paths whose expected contribution is at least this share of the mean survive with certainty, up to [`MAX_SURVIVAL`].
+/// Measured on rooms, the product of time and variance is smallest near this value. [judged on rooms]
 const CERTAIN_SHARE: f32 = 0.5;
-/// The surest a path can be to go on: in a room of white walls it must end some time. Walls that give
-/// back more than the root of this make the variance infinite.
+/// Largest survival probability: a path between white walls must end eventually. Walls of an albedo above its square
+/// root make the variance infinite. [judged, not recorded]
 const MAX_SURVIVAL: f32 = 0.998;
 
-/// How often a path scatters at most: a guard that nothing meets, as at [`MAX_SURVIVAL`] a ten-millionth of paths would come so far.
+/// Largest number of bounces. It only guards against endless paths: at [`MAX_SURVIVAL`] one path in ten million gets so
+/// far.
 pub const MAX_BOUNCES: u32 = 8192;
 
-/// Takes what a path brings. All but [`Observer::add`] is for those that tell light apart by the way it came; the others
-/// leave these steps empty, and pay nothing for them.
+/// Observes a path. Only observers of light path expressions and AOVs implement more than [`Observer::add`]; the empty
+/// defaults cost other observers nothing.
 pub trait Observer {
-    /// A contribution, as [`PathSink::add`] has it, and how its light was found.
+    /// Receives a contribution, as [`PathSink::add`], with the sampling strategy that found the light.
     fn add(&mut self, source: LightSource, importance: Vec3, emission: Vec3, strategy: Strategy);
 
-    /// The first surface a path from the eye meets.
+    /// Receives the first surface that a camera path hits.
     fn primary_hit(&mut self, _seen: impl FnOnce() -> PrimaryHit) {}
 
-    /// The path goes on from a vertex of a mesh.
+    /// Receives a scattering event of the path at a vertex of a mesh.
     fn scatter(&mut self, _mesh: u32, _kind: ScatterKind, _lobes: Lobes) {}
 
-    /// Where to list the panes between a vertex and a light chosen for it, if anyone wants to know.
+    /// A list to fill with the panes between a vertex and its light sample, if the observer needs them.
     fn panes(&mut self) -> Option<&mut Vec<Pane>> {
         None
     }
 }
 
-/// A surface as the eye meets it.
+/// Attributes of the first surface that a camera path hits.
 #[derive(Clone, Copy)]
 pub struct PrimaryHit {
     pub mesh: u32,
     pub position: Vec3,
-    /// Shading normal and geometric normal on the side of the eye.
+    /// Shading normal and geometric normal, both facing the eye.
     pub normal: Vec3,
     pub geometric_normal: Vec3,
-    /// Colour at normal incidence.
+    /// Reflectance plus transmittance at normal incidence.
     pub colour: Vec3,
     pub distance: f32,
 }
@@ -71,16 +72,16 @@ impl PrimaryHit {
     }
 }
 
-/// How a light was found.
+/// The sampling strategy that found a light.
 #[derive(Clone, Copy)]
 pub enum Strategy {
-    /// By scattering into it.
+    /// A BSDF sample hit the light.
     BsdfSample,
-    /// It was chosen for a vertex of a mesh, whose lobes send this much of it on.
+    /// A light sample at a vertex of a mesh; `lobes` are the BSDF values times the cosine towards it.
     LightSample { mesh: u32, lobes: Lobes },
 }
 
-/// An observer that only adds up.
+/// An observer that forwards contributions to a sink.
 pub struct Contributions<'a, S>(pub &'a mut S);
 
 impl<S: PathSink> Observer for Contributions<'_, S> {
@@ -90,38 +91,38 @@ impl<S: PathSink> Observer for Contributions<'_, S> {
     }
 }
 
-/// A path about to leave a vertex or the eye.
+/// A path segment about to leave a vertex or the eye.
 pub(super) struct Leg {
     pub ray: Ray,
-    /// The triangle it leaves.
+    /// The triangle at its origin.
     pub from: u32,
     pub throughput: Vec3,
-    /// For what the light was last sampled, and the density of the direction then chosen; none if only scattering could
-    /// find what lies ahead.
+    /// The competing strategy for MIS: the point at which a light was sampled last, and the solid-angle pdf of the BSDF
+    /// sample drawn there. `None` after the eye or a mirror, where no light sample competes.
     pub mis: Option<(Receiver, f32)>,
-    /// Uniform in the unit square: chooses the light for the next vertex.
+    /// Uniform in the unit square: selects the light sample at the next vertex.
     pub light_u: (f64, f32),
 }
 
 impl Leg {
-    /// From the eye along a ray of unit direction.
+    /// A segment that leaves the eye along a ray of unit direction.
     pub fn from_eye(ray: Ray, light_u: (f64, f32)) -> Self {
         Self { ray, from: NONE, throughput: Vec3::ONE, mis: None, light_u }
     }
 }
 
-/// What decides how long paths are.
+/// Controls the length of paths.
 #[derive(Clone, Copy)]
 pub struct PathLength {
-    /// They scatter so often at most.
+    /// Largest number of bounces.
     pub max_bounces: u32,
-    /// What light of middling brightness means to the sum of all paths, relative to it. Without it the colour of the first
-    /// surface is what counts.
+    /// Factor that turns a path's throughput into its expected contribution relative to the pixel's estimate, for
+    /// Russian roulette. `None`: the reciprocal of the throughput after the first bounce is used.
     pub roulette_weight: Option<Vec3>,
 }
 
-/// Makes one estimate of the radiance that arrives along a ray (of unit direction). A point of the unit square chooses the
-/// first light.
+/// Estimates the radiance that arrives along a ray of unit direction with one path. `light_u`, uniform in the unit
+/// square, selects the first light sample.
 pub fn trace<O: Observer>(
     world: &World,
     ray: Ray,
@@ -133,7 +134,7 @@ pub fn trace<O: Observer>(
     walk(world, Leg::from_eye(ray, light_u), 0, length, sampler, observer);
 }
 
-/// Makes one estimate of the irradiance at a point.
+/// Estimates the irradiance at a point with one path.
 pub fn gather<O: Observer>(world: &World, vertex: &Vertex, front: bool, sampler: &mut Sampler, observer: &mut O) {
     let normal = if front { vertex.normal } else { -vertex.normal };
     let receiver = Bsdf::receiver(normal);
@@ -145,7 +146,7 @@ pub fn gather<O: Observer>(world: &World, vertex: &Vertex, front: bool, sampler:
     }
 }
 
-/// Follows a path that has scattered so often to its end.
+/// Traces a path from its bounce number `scattered` to its end.
 pub(super) fn walk<O: Observer>(
     world: &World,
     mut leg: Leg,
@@ -163,7 +164,8 @@ pub(super) fn walk<O: Observer>(
     }
 }
 
-/// Where a path comes to a surface, and how far that is. Adds the light that comes from there, or from around the scene.
+/// Intersects a segment with the scene: returns the vertex and its distance. Adds the emission of the hit or of the
+/// environment.
 #[inline(always)]
 pub(super) fn intersect<O: Observer>(
     world: &World,
@@ -180,7 +182,7 @@ pub(super) fn intersect<O: Observer>(
     Some((vertex, hit.t))
 }
 
-/// How a path that has scattered so often leaves a vertex, if it does. Adds the light chosen for it.
+/// Continues a path of `bounce` bounces at a vertex: plays Russian roulette, samples a light, and samples the BSDF.
 #[inline(always)]
 pub(super) fn continue_path<O: Observer>(
     world: &World,
@@ -195,13 +197,13 @@ pub(super) fn continue_path<O: Observer>(
     if bounce == length.max_bounces {
         return None;
     }
-    // End by chance what can no longer add much (Vorba and Křivánek 2016, "Adjoint-driven Russian roulette and
-    // splitting in light transport simulation", with a single value for the light that may still be found).
+    // Play Russian roulette on the expected contribution (Vorba and Křivánek 2016, "Adjoint-driven Russian roulette and
+    // splitting in light transport simulation", with a single value for the radiance yet to be found).
     let mut throughput = leg.throughput;
     if bounce >= ROULETTE_START
         && let Some(roulette_weight) = length.roulette_weight
     {
-        // Of little promise, more go on than it says: where bright light is rare, it says too little.
+        // Keep more of the dim paths than their expected share: where bright light is rare, it is underestimated.
         let expected_share = (throughput * roulette_weight).max_element();
         let survival = (expected_share / CERTAIN_SHARE).max(expected_share.sqrt()).min(MAX_SURVIVAL);
         if !(sampler.chance() < survival) {
@@ -218,7 +220,7 @@ pub(super) fn continue_path<O: Observer>(
     Some(next)
 }
 
-/// Adds the light chosen for a vertex and chooses where the path goes on.
+/// Samples a light at a vertex, then samples the BSDF for the next segment.
 pub(super) fn scatter<O: Observer>(
     world: &World,
     vertex: &Vertex,
@@ -247,7 +249,7 @@ pub(super) fn scatter<O: Observer>(
     Some(Leg { ray: vertex.ray(scattered.direction), from: vertex.id, throughput, mis, light_u })
 }
 
-/// A light for what scatters any.
+/// Sample a light, unless the BSDF is specular.
 #[inline(always)]
 pub(super) fn sample_light(
     world: &World,
@@ -258,7 +260,7 @@ pub(super) fn sample_light(
     if bsdf.has_non_specular() { world.lights().sample(world.scene(), receiver, light_u) } else { None }
 }
 
-/// Where a path goes on, and the point of the unit square that chooses the light where that leads.
+/// Samples the BSDF; also returns the random numbers of the light sample at the next vertex.
 #[inline(always)]
 pub(super) fn sample_direction(bsdf: &Bsdf, sampler: &mut Sampler) -> Option<(BsdfSample, (f64, f32))> {
     let block = sampler.next();
@@ -266,7 +268,7 @@ pub(super) fn sample_direction(bsdf: &Bsdf, sampler: &mut Sampler) -> Option<(Bs
     Some((scattered, (block.fine(2), block.get(3))))
 }
 
-/// Adds the light chosen for a vertex.
+/// Adds the contribution of a light sample at a vertex.
 #[inline(always)]
 pub(super) fn add_direct_light<O: Observer>(
     world: &World,
@@ -287,8 +289,8 @@ pub(super) fn add_direct_light<O: Observer>(
     }
 }
 
-/// What a chosen light's emission counts for at a vertex, before it scatters: as much of it as nothing stands in the way of,
-/// weighed against meeting the light by scattering with a density, over the probability of its choice.
+/// Weight of a light sample's emission at a vertex, without the BSDF: visibility × mis_weight / pdf. `pdf` is the
+/// solid-angle pdf of the BSDF for the direction of the light.
 #[inline(always)]
 pub(super) fn connection_weight(
     world: &World,
@@ -312,7 +314,7 @@ pub(super) fn connection_weight(
     world.transmittance(&ray, [vertex.id, end], panes) * (weight / light.pdf)
 }
 
-/// What a path meets by scattering, weighed against having chosen it as a light.
+/// Adds the emission of a hit surface, weighed against a light sample of the same point.
 fn add_emission<O: Observer>(world: &World, leg: &Leg, vertex: &Vertex, observer: &mut O) {
     let Some(index) = world.emitter_of(vertex.id) else { return };
     let lights = world.lights();
@@ -334,6 +336,7 @@ fn add_emission<O: Observer>(world: &World, leg: &Leg, vertex: &Vertex, observer
     observer.add(source, leg.throughput * weight, emission, Strategy::BsdfSample);
 }
 
+/// Adds the radiance of the environment, weighed against a light sample of the same direction.
 fn add_environment<O: Observer>(world: &World, leg: &Leg, observer: &mut O) {
     let Some(environment) = world.environment() else { return };
     let emission = environment::radiance(environment, leg.ray.direction);
@@ -345,14 +348,14 @@ fn add_environment<O: Observer>(world: &World, leg: &Leg, observer: &mut O) {
     observer.add(LightSource::Environment, leg.throughput * weight, emission, Strategy::BsdfSample);
 }
 
-/// Of each channel; 0 where there is nothing.
+/// Reciprocal of each channel; 0 for channels that are not positive.
 pub(super) fn reciprocal(v: Vec3) -> Vec3 {
     Vec3::select(v.cmpgt(Vec3::ZERO), v.recip(), Vec3::ZERO)
 }
 
-/// The weight of a strategy of density `own` against another of density `other`.
+/// MIS weight of a sample of pdf `own` against a strategy of pdf `other` (power heuristic with exponent 2).
 fn power_heuristic(own: f32, other: f32) -> f32 {
-    // As a ratio, so that neither square overflows.
+    // Form the ratio first, so that neither square overflows.
     if own <= 0.0 {
         return 0.0;
     }

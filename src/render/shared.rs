@@ -1,13 +1,13 @@
-//! Paths of neighbouring pixels, which share what they find behind the first surfaces they meet.
+//! Path reuse among neighbouring pixels: the paths of a block share their secondary vertices.
 //!
-//! What a path comes to from there sends light to the neighbours as well, and one more ray tells whether they see it. Each
-//! such point is weighed as if it had been drawn from the mean of the densities with which all that see it could have drawn
-//! it (the balance heuristic of Veach and Guibas 1995; Bekaert, Sbert and Halton 2002, "Accelerating path tracing by
-//! re-using paths"). So no estimate is biased, and a pixel has the indirect light of as many points as there are pixels, for
-//! little more than a ray each. What it costs is that the errors of those pixels are alike.
+//! A secondary vertex also lights the primary vertices of the neighbours, and one more ray per neighbour tests its
+//! visibility. It is weighed as a sample of the mean of the pdfs of all primary vertices that see it (the balance
+//! heuristic of Veach and Guibas 1995; Bekaert, Sbert and Halton 2002, "Accelerating path tracing by re-using paths").
+//! Estimates remain unbiased, and a pixel gets the indirect light of as many vertices as the block has pixels, for
+//! little more than one ray each. In return, the errors of these pixels are correlated.
 //!
-//! Only surfaces that spread light take part, at both ends: a mirror sends to each pixel something else. All others'
-//! paths go on alone.
+//! Primary and secondary vertices must be non-specular: a mirror reflects something else to each pixel. Paths with
+//! other vertices are traced alone.
 
 use super::bsdf::{Bsdf, Lobes, ScatterKind};
 use super::light::{LightSample, Receiver};
@@ -18,49 +18,51 @@ use super::world::{Pane, World};
 use crate::scene::accel::Ray;
 use glam::Vec3;
 
-/// Most paths that share.
+/// Largest number of paths that share vertices.
 pub const MAX_SHARED: usize = 8;
 
-/// An observer of several paths that begin with the same first leg.
+/// An observer of several paths that have the same first segment.
 pub trait ReplayObserver: Observer {
     type Tape: Tape;
 
-    /// Goes back to the eye, from where the path leaves on another way. What it has brought stays.
+    /// Returns to the eye, to leave it along another path. Contributions so far are kept.
     fn restart(&mut self);
 
-    /// Before the light chosen for a vertex stand these panes.
+    /// Receives the panes between a vertex and its light sample.
     fn take_panes(&mut self, _panes: &[Pane]) {}
 
-    /// The path goes on as the one on a tape, with this importance when it sets out on it.
+    /// Continues the path along a recorded subpath, with this importance at its start.
     fn replay(&mut self, tape: &Self::Tape, importance: Vec3);
 
-    /// The same after going back to the eye and on from the first surface, of a mesh, whose lobes send this much on.
+    /// Returns to the eye, scatters at the primary vertex (of a mesh, with these lobes), and continues along a recorded
+    /// subpath with this importance at its start.
     fn replay_from(&mut self, mesh: u32, lobes: Lobes, tape: &Self::Tape, importance: Vec3);
 }
 
-/// What happens to a path from some vertex on, to be told to several witnesses.
+/// Records a subpath from a vertex on, to replay it to several observers.
 pub trait Tape: Observer {
-    /// Those who will be told come off surfaces of these meshes, which have a layer on the diffuse one or not.
+    /// Announces the primary vertices whose observers will replay the tape: the mesh of each, and whether its BSDF has
+    /// layers besides the diffuse one.
     fn expect(&mut self, _viewers: impl Iterator<Item = (u32, bool)>) {}
 
-    /// Begins anew, at a point that they see.
+    /// Starts a new recording at a secondary vertex.
     fn begin(&mut self);
 
-    /// Begins anew behind such a point, which is of a mesh.
+    /// Starts a new recording behind a secondary vertex of a mesh.
     fn begin_behind(&mut self, _mesh: u32) {
         self.begin();
     }
 
-    /// Ends; whether there is light to tell of.
+    /// Ends the recording; returns whether it has any light.
     fn end(&mut self) -> bool;
 }
 
-/// Scratch memory for what there is to tell of a point.
+/// Scratch memory for the recording of a secondary vertex.
 #[derive(Default)]
 pub struct Scratch<T> {
-    /// The path from there on; where it sends to each what is theirs, the path beyond it.
+    /// The subpath from the vertex on; behind the vertex, if its light depends on the viewer.
     tape: T,
-    /// The panes before the light chosen for it.
+    /// The panes between the vertex and its light sample.
     panes: Vec<Pane>,
 }
 
@@ -74,22 +76,22 @@ impl<T> Scratch<T> {
 pub struct Start {
     /// Of unit direction.
     pub ray: Ray,
-    /// Chooses the light for the first surface, as a point of the unit square.
+    /// Uniform in the unit square: selects the light sample at the primary vertex.
     pub light_u: (f64, f32),
     pub length: PathLength,
     pub sampler: Sampler,
 }
 
-/// The first surface a path meets, where it takes part.
+/// The primary vertex of a path that takes part in sharing.
 struct PrimaryVertex<'w> {
     vertex: Vertex,
     bsdf: Bsdf<'w>,
-    /// What light from the surfaces it sees is worth, as [`PathLength::roulette_weight`] has it.
+    /// Roulette weight of light from the secondary vertices: see [`PathLength::roulette_weight`].
     roulette_weight: Vec3,
     continuation: Option<Continuation>,
 }
 
-/// Where a path goes from there.
+/// The BSDF sample at a primary vertex.
 struct Continuation {
     direction: Vec3,
     lobes: Lobes,
@@ -97,39 +99,39 @@ struct Continuation {
     leg: Leg,
 }
 
-/// A point that a path has come to from there, and the light it has for all that see it.
+/// A secondary vertex and its outgoing light, for every primary vertex that sees it.
 struct SecondaryVertex<'w> {
     vertex: Vertex,
     light: SecondaryLight<'w>,
 }
 
 enum SecondaryLight<'w> {
-    /// It sends the same to all.
+    /// The same radiance in all directions.
     ViewIndependent,
-    /// What it sends depends on who sees it.
+    /// Radiance that depends on the direction of the viewer.
     ViewDependent {
         surface: Surface<'w>,
-        /// A light, and what its emission counts for before it is scattered.
+        /// A light sample and its weight without the BSDF ([`path::connection_weight`]).
         light_sample: Option<(LightSample, Vec3)>,
-        /// Direction and density with which the path goes on.
+        /// Direction and solid-angle pdf of the BSDF sample behind the vertex.
         continuation: Option<(Vec3, f32)>,
     },
 }
 
-/// One who sees it.
+/// A primary vertex that sees a secondary vertex.
 #[derive(Clone, Copy)]
 struct Viewer {
     number: usize,
-    /// Towards the find.
+    /// Towards the secondary vertex.
     direction: Vec3,
     lobes: Lobes,
-    /// Density per steradian with which it could have found it.
+    /// Solid-angle pdf with which its BSDF samples that direction.
     pdf: f32,
-    /// Steradians it has of a square metre there.
+    /// Factor from solid angle to area at the secondary vertex: cosine / squared distance.
     solid_angle_per_area: f32,
 }
 
-/// Makes one estimate of the radiance along each of some rays. Each witness is told of its own.
+/// Estimates the radiance along several rays with one path each. Each observer receives the light of its own ray.
 pub fn trace<W: ReplayObserver>(
     world: &World,
     starts: &mut [Start],
@@ -140,7 +142,7 @@ pub fn trace<W: ReplayObserver>(
     for ((primary, start), observer) in primaries.iter_mut().zip(&mut *starts).zip(&mut *observers) {
         *primary = trace_primary(world, start, observer);
     }
-    // Light that any of them may see must not be given up because it means little to one.
+    // Use the largest roulette weight of the block: light that matters to any of its pixels must survive.
     let roulette_weight = primaries.iter().flatten().map(|s| s.roulette_weight).fold(Vec3::ZERO, Vec3::max);
     scratch.tape.expect(primaries.iter().flatten().map(|s| (s.vertex.mesh, !s.bsdf.is_diffuse())));
     for number in 0..starts.len() {
@@ -162,7 +164,7 @@ pub fn trace<W: ReplayObserver>(
     }
 }
 
-/// Follows a path to the first surface; one that takes no part to its end.
+/// Traces a path to its primary vertex, or to its end if that vertex cannot share.
 fn trace_primary<'w, W: ReplayObserver>(
     world: &'w World,
     start: &mut Start,
@@ -199,8 +201,8 @@ fn trace_primary<'w, W: ReplayObserver>(
     Some(PrimaryVertex { vertex, bsdf, roulette_weight, continuation })
 }
 
-/// Follows a path on to what it finds next. What is its own alone the witness is told of: light it meets there, and all
-/// that comes of a point that takes no part.
+/// Traces a path from its primary to its secondary vertex. The observer receives the emission of the secondary surface,
+/// and all light of a secondary vertex that cannot be shared.
 fn trace_secondary<'w, W: ReplayObserver>(
     world: &'w World,
     primary: &PrimaryVertex,
@@ -226,7 +228,7 @@ fn trace_secondary<'w, W: ReplayObserver>(
         }
         return None;
     }
-    // The path from there on is told of as if it began there.
+    // Record the subpath as if it began at the secondary vertex.
     let length = PathLength { max_bounces: length.max_bounces, roulette_weight: Some(roulette_weight) };
     let light = if bsdf.is_view_independent() {
         record_view_independent(world, &vertex, &bsdf, leg.light_u, length, sampler, &mut scratch.tape)
@@ -236,7 +238,7 @@ fn trace_secondary<'w, W: ReplayObserver>(
     light.map(|light| SecondaryVertex { vertex, light })
 }
 
-/// The light of a find that sends the same to all.
+/// Records the light of a secondary vertex that sends the same radiance to all viewers.
 fn record_view_independent<'w, T: Tape>(
     world: &World,
     vertex: &Vertex,
@@ -253,7 +255,7 @@ fn record_view_independent<'w, T: Tape>(
     tape.end().then_some(SecondaryLight::ViewIndependent)
 }
 
-/// The light of a find that sends to each what is theirs.
+/// Records the light of a secondary vertex whose radiance depends on the viewer.
 fn record_view_dependent<'w, T: Tape>(
     world: &World,
     vertex: &Vertex,
@@ -297,23 +299,25 @@ fn record_view_dependent<'w, T: Tape>(
     has_light.then_some(SecondaryLight::ViewDependent { surface, light_sample, continuation })
 }
 
-/// Whether nothing stands between, not even what lets light pass: a path that came that way came by chance, or met it.
+/// Whether the segment between two vertices is free of surfaces, transparent ones included: a path that passed one did
+/// so by chance, or scattered there.
 fn is_visible(world: &World, from: &Vertex, to: &Vertex, direction: Vec3) -> bool {
     let origin = from.off_surface(direction);
     let target = to.off_surface(-direction);
     world.is_clear(&Ray { origin, direction: target - origin, t_max: 1.0 }, [from.id, to.id])
 }
 
-/// The same of a point that was found from there: nothing is to be asked where all surfaces are solid.
+/// Whether a secondary vertex is deterministically visible from its own primary vertex; always in scenes of opaque
+/// surfaces.
 fn is_surely_visible(world: &World, primary: &PrimaryVertex, secondary: &Vertex) -> bool {
     let direction = secondary.position - primary.vertex.position;
     !world.is_see_through() || is_visible(world, &primary.vertex, secondary, direction)
 }
 
-/// All that see a find.
+/// All primary vertices that see a secondary vertex.
 struct Viewers {
     list: [Option<Viewer>; MAX_SHARED],
-    /// Sum of their densities per square metre.
+    /// Sum of their area pdfs at the secondary vertex.
     area_pdf: f32,
 }
 
@@ -343,7 +347,7 @@ impl Viewers {
             }
             let direction = (surface.position - primary.vertex.position).normalize_or_zero();
             let theirs = surface.normal.dot(direction);
-            // They must be on the same side of it.
+            // Both primary vertices must be on the same side of the surface.
             if !(theirs * cosine > 0.0) {
                 return None;
             }
@@ -359,7 +363,7 @@ impl Viewers {
         });
         let area_pdf = list.iter().flatten().map(|v: &Viewer| v.pdf * v.solid_angle_per_area).sum();
         let mut viewers = Self { list, area_pdf };
-        // Points of surfaces that touch are the finder's own.
+        // Where surfaces touch, the pdfs are not finite: only the path's own pixel uses the vertex.
         if !(area_pdf.is_finite() && area_pdf > 0.0) {
             viewers.list.iter_mut().flatten().for_each(|v| v.solid_angle_per_area = f32::from(v.number == owner));
             viewers.area_pdf = continuation.pdf;
@@ -367,7 +371,7 @@ impl Viewers {
         viewers
     }
 
-    /// Tells the witnesses what light they get from it.
+    /// Replays the light of the secondary vertex to the observers of all its viewers.
     fn replay<W: ReplayObserver>(
         &self,
         secondary: &SecondaryVertex,

@@ -1,4 +1,4 @@
-//! What happens to a path from some vertex on, for those that only add up and for those that tell light apart.
+//! Recordings of subpaths: one that sums contributions, one that also tracks the states of light path expressions.
 
 use super::LightSource;
 use super::bsdf::{Lobes, ScatterKind};
@@ -9,7 +9,7 @@ use super::shared::{ReplayObserver, Tape};
 use super::world::{Pane, World};
 use glam::Vec3;
 
-/// Adds contributions up.
+/// Sums contributions.
 #[derive(Clone, Copy, Default)]
 pub struct Sum(pub Vec3);
 
@@ -46,13 +46,13 @@ impl ReplayObserver for Sum {
     }
 }
 
-/// Adds contributions up, and follows a path from every state that those who will be told of it can be in.
+/// Sums contributions and tracks a subpath from every automaton state in which the observers that replay it may be.
 pub struct LpeTape<'a> {
     world: &'a World,
     automaton: &'a Automaton,
     sum: Vec3,
     trail: Trail<'a>,
-    /// The states behind the first surfaces, and those in which the path begins.
+    /// The states behind the primary vertices, and the states in which the subpath begins.
     viewers: Vec<u16>,
     origins: Vec<u16>,
     outcome: Vec<PathOutcome>,

@@ -1,4 +1,4 @@
-//! A point of a surface that a path has reached: where it is, how it is oriented, and what it is made of there.
+//! A surface point on a path: its position, orientation and material.
 
 use super::bsdf::{Bsdf, Substance};
 use super::compiled_material::{self, CompiledMaterial};
@@ -11,15 +11,15 @@ use glam::{Vec2, Vec3, Vec4};
 
 pub struct Vertex {
     pub mesh: u32,
-    /// Index within the mesh, and among all triangles of the scene.
+    /// Index of the triangle within the mesh.
     pub triangle: u32,
     pub id: u32,
     pub barycentric: Vec2,
-    /// Relative to the world's centre.
+    /// Relative to the centre of the world.
     pub position: Vec3,
     /// Unit geometric normal of the front face.
     pub normal: Vec3,
-    /// Distance that clears the rounding of `position`.
+    /// Offset along the normal that exceeds the rounding error of `position`.
     offset: f32,
 }
 
@@ -29,7 +29,7 @@ impl Vertex {
         Self::new(world, hit.triangle, Vec2::new(hit.u, hit.v))
     }
 
-    /// A point of the triangle of this number among all.
+    /// A point of triangle number `id` of the scene.
     #[inline]
     pub fn new(world: &World, id: u32, barycentric: Vec2) -> Self {
         let facet = world.facet(id);
@@ -44,7 +44,8 @@ impl Vertex {
         }
     }
 
-    /// A point in the scene's coordinates that is on no surface, facing along a unit normal. It clears surfaces it may happen to lie in.
+    /// A free point in scene coordinates that faces along a unit normal. Its offset also clears surfaces that it may
+    /// happen to lie in.
     pub fn free(world: &World, position: Vec3, normal: Vec3) -> Self {
         let (low, high) = world.accel().bounds();
         let position = world.from_scene(position);
@@ -53,8 +54,8 @@ impl Vertex {
         Self { mesh, triangle, id: NONE, barycentric, position, normal, offset: largest * facet::OFFSET }
     }
 
-    /// The point moved off its surface to the side of `direction` (Wächter and Binder 2019, with the scale of the
-    /// triangle in place of that of the point: coordinates near 0 carry the errors of larger ones).
+    /// The point offset from its surface to the side of `direction` (Wächter and Binder 2019, but scaled by the
+    /// triangle instead of the point: coordinates near 0 carry the rounding errors of larger ones).
     #[inline]
     pub fn off_surface(&self, direction: Vec3) -> Vec3 {
         self.position + self.normal * self.offset.copysign(self.normal.dot(direction))
@@ -65,18 +66,18 @@ impl Vertex {
         Ray::new(self.off_surface(direction), direction)
     }
 
-    /// What scatters light that leaves along `wo`.
+    /// The BSDF seen from direction `wo`.
     #[inline]
     pub fn bsdf<'w>(&self, world: &'w World, wo: Vec3) -> Bsdf<'w> {
         self.surface(world).seen_from(wo)
     }
 
-    /// What is there, whoever looks at it.
+    /// The view-independent shading data of the point.
     #[inline]
     pub fn surface<'w>(&self, world: &'w World) -> Surface<'w> {
         let facet = world.facet(self.id);
         let compiled = world.compiled_material(facet);
-        // Most surfaces are flat and of one substance.
+        // Most surfaces are flat and of uniform material.
         let shading =
             if facet.is_smooth() || compiled.has_normal_map { self.shading_normal(world, facet) } else { self.normal };
         let substance = if compiled.is_textured {
@@ -95,7 +96,7 @@ impl Vertex {
             let [a, b, c] = mesh.triangles[self.triangle as usize].map(|i| mesh.normals[i as usize]);
             let v = self.barycentric;
             let n = (a * (1.0 - v.x - v.y) + b * v.x + c * v.y).normalize_or(normal);
-            // Normals that point to the other side than the winding are taken to mean the axis only.
+            // Flip normals that oppose the winding: only their axis is used.
             normal = if n.dot(normal) < 0.0 { -n } else { n };
         }
         let Some(texture) = &material.normal_texture else { return normal };
@@ -103,32 +104,32 @@ impl Vertex {
         let texel = context.look_up(texture).truncate();
         let n = texel * 2.0 - Vec3::ONE;
         let t = (along_u - normal * normal.dot(along_u)).normalize_or_zero();
-        // Green points up in the image, which is towards smaller v.
+        // Orient the bitangent: green points up in the image, towards smaller v.
         let b = normal.cross(t);
         let b = if b.dot(along_v) > 0.0 { -b } else { b };
         (t * (n.x * material.normal_scale) + b * (n.y * material.normal_scale) + normal * n.z).normalize_or(normal)
     }
 }
 
-/// What a surface is at a point.
+/// View-independent shading data of a surface point.
 pub struct Surface<'w> {
     substance: Substance,
-    /// Whether there may be more than a diffuse layer.
+    /// Whether the material may have more than a diffuse layer.
     layered: bool,
-    /// Shading and geometric normal of the front.
+    /// Shading normal and geometric normal of the front side.
     normals: [Vec3; 2],
     table: Option<&'w AlbedoTable>,
 }
 
 impl<'w> Surface<'w> {
-    /// What scatters light that leaves along `wo`.
+    /// The BSDF seen from direction `wo`.
     #[inline]
     pub fn seen_from(&self, wo: Vec3) -> Bsdf<'w> {
         Bsdf::new(&self.substance, self.layered, self.normals, wo, self.table)
     }
 }
 
-/// A point of a triangle with all that its textures hang on.
+/// A point of a triangle with its mesh and material, for texture look-ups.
 pub struct TextureContext<'w> {
     world: &'w World,
     pub mesh: &'w Mesh,
@@ -145,13 +146,13 @@ impl<'w> TextureContext<'w> {
         Self { world, mesh, material, triangle, barycentric }
     }
 
-    /// Share of the surface that is there.
+    /// Opacity (coverage) of the surface at this point.
     pub fn opacity(&self) -> f32 {
         let texture = self.material.base_color_texture.as_ref();
         self.material.alpha * texture.map_or(1.0, |t| self.look_up(t).w)
     }
 
-    /// What is there.
+    /// The material at this point.
     pub fn substance(&self, compiled: &CompiledMaterial) -> Substance {
         if !compiled.is_textured {
             return compiled.substance;
@@ -186,7 +187,7 @@ impl<'w> TextureContext<'w> {
         (!uvs.is_empty()).then(|| corners().map(|i| texture.transform.transform_point2(uvs[i as usize])))
     }
 
-    /// Directions in which u and v grow.
+    /// Directions of increasing u and increasing v.
     fn tangents(&self, facet: &Facet, texture: &TextureRef) -> Option<(Vec3, Vec3)> {
         let [a, b, c] = facet.corners();
         let [p, q, r] = self.corner_uvs(texture)?;
