@@ -1,9 +1,9 @@
-//! What a scene requires of the renderer, found out before the first ray: which ways of scattering can occur, which
-//! lights there are, and how much light a bounce can leave.
+//! Static analysis of a scene before tracing: which kinds of scattering and which lights can occur, and how much light
+//! a bounce can leave.
 //!
-//! Ranges are those of the factors and of the texels they multiply; only materials of meshes with triangles count. What
-//! cannot occur is not asked for while tracing: this changes no estimate. How many bounces matter is told, and applied only
-//! to renders that ask for it (`bounce_error`): otherwise paths end by chance alone.
+//! Values range over the material factors times the texels of their textures; only materials of meshes with triangles
+//! count. Tracing skips whatever cannot occur, which changes no estimate. The number of bounces that matter is
+//! reported, but limits only renders that set `bounce_error`; other paths end by Russian roulette alone.
 
 use super::bsdf::{MIRROR_ROUGHNESS, Substance};
 use super::compiled_material::{self, CompiledMaterial};
@@ -11,49 +11,49 @@ use super::ggx::{self, AlbedoTable};
 use crate::scene::{AlphaMode, Environment, Material, PunctualLight, Scene, TextureRef};
 use glam::{Vec3, Vec4};
 
-/// What can happen to light in a scene.
+/// The shading features that a scene requires.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Requirements {
-    /// Ways of scattering that can occur.
+    /// Kinds of scattering that can occur.
     pub diffuse: bool,
     pub glossy: bool,
     pub mirror: bool,
     /// Clear panes.
     pub glass: bool,
-    /// Surfaces that are partly not there.
+    /// Surfaces with an opacity below 1.
     pub alpha: bool,
     pub normal_maps: bool,
-    /// Lights that can shine.
+    /// Kinds of lights that can emit.
     pub surfaces: bool,
     pub textured_surfaces: bool,
     pub points: bool,
     pub spots: bool,
     pub directional: bool,
     pub environment: bool,
-    /// Textures that vary what surfaces scatter or emit, of how many in the scene.
+    /// Number of textures that affect scattering or emission, and number of textures in the scene.
     pub textures: usize,
     pub textures_given: usize,
-    /// The most any surface sends on of the light it receives, per channel: diffuse, glossy, and straight through.
+    /// Upper bound of the albedo of all surfaces, per channel: diffuse, glossy and transmitted light together.
     pub albedo: Vec3,
-    /// The material that sends on that much.
+    /// The material of the largest albedo.
     pub brightest: Option<usize>,
-    /// Triangles without an area, which no ray can meet.
+    /// Number of degenerate triangles, which no ray can hit.
     pub flat_triangles: usize,
-    /// Meshes that are closed and transparent, and the first of them: glass that bends light, which is not modelled.
+    /// Number of closed transparent meshes, and the first of them: refraction in solids is not modelled.
     pub solids: usize,
     pub first_solid: Option<usize>,
-    /// A material that is transparent and rough: glass that scatters light, which is not modelled.
+    /// A transparent and rough material: frosted glass is not modelled.
     pub frosted: Option<usize>,
 }
 
 impl Requirements {
-    /// How many times light can scatter and still matter: light scattered more often is at most the share `error` of all
-    /// light that surfaces scatter. None where albedos set no bound, or `error` is not positive.
+    /// The number of bounces after which the remaining light is at most the share `error` of all scattered light.
+    /// `None` if the albedos set no bound or `error` is not positive.
     ///
-    /// No surface sends on more than the share `a` (the largest of `albedo`), so each bounce carries at most `a` times
-    /// the flux of the one before it, in closed scenes and all the more in open ones. The sum over more than `n` bounces
-    /// is then largest beside the whole when all ratios are `a`: a^n of it. This holds for the flux in the scene, and for
-    /// images that show an average part of it; a pixel that only sees light of many bounces may miss more.
+    /// No surface reflects or transmits more than the share `a`, the largest channel of `albedo`. Each bounce carries
+    /// at most `a` times the flux of the previous one; less in open scenes. The relative sum over more than `n` bounces
+    /// is largest if all ratios equal `a`: it is then a^n. This bounds the flux in the scene, and images of an average
+    /// part of it; a pixel that only shows light of many bounces may miss more.
     pub fn bounces(&self, error: f32) -> Option<u32> {
         let a = f64::from(self.albedo.max_element());
         if !(error > 0.0 && a < 1.0) {
@@ -65,7 +65,7 @@ impl Requirements {
         Some((f64::from(error).ln() / a.ln()).ceil().clamp(1.0, f64::from(u32::MAX)) as u32)
     }
 
-    /// What tracing leaves out, one sentence each.
+    /// The omissions of tracing, one sentence each.
     pub fn left_out(&self) -> Vec<String> {
         let mut sentences = Vec::new();
         let mut unless = |present: bool, sentence: &str| {
@@ -108,7 +108,7 @@ impl Requirements {
     }
 }
 
-/// Least and largest values, per channel.
+/// Smallest and largest values per channel.
 #[derive(Clone, Copy)]
 struct Range {
     low: Vec4,
@@ -123,7 +123,7 @@ impl Range {
     }
 }
 
-/// Looks at all of a scene whose indices have been checked; gives its requirements and how to look at each material.
+/// Analyses a validated scene; returns its requirements and its compiled materials.
 pub fn analyse(scene: &Scene, table: Option<&AlbedoTable>) -> (Requirements, Vec<CompiledMaterial>) {
     let ranges: Vec<Range> = scene.textures.iter().map(|t| range_of(&t.image)).collect();
     let range = |t: &Option<TextureRef>| t.as_ref().map_or(Range::ONE, |t| ranges[t.texture]);
@@ -224,7 +224,7 @@ fn compile_material(material: &Material, base: Range, layers: Range, normals: Ra
         AlphaMode::Mask(cutoff) => min_alpha < cutoff,
         AlphaMode::Blend => min_alpha < 1.0,
     };
-    // A neutral map has x and y of 1/2, which mean 0, and a positive z.
+    // A neutral normal map has x and y of 1/2, which mean 0, and a positive z.
     let bends = (normals.low.truncate() * 2.0 - 1.0).abs().max((normals.high.truncate() * 2.0 - 1.0).abs());
     let is_neutral = (bends * material.normal_scale).truncate().max_element() == 0.0 && normals.low.z > 0.5;
     let base_varies = base.low.truncate() != base.high.truncate();
@@ -241,7 +241,7 @@ fn compile_material(material: &Material, base: Range, layers: Range, normals: Ra
     }
 }
 
-/// The substances between which a material lies: all it does is linear or monotone in between.
+/// Extreme parameter sets of a material: everything in between is linear or monotone.
 fn extremes(material: &Material, base: Range, layers: Range) -> impl Iterator<Item = Substance> {
     let ends = |factor: f32, low: f32, high: f32| {
         let (a, b) = (factor * low, factor * high);
@@ -253,7 +253,7 @@ fn extremes(material: &Material, base: Range, layers: Range) -> impl Iterator<It
     metallic.into_iter().flat_map(move |m| roughness.map(|r| compiled_material::substance(material, colour, m, r)))
 }
 
-/// The largest share of light a substance sends on, over all directions.
+/// Upper bound of the albedo of a parameter set over all directions.
 fn albedo_bound(s: &Substance, table: Option<&AlbedoTable>) -> Vec3 {
     const STEPS: usize = 64;
     let mut bound = Vec3::ZERO;

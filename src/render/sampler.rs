@@ -59,8 +59,8 @@ impl Sampler {
     fn point(&self, index: u32) -> [u32; 4] {
         let row = |byte: usize| &SOBOL[byte][(index >> (8 * byte)) as usize & 255];
         let low = row(3);
-        // Of up to 256 paths per seed, only the upper eight index bits (of the reversed index) differ. Scrambling
-        // changes the lower bits of all of them alike, and the next scrambling replaces that change.
+        // Indices below 256 differ only in their low eight bits. Shuffling flips their higher bits alike, which XORs all
+        // points with one constant, and so does the scrambling of the points.
         if self.index & 0x00ff_ffff == 0 {
             return *low;
         }

@@ -1,47 +1,48 @@
-//! A tree over lights, descended by their importance to a receiver with a single random number.
+//! A light tree, traversed by importance for a receiver with a single random number.
 //!
-//! Nodes have up to eight children, which are weighed together: wide nodes need few steps, and fewer of the choices rest on
-//! the coarse bounds of large clusters. Clusters are split where intensity, extent and spread of directions say
-//! (the surface area orientation heuristic of Conty Estevez and Kulla 2018, section 4.4, with the squared diagonal for the
-//! area, which lamps in one line have as well, and the length of the mean direction for the solid angle).
+//! Nodes have up to eight children, evaluated together: wide nodes need fewer steps and rely less on the coarse bounds
+//! of large clusters. Splits minimise the surface area orientation heuristic of Conty Estevez and Kulla (2018, section
+//! 4.4), with the squared diagonal for the area (which is positive also for lamps in one line) and the length of the
+//! mean direction for the solid angle.
 
 use super::bounds::{Bounds, BoundsLanes, LANES, Receiver};
 use crate::error::Result;
 use crate::image::{try_collect, try_vec};
 use glam::{Vec3, Vec3A};
 
-/// Bins in which a split is looked for along each axis.
+/// Candidate splits per axis are the borders of this many bins. [convention]
 const BINS: usize = 12;
-/// Splits deeper than this halve the number of lights, whatever the heuristic says.
+/// Below this depth, splits halve the number of lights, regardless of the heuristic. [convention]
 const MAX_HEURISTIC_DEPTH: u32 = 48;
-/// Clusters smaller than this are split on one thread.
+/// Smallest cluster that is split in parallel. [judged, not recorded]
 const PARALLEL_FROM: usize = 1024;
-/// No node above, no child.
+/// Marks a missing parent or child.
 const NONE: u32 = u32::MAX;
-/// Marks children that are lights.
+/// Flag of children that are lights.
 const LIGHT: u32 = 1 << 31;
 
 pub struct LightTree {
-    /// Probabilities that are the same for every receiver, in place of nodes: of one light, or of several within one box,
-    /// as the two triangles of a rectangle. Positive; there are at most as many as a node has children.
+    /// Pmf of few lights whose importance does not depend on the receiver: a single light, or lights in one box such as
+    /// the two triangles of a rectangle. All positive; at most as many as a node has children. The tree then has no
+    /// nodes.
     fixed: Vec<f64>,
     nodes: Vec<Node>,
-    /// For every light the place that holds it: eight times its node plus its lane.
+    /// For every light its slot: eight times the node plus the lane.
     slots: Vec<u32>,
-    /// Squared; see [`BoundsLanes::importance`].
+    /// Squared smallest distance; see [`BoundsLanes::importance`].
     nearest: f32,
 }
 
 #[derive(Clone)]
 struct Node {
     bounds: BoundsLanes,
-    /// Nodes, or lights where marked.
+    /// Indices of nodes, or of lights with the flag `LIGHT`.
     children: [u32; LANES],
-    /// The place in the node above.
+    /// The slot in the parent node.
     parent: u32,
 }
 
-/// A light to be put into the tree.
+/// A light during construction.
 struct Item {
     bounds: Bounds,
     extent: Extent,
@@ -49,18 +50,18 @@ struct Item {
     light: u32,
 }
 
-/// A cluster of several lights, divided in two. In the list of all clusters it stands at the number of its second part's
-/// first light, which is that of no other cluster.
+/// A cluster of several lights, divided in two. Its index in the list of clusters is the index of the first light of
+/// its second part, which is unique.
 #[derive(Clone, Copy, Default)]
 struct Cluster {
-    /// What there is to gain by dividing it.
+    /// Cost of the cluster before the split.
     cost: f32,
-    /// Where the two parts stand in the list; of a part that is a light its number, marked.
+    /// Indices of the two parts in the list; for a part of a single light the index of the light with the flag `LIGHT`.
     parts: [u32; 2],
 }
 
 impl LightTree {
-    /// Over fewer than 2^31 lights, each of some intensity.
+    /// For fewer than 2^31 lights, each of positive intensity.
     pub fn build(lights: &[Bounds]) -> Result<Self> {
         let mut tree = Self { fixed: Vec::new(), nodes: Vec::new(), slots: Vec::new(), nearest: f32::MIN_POSITIVE };
         if lights.len() <= LANES && lights.windows(2).all(|pair| pair[0].differs_only_in_intensity(&pair[1])) {
@@ -78,21 +79,21 @@ impl LightTree {
         let mut clusters = try_vec(lights.len(), Cluster::default())?;
         let root = divide(&mut items, &mut clusters, 0, 0);
         tree.slots = try_vec(lights.len(), NONE)?;
-        // Intensities relative to their sum and distances to the scene's size keep importances far from overflow.
+        // Scale intensities by their sum and distances by the scene, so that importances cannot overflow.
         let whole = Bounds::union(lights);
         tree.nearest = (whole.radius() * 1e-9).powi(2).max(1e-30);
         tree.add(&items, &clusters, root, NONE, 1.0 / whole.intensity.max(f32::MIN_POSITIVE));
         Ok(tree)
     }
 
-    /// Lays a cluster out, each node before the nodes under it. Returns what it is as a child, and its bounds.
+    /// Appends the nodes of a cluster, parents before children. Returns the cluster as a child with its bounds.
     fn add(&mut self, items: &[Item], clusters: &[Cluster], cluster: u32, slot: u32, scale: f32) -> (u32, Bounds) {
         if cluster & LIGHT != 0 {
             let item = &items[(cluster & !LIGHT) as usize];
             self.slots[item.light as usize] = slot;
             return (LIGHT | item.light, item.bounds);
         }
-        // The parts with the most to gain are divided until there are eight, or each is a light.
+        // Divide the most expensive part until there are eight parts or only lights.
         let mut parts = vec![cluster];
         while parts.len() < LANES {
             let divisible = (0..parts.len()).filter(|&i| parts[i] & LIGHT == 0);
@@ -115,7 +116,7 @@ impl LightTree {
         (index as u32, Bounds::union(&bounds))
     }
 
-    /// A light by its importance, the probability of the choice, and where within its share `u` fell, in `[0, 1)`.
+    /// Samples a light by importance; returns its pmf and the position of `u` within its share, in `[0, 1)`.
     #[inline]
     pub fn sample(&self, receiver: &Receiver, u: f64) -> Option<(usize, f32, f64)> {
         let (mut pmf, mut u) = (1.0, u);
@@ -132,7 +133,7 @@ impl LightTree {
             if !(sum > 0.0) {
                 return None;
             }
-            // The lane where the running sum passes the target.
+            // Find the lane in which the cumulative importance passes the target.
             let target = u * f64::from(sum);
             let (mut lane, mut below, mut running) = (0, 0.0, 0.0);
             for (i, &share) in importance.iter().enumerate() {
@@ -152,7 +153,7 @@ impl LightTree {
         }
     }
 
-    /// The probability with which [`LightTree::sample`] chooses a light.
+    /// Pmf with which [`LightTree::sample`] selects a light.
     pub fn pmf(&self, receiver: &Receiver, light: usize) -> f32 {
         if let Some(&share) = self.fixed.get(light) {
             return share as f32;
@@ -174,8 +175,8 @@ impl LightTree {
     }
 }
 
-/// Divides a cluster down to its lights, in parallel, and returns where it stands in the list, of which `clusters` are the
-/// places from its `first` light on.
+/// Divides a cluster down to its lights, in parallel; returns its index in the list. `clusters` is the part of the list
+/// from index `first` on.
 fn divide(items: &mut [Item], clusters: &mut [Cluster], first: usize, depth: u32) -> u32 {
     if items.len() == 1 {
         return LIGHT | first as u32;
@@ -192,12 +193,12 @@ fn divide(items: &mut [Item], clusters: &mut [Cluster], first: usize, depth: u32
     (first + at) as u32
 }
 
-/// What the heuristic knows of a cluster.
+/// Aggregates of a cluster for the split heuristic.
 #[derive(Clone, Copy)]
 struct Extent {
     low: Vec3A,
     high: Vec3A,
-    /// Sum of the main directions, by intensity; those of two-sided lights turned to one half-space.
+    /// Intensity-weighted sum of the axes; those of two-sided lights are flipped to one half-space.
     direction: Vec3A,
     intensity: f32,
     count: u32,
@@ -232,7 +233,7 @@ impl Extent {
         self.count += other.count;
     }
 
-    /// Solid angle from 1 (all alike) to 4 (all around), times the squared diagonal, times the intensity.
+    /// The heuristic: a solid angle term from 1 (parallel) to 4 (all directions) × squared diagonal × intensity.
     fn cost(&self) -> f32 {
         if self.count == 0 {
             return 0.0;
@@ -242,13 +243,13 @@ impl Extent {
     }
 }
 
-/// Divides a cluster of at least two in place and returns the size of the first part, neither of them empty.
+/// Divides a cluster of at least two lights in place; returns the size of the first part. Neither part is empty.
 fn split(items: &mut [Item]) -> usize {
     let low = items.iter().fold(Vec3A::INFINITY, |a, i| a.min(i.centre));
     let high = items.iter().fold(Vec3A::NEG_INFINITY, |a, i| a.max(i.centre));
     let binning = [0, 1, 2].map(|axis| Binning::new(low[axis], high[axis]));
     let mut bins = [[Extent::NOTHING; BINS]; 3];
-    // Lamps of a ceiling do not differ in height.
+    // Skip axes without extent: the lamps of a ceiling have the same height.
     let axes = (0..3).filter(|&axis| binning[axis].scale > 0.0);
     for item in items.iter() {
         for axis in axes.clone() {
@@ -258,7 +259,7 @@ fn split(items: &mut [Item]) -> usize {
     let mut best = (f32::INFINITY, 0, 0);
     for axis in axes {
         let bins = &bins[axis];
-        // Costs of what lies above each bin, then of both sides.
+        // Accumulate the costs above each bin, then add those below.
         let mut above = [0.0; BINS];
         let mut extent = Extent::NOTHING;
         for i in (1..BINS).rev() {
@@ -281,7 +282,7 @@ fn split(items: &mut [Item]) -> usize {
     items.len() / 2
 }
 
-/// The bins of coordinates between two ends; one alone if they are the same.
+/// Equal bins over an interval; a single bin if it is empty.
 struct Binning {
     low: f32,
     scale: f32,
@@ -298,7 +299,7 @@ impl Binning {
     }
 }
 
-/// Moves the items that belong first to the front and returns how many they are.
+/// Moves the items for which `first` holds to the front; returns their number.
 fn partition(items: &mut [Item], first: impl Fn(&Item) -> bool) -> usize {
     let mut count = 0;
     for i in 0..items.len() {
