@@ -59,7 +59,7 @@ pub struct Output {
 
 /// Distance of the farthest neighbours at each level, in pixels.
 const STEPS: [usize; 6] = [1, 2, 4, 8, 16, 32];
-/// Kernel weight of a neighbour along an axis, relative to the pixel itself. [paper: Dammertz et al. 2010]
+/// Kernel weight of a neighbour along an axis, relative to the pixel itself: the binomial kernel. [convention]
 const TAP: f32 = 0.5;
 /// Variance of a half, relative to the variance of the mean of both halves: exact for independent halves.
 const HALF: f32 = 2.0;

@@ -1,15 +1,16 @@
-//! Where the next paths go.
+//! Adaptive sampling: decides how many paths each tile gets in the next pass.
 //!
-//! First a coarse image, then a few paths for every pixel, then twice as many, and so on: at powers of two the points are
-//! stratified best. With a target, tiles go on alone from [`MIN_UNIFORM_PATHS`] paths on. For the error of the whole image the least
-//! paths are those in proportion to the standard deviation of a tile's paths (Neyman 1934), or to that relative to what its
-//! pixels show; for the error of each pixel they follow from the tile's own. The tiles that lack most of what they need are
-//! doubled first.
+//! The first passes make a coarse image, then a few paths for every pixel, then twice as many, and so on: points are
+//! stratified best at powers of two. With an error target, each tile gets a count of its own after
+//! [`MIN_UNIFORM_PATHS`] paths. For a target on the error of the whole image, the number of paths is proportional to
+//! the standard deviation of a tile's paths (Neyman 1934), absolute or relative to its radiance; for a target on the
+//! error of each pixel, it follows from the tile's own error. Each pass doubles the paths of the tiles that lack most
+//! of theirs.
 //!
-//! Stopping where the scatter is small by chance makes an image too dark: where it is small, a bright path has not been
-//! found yet. So a decision is about a whole tile, and heeds what is around it (after Dammertz et al. 2010, "A hierarchical
-//! automatic stopping condition for Monte Carlo global illumination"). What bias remains is measured in the tests and by
-//! `benches/error_control.rs`.
+//! A small variance by chance must not stop the sampling of a tile: it is small where no bright path has been found
+//! yet, and the image would become too dark. Decisions are therefore made for whole tiles, with regard to their
+//! neighbours (after Dammertz et al. 2010, "A hierarchical automatic stopping condition for Monte Carlo global
+//! illumination"). The tests and `benches/error_control.rs` measure the remaining bias.
 
 use super::grid::{AREA, TILE};
 use super::interval::{NORMAL_95, pooled};
@@ -23,30 +24,33 @@ use crate::job::Job;
 use crate::render::Params;
 use glam::DVec3;
 
-/// Pixels of the coarsest image.
+/// Largest number of pixels in the coarsest image. [judged, not recorded]
 const COARSE_PIXELS: usize = 1024;
-/// Paths of the first pass over all pixels.
+/// Paths per pixel of the first complete pass. [judged, not recorded]
 const FIRST_PASS_PATHS: u32 = 4;
-/// Paths of every pixel before anything is decided from them.
+/// Paths per pixel before the first adaptive decision. [judged, not recorded]
 const MIN_UNIFORM_PATHS: u32 = 16;
-/// Paths that a pixel of a tile gets at most, relative to what pixels are allowed on the average. Light that few paths find
-/// would take all there are: a caustic, the image of a small lamp in polish.
+/// Largest number of paths per pixel in a tile, relative to `samples`. Without a limit, light that few paths find (a
+/// caustic, the glossy reflection of a small lamp) would take all paths. [judged, not recorded]
 const MAX_TILE_RATIO: u32 = 64;
-/// Pixels darker than this share of the mean luminance count as if they were as bright.
+/// Smallest luminance, relative to the mean of the image, to which the error of a pixel is related. [judged, not
+/// recorded]
 const MIN_RELATIVE_LUMINANCE: f64 = 0.1;
-/// The same where the errors of all pixels are one figure: darker ones may count for more in it, as none holds up the others.
+/// Smallest radiance, relative to the mean of the image, to which the error of a pixel is related in the error of the
+/// whole image. It may be lower than for errors of single pixels: a dark pixel does not hold up the others. [judged,
+/// not recorded]
 const MIN_RELATIVE_RADIANCE: f64 = 0.01;
 
-/// How many paths pixels are to have.
+/// The number of paths of each pixel after a pass.
 pub struct Pass {
-    /// Per tile.
+    /// Paths per pixel of each tile.
     counts: Vec<u32>,
-    /// Only pixels whose column and row are multiples of this power of two.
+    /// The pass covers only pixels whose column and row are multiples of this power of two.
     stride: usize,
 }
 
 impl Pass {
-    /// So many paths for every pixel.
+    /// A pass of `count` paths for every pixel.
     pub fn uniform(tiles: usize, count: u32) -> Result<Self> {
         Ok(Self { counts: try_vec(tiles, count)?, stride: 1 })
     }
@@ -55,34 +59,35 @@ impl Pass {
         if (x | y) & (self.stride - 1) == 0 { self.counts[tile] } else { 0 }
     }
 
-    /// Whether all pixels are meant.
+    /// Whether the pass covers all pixels.
     pub fn is_dense(&self) -> bool {
         self.stride == 1
     }
 
-    /// Whether no pixel of the tile with this corner is meant: those of a coarse pass are the first of theirs.
+    /// Whether the pass covers no pixel of the tile with this corner; a coarse pass covers at most the first pixel of a
+    /// tile.
     pub fn passes_over(&self, (left, top): (usize, usize)) -> bool {
         self.stride >= TILE && (left | top) & (self.stride - 1) != 0
     }
 
-    /// Paths per pixel of a tile, on the average.
+    /// Mean number of paths per pixel of a tile.
     pub fn per_pixel(&self, tile: usize) -> f64 {
         f64::from(self.counts[tile]) / (self.stride * self.stride) as f64
     }
 }
 
-/// Sums over a tile, or over the image.
+/// Sums over the pixels of a tile or of the image.
 #[derive(Clone, Copy, Default)]
 pub struct Statistics {
     pub paths: u64,
     pixels: u32,
-    /// Most paths of a pixel.
+    /// Largest number of paths of a pixel.
     max_paths: u32,
-    /// Of the means of the pixels, averaged over the channels.
+    /// Sum of the means of the pixels, averaged over the channels.
     mean: f64,
-    /// Of the variances of those means.
+    /// Sum of the variances of these means.
     variance: f64,
-    /// Of the variances of single paths.
+    /// Sum of the variances of single paths.
     path_variance: f64,
 }
 
@@ -96,12 +101,12 @@ impl Statistics {
         self.path_variance += other.path_variance;
     }
 
-    /// Mean of the pixels.
+    /// Mean radiance of the pixels.
     fn mean_radiance(&self) -> f64 {
         self.mean / f64::from(self.pixels.max(1))
     }
 
-    /// Root mean square of the standard errors, relative to the mean.
+    /// Root mean square of the standard errors, relative to the mean radiance.
     pub fn error(&self) -> f64 {
         let variance = self.variance / f64::from(self.pixels.max(1));
         if variance == 0.0 { 0.0 } else { variance.sqrt() / self.mean_radiance() }
@@ -109,19 +114,19 @@ impl Statistics {
 }
 
 impl Canvas<'_> {
-    /// Of the whole image.
+    /// The statistics of the whole image.
     pub fn total(&self, job: Job) -> Result<Statistics> {
         Ok(whole(&self.statistics(|_, _| 1.0, job)?))
     }
 
-    /// The same with the error of each pixel relative to what it shows, not to the mean of the image.
+    /// The statistics of the whole image, with the error of each pixel relative to its own radiance.
     pub fn relative_total(&self, job: Job) -> Result<Statistics> {
         let mean = self.total(job.part(0.0, 0.0))?.mean_radiance();
         Ok(whole(&self.relative_statistics(mean, job)?))
     }
 
-    /// A pixel with a rare bright path is bright where its scatter is large; it counts for what it shows without. Few paths
-    /// leave the word to the tile.
+    /// Statistics with relative errors. A pixel with a rare bright path has a large variance and a large mean; its
+    /// error is related to the mean without that path. With few paths, the mean of the tile counts instead.
     fn relative_statistics(&self, mean: f64, job: Job) -> Result<Vec<Statistics>> {
         let weight = |pixel: &Pixel, tile: f64| {
             let shown = tile + (pixel.trimmed_mean() - tile) * shrinkage(f64::from(pixel.count()));
@@ -130,7 +135,7 @@ impl Canvas<'_> {
         self.statistics(weight, job)
     }
 
-    /// `weight` is what the error of a pixel counts for, whose tile has this mean.
+    /// `weight` is the factor on the error of a pixel, given the mean of its tile.
     fn statistics(&self, weight: impl Fn(&Pixel, f64) -> f64 + Sync, job: Job) -> Result<Vec<Statistics>> {
         exec::map(self.grid.tiles(), job, |tile| {
             let mut sum = Statistics::default();
@@ -148,13 +153,13 @@ impl Canvas<'_> {
         })
     }
 
-    /// Per tile, the mean square of the pixels' intervals relative to their luminance.
+    /// The mean square of the pixels' relative intervals, per tile.
     fn relative_intervals(&self, floor: f64, job: Job) -> Result<Vec<f64>> {
         let variance = pooled(&self.variance(job)?, job)?;
         exec::map(self.grid.tiles(), job, |tile| {
             let pixels = (0..AREA).filter_map(|i| self.grid.place(tile, i));
             let square = |(x, y): (usize, usize)| {
-                // The channels of a path rise and fall together, so the error of a luminance is that of its parts.
+                // Add the standard errors of the channels: they are correlated within a path.
                 let error = f64::from(luminance(variance.rgb(x, y).map(f32::sqrt)));
                 let value = f64::from(luminance(self.pixel(x, y).mean().as_vec3())).max(floor);
                 if error == 0.0 { 0.0 } else { (NORMAL_95 * error / value).powi(2) }
@@ -164,10 +169,10 @@ impl Canvas<'_> {
     }
 }
 
-/// Decides pass by pass.
+/// Chooses the passes of a render.
 pub struct AdaptiveSampler<'p> {
     params: &'p Params,
-    /// Stride and paths per pixel of the last pass that treated all alike.
+    /// Stride and paths per pixel of the last uniform pass.
     stride: usize,
     uniform_paths: u32,
 }
@@ -177,13 +182,13 @@ impl<'p> AdaptiveSampler<'p> {
         Self { params, stride: 2 * coarse_stride(params.width, params.height), uniform_paths: 0 }
     }
 
-    /// The next pass; none if the image is as good as was asked for, or there is no time left.
+    /// The next pass; `None` if all targets are met or the time is over.
     pub fn next(&mut self, canvas: &Canvas, clock: &Clock, job: Job) -> Result<Option<Pass>> {
         let Params { samples, target_error, relative_error, pixel_error, .. } = *self.params;
         if self.uniform_paths > 0 && clock.is_over() {
             return Ok(None);
         }
-        // A coarse image, a finer one, and so on down to one path per pixel.
+        // Refine the coarse image down to one path per pixel.
         if self.stride > 1 {
             self.stride /= 2;
             self.uniform_paths = 1;
@@ -196,7 +201,7 @@ impl<'p> AdaptiveSampler<'p> {
         if self.uniform_paths >= samples {
             return Ok(None);
         }
-        // The same for all: doubled, or as much as there is time for.
+        // Double the paths of all pixels, within the time budget.
         let doubled =
             if self.uniform_paths < FIRST_PASS_PATHS { FIRST_PASS_PATHS } else { self.uniform_paths.saturating_mul(2) };
         let affordable = clock.affordable_ratio().map_or(u32::MAX, |times| {
@@ -211,13 +216,13 @@ impl<'p> AdaptiveSampler<'p> {
         Ok(Some(Pass { stride: self.stride, ..Pass::uniform(canvas.grid.tiles(), count)? }))
     }
 
-    /// Doubles the tiles that need it most.
+    /// A pass that doubles the paths of the tiles with the largest need.
     fn adaptive_pass(&self, canvas: &Canvas, clock: &Clock, job: Job) -> Result<Option<Pass>> {
         let statistics = canvas.statistics(|_, _| 1.0, job)?;
         let target_paths = self.target_paths(canvas, &statistics, job)?;
         let whole = whole(&statistics);
 
-        // What they need, as far as there are paths and time for it.
+        // Sum up the missing paths, limited by `samples` and the time budget.
         let max_paths = self.params.samples.saturating_mul(MAX_TILE_RATIO);
         let missing = |tile: usize| {
             (target_paths[tile].min(f64::from(max_paths)) - f64::from(statistics[tile].max_paths)).max(0.0)
@@ -232,7 +237,7 @@ impl<'p> AdaptiveSampler<'p> {
             .map(|tile| (target_paths[tile] / f64::from(statistics[tile].max_paths.max(1)), tile))
             .filter(|&(need, tile)| need > 1.0 && statistics[tile].max_paths < max_paths)
             .collect();
-        // Equal needs in order of the tiles.
+        // Order tiles of equal need by their index.
         candidates.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
 
         let mut counts: Vec<u32> = statistics.iter().map(|t| t.max_paths).collect();
@@ -248,7 +253,7 @@ impl<'p> AdaptiveSampler<'p> {
         Ok((spent > 0.0).then_some(Pass { counts, stride: 1 }))
     }
 
-    /// Paths per pixel that each tile should have in the end.
+    /// The number of paths per pixel that each tile needs to meet the targets.
     fn target_paths(&self, canvas: &Canvas, statistics: &[Statistics], job: Job) -> Result<Vec<f64>> {
         let Params { target_error, relative_error, pixel_error, .. } = *self.params;
         let mean = whole(statistics).mean_radiance();
@@ -268,7 +273,7 @@ impl<'p> AdaptiveSampler<'p> {
         Ok(target_paths)
     }
 
-    /// Raises what is wanted to the least paths that bring the error of all tiles together down to a target.
+    /// Raises the numbers of paths to the smallest allocation that meets a target on the error of all tiles together.
     fn add_allocation(
         &self,
         canvas: &Canvas,
@@ -283,7 +288,7 @@ impl<'p> AdaptiveSampler<'p> {
         let path_variances: Vec<f64> = statistics.iter().map(|t| t.path_variance / f64::from(t.pixels)).collect();
         let deviations: Vec<f64> =
             canvas.grid.max_with_neighbourhood_mean(&path_variances)?.into_iter().map(f64::sqrt).collect();
-        // In proportion n = k d they leave the mean square error mean(s / k d), with s the variance of single paths.
+        // With n = k d paths, the mean square error is mean(s / (k d)), where s is the variance of single paths.
         let mean_of = |value: &dyn Fn(usize) -> f64| {
             (0..statistics.len()).map(|t| value(t) * f64::from(statistics[t].pixels)).sum::<f64>()
                 / f64::from(whole.pixels)
@@ -296,12 +301,12 @@ impl<'p> AdaptiveSampler<'p> {
     }
 }
 
-/// Of the channels.
+/// Mean of the channels.
 fn average(v: DVec3) -> f64 {
     v.element_sum() / 3.0
 }
 
-/// Distance between the pixels of the coarsest image of a size: a power of two.
+/// Distance between the pixels of the coarsest image: a power of two.
 pub fn coarse_stride(width: usize, height: usize) -> usize {
     let mut stride = 1;
     while width.div_ceil(stride) * height.div_ceil(stride) > COARSE_PIXELS {

@@ -1,7 +1,7 @@
-//! Blocks of pixels whose paths share what they find (`shared`).
+//! Blocks of pixels whose paths share secondary vertices (`shared`).
 //!
-//! A block is 4 × 2 pixels of a tile, or 2 × 4 in every other replication, so that the errors that its pixels have in common
-//! do not show as blocks. Which paths go together depends on the image alone.
+//! A block has 4 × 2 pixels of a tile, or 2 × 4 in every other replication, so that the correlated errors of its pixels
+//! do not show as blocks. The blocks depend on the position in the image alone.
 
 use super::Eye;
 use super::grid::{AREA, TILE};
@@ -15,34 +15,34 @@ use crate::rng;
 use glam::{DVec3, Vec3};
 use std::ops::Range;
 
-/// Blocks of a tile.
+/// Number of blocks in a tile.
 const BLOCKS: usize = AREA / MAX_SHARED;
-/// Their longer side.
+/// Longer side of a block in pixels.
 const LONGER_SIDE: usize = 4;
 
 /// A pixel of a block.
 pub struct BlockPixel {
-    /// Its number in the tile.
+    /// Index of the pixel in its tile.
     pub pixel: usize,
-    /// Its column and row.
+    /// Column and row of the pixel in the image.
     pub at: [usize; 2],
     pub length: PathLength,
     seed: u64,
 }
 
 impl BlockPixel {
-    /// For the paths of a replication; `seed` is the image's.
+    /// A pixel for the paths of a replication; `seed` is the seed of the image.
     pub fn new(pixel: usize, at: [usize; 2], length: PathLength, seed: u64, replication: u32) -> Self {
         Self { pixel, at, length, seed: seed_of(seed, at, replication) }
     }
 }
 
-/// The seed of a pixel's paths of a replication.
+/// The seed of a pixel's paths in a replication.
 pub fn seed_of(seed: u64, at: [usize; 2], replication: u32) -> u64 {
     rng::mix(rng::hash(seed, &at.map(|v| v as u64)) ^ u64::from(replication))
 }
 
-/// Numbers of the pixels of each block of a tile.
+/// Indices of the pixels of each block of a tile.
 pub fn blocks(replication: u32) -> [[usize; MAX_SHARED]; BLOCKS] {
     let wide = replication.is_multiple_of(2);
     let (width, height) =
@@ -54,11 +54,11 @@ pub fn blocks(replication: u32) -> [[usize; MAX_SHARED]; BLOCKS] {
     })
 }
 
-/// Makes the paths of one block after the other.
+/// Traces the paths of blocks, one block at a time.
 pub struct BlockTracer<'a> {
     starts: Vec<Start>,
     scratch: Scratch<Sum>,
-    /// For each member one who tells its light apart, if anyone does, and what is told to all of them.
+    /// A recorder for each pixel of the block, if there are layers, with the scratch memory for their replays.
     recorders: Option<(Vec<Recorder<'a>>, Scratch<LpeTape<'a>>)>,
 }
 
@@ -68,13 +68,14 @@ impl<'a> BlockTracer<'a> {
         Self { starts: Vec::with_capacity(MAX_SHARED), scratch: Scratch::default(), recorders }
     }
 
-    /// Who tells the light of each member apart.
+    /// The recorders of the pixels of the block.
     pub fn recorders(&mut self) -> Option<&mut [Recorder<'a>]> {
         self.recorders.as_mut().map(|(recorders, _)| &mut recorders[..])
     }
 
-    /// Sums of the paths of each member with indices in a range, all of one replication; each recorder is told of those of
-    /// its member. Those that are no finite numbers are left out, and counted by `discarded`, which has the number of the member.
+    /// Sums of the radiance of each pixel's paths, for a range of path indices of one replication. Each recorder
+    /// records the paths of its pixel. Paths with a radiance that is not finite are dropped; `discarded` is called with
+    /// the index of their pixel in `members`.
     pub fn paths(
         &mut self,
         world: &World,

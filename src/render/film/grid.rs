@@ -1,14 +1,14 @@
-//! Tiles of an image: the order in which pixels are kept.
+//! The tiles of an image, which define the storage order of pixels.
 
 use crate::error::Result;
 use crate::image::try_collect;
 
-/// Side of a tile in pixels: the unit of work, and of the decision where more paths go.
+/// Side of a tile in pixels: the unit of work and of adaptive sampling.
 pub const TILE: usize = 8;
-/// Pixels of a tile.
+/// Number of pixels in a tile.
 pub const AREA: usize = TILE * TILE;
 
-/// An image cut into tiles, row by row; those at the right and lower border stick out of it.
+/// An image divided into tiles, row by row; the last tiles may extend beyond its right and lower borders.
 #[derive(Clone, Copy)]
 pub struct Grid {
     pub width: usize,
@@ -33,25 +33,25 @@ impl Grid {
         (tile % self.across() * TILE, tile / self.across() * TILE)
     }
 
-    /// Column and row of a pixel of a tile, if the image has it.
+    /// Column and row of a pixel of a tile; `None` outside the image.
     pub fn place(&self, tile: usize, pixel: usize) -> Option<(usize, usize)> {
         let (left, top) = self.corner(tile);
         let (x, y) = (left + pixel % TILE, top + pixel / TILE);
         (x < self.width && y < self.height).then_some((x, y))
     }
 
-    /// The tile of a pixel and its number in it.
+    /// The tile of a pixel, and the index of the pixel within it.
     pub fn locate(&self, x: usize, y: usize) -> (usize, usize) {
         (y / TILE * self.across() + x / TILE, y % TILE * TILE + x % TILE)
     }
 
-    /// How many pixels of a tile the image has.
+    /// Number of pixels of a tile within the image.
     pub fn area(&self, tile: usize) -> usize {
         let part = |at: usize, size: usize| TILE.min(size - at * TILE);
         part(tile % self.across(), self.width) * part(tile / self.across(), self.height)
     }
 
-    /// For values of the tiles, for each the mean of its own and those around it, or its own if that is larger.
+    /// For each tile the mean over its 3 × 3 neighbourhood, or its own value if that is larger.
     pub fn max_with_neighbourhood_mean(&self, values: &[f64]) -> Result<Vec<f64>> {
         let (across, down) = (self.across(), self.down());
         let around = |i: usize, n: usize| i.saturating_sub(1)..(i + 2).min(n);

@@ -1,10 +1,11 @@
-//! How far off a pixel may be: intervals that hold the truth in 95 of 100 pixels.
+//! Confidence intervals of pixels, which contain the true radiance of 95 % of the pixels.
 //!
-//! The scatter of a pixel's own four replications is a poor witness. It has three degrees of freedom, and worse, it is
-//! small just where a bright path has not been found yet, where the mean is too small as well: in rooms, mean ± 1.96
-//! standard errors holds the truth in 66 to 83 % of the pixels, and with Student's factor in 78 to 93 %. The scatter of the
-//! neighbours knows nothing of the pixel's own luck, or little: those of its own block (`block`) share in some of it. Binomial
-//! weights over 7 × 7 pixels give 93 to 97 % from 8 paths on; `benches/error_control.rs` measures it.
+//! The variance among a pixel's own four replications is a poor estimate. It has three degrees of freedom, and it is
+//! correlated with the mean: both are too small where no bright path has been found yet. In rooms, mean ± 1.96 standard
+//! errors contains the truth for 66 to 83 % of the pixels, and with Student's factor for 78 to 93 %. The variances of
+//! the neighbours are almost independent of the pixel's mean; only pixels of its own block (`block`) share some paths.
+//! Their means with binomial weights over 7 × 7 pixels give a coverage of 93 to 97 % from 8 paths on;
+//! `benches/error_control.rs` measures it.
 
 use super::super::Film;
 use crate::error::Result;
@@ -12,16 +13,15 @@ use crate::exec;
 use crate::image::Image;
 use crate::job::Job;
 
-/// Half of the interval around its mean that holds 95 % of a normal distribution, in standard deviations.
+/// Half-width in standard deviations of the interval that contains 95 % of a normal distribution.
 pub const NORMAL_95: f64 = 1.959_964;
-/// Weights of the pixels at a distance of 0, 1, 2, 3 along an axis.
+/// Binomial weights of the pixels at a distance of 0, 1, 2, 3 along an axis. [bench error_control]
 const WEIGHTS: [f32; 4] = [20.0, 15.0, 6.0, 1.0];
 
 impl Film {
-    /// Half the width of the interval around each pixel of the image that holds the true radiance with a probability of
-    /// 95 %, per channel, in cd/m²; infinite where a pixel has less than two paths. The true share was measured to lie
-    /// between 93 and 97 % of the pixels of rooms. It is less where light comes along paths so rare that no pixel around has
-    /// found any: caustics of small lamps.
+    /// Half-width of the 95 % confidence interval of each pixel's radiance, per channel, in cd/m²; infinite for pixels
+    /// of fewer than two paths. The measured coverage is 93 to 97 % of the pixels of rooms. It is lower where light
+    /// comes along paths so rare that no pixel nearby has found one, such as caustics of small lamps.
     pub fn interval(&self, job: Job) -> Result<Image> {
         let mut out = pooled(&self.variance, job)?;
         exec::for_rows(&mut out.data, out.width * out.channels, job, |_, row| {
@@ -31,7 +31,8 @@ impl Film {
     }
 }
 
-/// Weighed means of the variances of the 7 × 7 pixels around each, as far as these are finite; infinite where it is.
+/// Weighted means of the finite variances over the 7 × 7 pixels around each pixel; infinite where the pixel's own
+/// variance is.
 pub fn pooled(variance: &Image, job: Job) -> Result<Image> {
     let (width, height, channels) = (variance.width, variance.height, variance.channels);
     let mut along = Image::new(width, height, channels)?;
@@ -52,7 +53,7 @@ pub fn pooled(variance: &Image, job: Job) -> Result<Image> {
     Ok(pooled)
 }
 
-/// Weighed means of the finite values around a place on a line of `n`, per channel; infinite if there are none.
+/// Weighted mean of the finite values around a position on a line of `n`, per channel; infinite if there are none.
 fn mean_around<'a>(at: usize, n: usize, out: &mut [f32], value: impl Fn(usize) -> &'a [f32]) {
     let reach = WEIGHTS.len() - 1;
     for (channel, out) in out.iter_mut().enumerate() {

@@ -1,14 +1,14 @@
-//! The image under way: which paths each pixel has had, their means, and how sure they are.
+//! The film: sums of the paths of each pixel, their means and their errors.
 //!
-//! `tile` makes the paths of a tile, `block` those of the pixels that share what they find → `pixel` adds up those of one
-//! pixel → `plan` decides between passes where the next ones go, `roulette_weight` how long they are
-//! → `interval` says how far off the image may be. A pass only ever extends the paths of each pixel up to a count. So one that is cut short
-//! leaves a valid image with fewer paths here and there; and as the counts follow from the pixels of the pass before,
+//! `tile` traces the paths of a tile, `block` those of pixels that share secondary vertices; `pixel` holds the sums of
+//! a pixel. Between passes, `adaptive` allocates the next paths, and `roulette` sets the weights for Russian roulette.
+//! `interval` gives confidence intervals. A pass extends the paths of each pixel up to a count, so that an interrupted
+//! pass leaves a valid image with fewer paths in some pixels. The counts follow from the pixels of the pass before:
 //! they are the same for any number of threads.
 //!
-//! For renders that are done in parts, `sums` adds up the paths of some pixels apart from all others, by the light of a
-//! `prepass` instead of the passes before. What an image will take, a `probe` tells from a few of its tiles, which it chooses
-//! at a `glance` of all.
+//! For renders in parts, `sums` adds up the paths of some pixels independently of all others, with roulette weights
+//! from a `prepass` instead of previous passes. `pilot` predicts the cost and the error of an image from a few of its
+//! tiles, which it selects by their `tile_moments`.
 
 mod adaptive;
 mod block;
@@ -49,16 +49,16 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 use tile::{Tile, TileContext};
 
-/// Sums of the paths so far.
+/// The sums of all paths so far.
 pub struct Canvas<'a> {
     world: &'a World,
     eye: Eye,
     seed: u64,
     grid: Grid,
-    /// Tile by tile.
+    /// Pixels in the order of tiles.
     pixels: Vec<Pixel>,
     layers: Option<Layers<'a>>,
-    /// Paths that were left out because their radiance was no finite number.
+    /// Number of paths dropped because their radiance was not finite.
     discarded: AtomicU64,
 }
 
@@ -74,7 +74,7 @@ impl<'a> Canvas<'a> {
         Ok(Self { world, eye, seed: params.seed, grid, pixels, layers, discarded: AtomicU64::new(0) })
     }
 
-    /// The pixels of sums, and those alone.
+    /// A canvas of the pixels of given sums alone.
     pub fn of_sums(world: &'a World, camera: &'a Camera, params: &'a Params, sums: &Sums, job: Job) -> Result<Self> {
         let part = sums.part();
         let mut canvas = Self::sized(world, camera, params, Grid { width: part.width, height: part.height })?;
@@ -94,7 +94,7 @@ impl<'a> Canvas<'a> {
         Ok(canvas)
     }
 
-    /// Extends the paths of every pixel to what the pass asks for; at the deadline it leaves the rest as it is.
+    /// Extends the paths of every pixel to the counts of a pass; stops at the deadline.
     pub fn extend(&mut self, pass: &Pass, deadline: Option<Instant>, job: Job) -> Result<()> {
         let Self { world, eye, seed, grid, pixels, layers, discarded } = self;
         let layers = layers.as_ref();
@@ -102,7 +102,7 @@ impl<'a> Canvas<'a> {
         let is_over = || job.is_cancelled() || deadline.is_some_and(|d| Instant::now() >= d);
         let context = TileContext { world, eye, seed: *seed, grid: *grid, median_radiance, discarded };
         exec::for_rows(pixels, AREA, job, |tile, pixels| {
-            // Coarse passes leave most tiles alone.
+            // Skip tiles without pixels of a coarse pass.
             if !pass.passes_over(grid.corner(tile)) {
                 Tile::new(context, tile, pixels, layers).extend(pass, is_over);
             }
@@ -110,14 +110,14 @@ impl<'a> Canvas<'a> {
         job.check()
     }
 
-    /// Share of `samples` paths per pixel that are there when the pass is done.
+    /// Mean number of paths per pixel after a pass, relative to `samples`.
     pub fn progress(&self, pass: &Pass, samples: u32) -> f64 {
         let paths = |tile| self.grid.area(tile) as f64 * pass.per_pixel(tile);
         let pixels = (self.grid.width * self.grid.height) as f64;
         (0..self.grid.tiles()).map(paths).sum::<f64>() / (pixels * f64::from(samples))
     }
 
-    /// The pixels of a tile that the image has.
+    /// The pixels of a tile that lie within the image.
     fn tile(&self, tile: usize) -> impl Iterator<Item = &Pixel> {
         let pixels = self.pixels[tile * AREA..(tile + 1) * AREA].iter().enumerate();
         pixels.filter(move |(i, _)| self.grid.place(tile, *i).is_some()).map(|(_, pixel)| pixel)
@@ -128,7 +128,7 @@ impl<'a> Canvas<'a> {
         &self.pixels[tile * AREA + i]
     }
 
-    /// Place of the pixel itself, or, if it has no paths yet, of one of the coarser passes that has.
+    /// The pixel itself, or, if it has no paths yet, the nearest pixel of a coarser pass.
     fn nearest(&self, x: usize, y: usize) -> (usize, usize) {
         let (mut x, mut y, mut mask) = (x, y, !0);
         while self.pixel(x, y).count() == 0 && (x, y) != (0, 0) {
@@ -138,7 +138,7 @@ impl<'a> Canvas<'a> {
         (x, y)
     }
 
-    /// For each pixel of the image the tile of the one it shows, its number there, and its paths.
+    /// For each pixel of the image, the displayed pixel: its tile, its index in the tile, and its number of paths.
     fn places(&self, job: Job) -> Result<Vec<(u32, u32, u32)>> {
         let mut places = try_vec(self.grid.width * self.grid.height, (0, 0, 0))?;
         exec::for_rows(&mut places, self.grid.width, job, |y, row| {
@@ -151,7 +151,7 @@ impl<'a> Canvas<'a> {
         Ok(places)
     }
 
-    /// An image made pixel by pixel.
+    /// An image computed pixel by pixel.
     fn image(&self, channels: usize, job: Job, value: impl Fn(usize, usize, &mut [f32]) + Sync) -> Result<Image> {
         let mut image = Image::new(self.grid.width, self.grid.height, channels)?;
         exec::for_rows(&mut image.data, self.grid.width * channels, job, |y, row| {
@@ -164,7 +164,7 @@ impl<'a> Canvas<'a> {
         self.image(3, job, |x, y, out| self.pixel(x, y).variance().as_vec3().write_to_slice(out))
     }
 
-    /// Images of two halves of the paths each; of a pixel of a single path both are the same.
+    /// Images of two halves of the paths; equal for pixels of a single path.
     pub fn halves(&self, job: Job) -> Result<[Image; 2]> {
         let half = |which: usize| {
             self.image(3, job, |x, y, out| {
@@ -198,7 +198,8 @@ impl<'a> Canvas<'a> {
     }
 }
 
-/// Sum of some paths of a pixel. Whoever wants paths comes here: what there is to a path is compiled into this function once.
+/// Sum of the radiance of some paths of a pixel. All callers use this one function, so that the inlined path tracer is
+/// compiled once.
 fn paths(
     world: &World,
     eye: &Eye,
@@ -244,13 +245,13 @@ fn radiance(
     }
 }
 
-/// A camera made ready: the direction of a pixel is linear in its coordinates.
+/// A camera prepared for tracing: the direction through a pixel is linear in its coordinates.
 struct Eye {
     position: Vec3,
     corner: Vec3,
     right: Vec3,
     down: Vec3,
-    /// How often the light it sees has scattered at most.
+    /// Largest number of bounces of a path.
     max_bounces: u32,
 }
 
@@ -265,15 +266,15 @@ impl Eye {
         Self { position: camera.position, corner, right, down, max_bounces }
     }
 
-    /// A path's beginning: the first block of numbers places it in the pixel (box filter) and chooses the light for what is
-    /// seen there.
+    /// Starts a path: the first block of random numbers selects the point in the pixel (box filter) and the light
+    /// sample at the primary vertex.
     fn start(&self, world: &World, at: [usize; 2], length: PathLength, mut sampler: Sampler) -> Start {
         let place = sampler.next();
         let direction = self.direction(at[0] as f64 + place.fine(0), at[1] as f64 + place.fine(1));
         Start { ray: world.ray(self.position, direction), light_u: (place.fine(2), place.get(3)), length, sampler }
     }
 
-    /// The direction through a point of the image, in pixels.
+    /// The unit direction through a point of the image, in pixels.
     fn direction(&self, x: f64, y: f64) -> Vec3 {
         (self.corner + self.right * x as f32 + self.down * y as f32).normalize_or_zero()
     }

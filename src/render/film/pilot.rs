@@ -1,17 +1,17 @@
-//! A look at a few tiles of an image, to tell what all of it would take.
+//! Pilot sampling: predicts the cost and the error of an image from a few of its tiles.
 //!
-//! What a path costs and how much paths scatter depends on the scene more than on anything that could be counted before.
-//! So some tiles are rendered as the image will be, each pixel of its true size, with the neighbours it shares its paths
-//! with; they stand for the rest. A few tiles with the edge of a lamp may have most of an image's error, so tiles are
-//! chosen with a probability in proportion to how much a first look finds their light to vary, and weighed by its
-//! reciprocal (Horvitz and Thompson 1952). A look may miss the sliver of a lamp, which the tile beside it shows more of: so
-//! tiles heed their neighbours. The middle of a lamp does not vary at all, and is hardly ever chosen, though it may have most of
-//! an image's light. So how bright the image is follows from the first look at all of it, and the chosen tiles correct
-//! that by what they find it to be off (the difference estimator of Särndal, Swensson and Wretman 1992).
+//! The cost and the variance of paths depend on the scene more than on any static count. So a sample of tiles is
+//! rendered as in the image itself: at full resolution and with the same path sharing. A few tiles, such as those at
+//! the edge of a lamp, may have most of an image's error. Tiles are therefore selected with a probability proportional
+//! to the standard deviation of their light in a first look, and weighted by its reciprocal (Horvitz and Thompson
+//! 1952). The first look may miss the sliver of a lamp that a neighbouring tile shows, so the deviations are spread to
+//! neighbours. The interior of a lamp has no variance and is hardly ever selected, although it may have most of the
+//! image's light. The image's mean is therefore taken from the first look at all tiles, and the selected tiles correct
+//! it by their differences (the difference estimator of Särndal, Swensson and Wretman 1992).
 //!
-//! Stratified points let the variance of pixels fall faster than their number rises, by how much depends on the scene. So it
-//! is known at three numbers of paths; at the largest of a few of those tiles, chosen in turn in proportion to their part in it
-//! at the second.
+//! With stratified points, the variance of a pixel falls faster than 1 / n, at a rate that depends on the scene. It is
+//! therefore measured at three numbers of paths; at the largest of them only for some of the tiles, selected in
+//! proportion to their part of the variance at the second.
 
 use super::Eye;
 use super::adaptive::Pass;
@@ -31,49 +31,49 @@ use crate::scene::Camera;
 use std::sync::atomic::AtomicU64;
 use std::time::Duration;
 
-/// Tiles that are rendered, at most.
+/// Largest number of tiles to render. [judged, not recorded]
 const MAX_TILES: usize = 128;
-/// Paths of each of their pixels, in three passes: each replication's are a power of four, at which points are stratified best.
+/// Paths per pixel in three passes: each replication has a power of four, at which points are stratified best.
 pub const PATHS: [u32; 3] = [REPLICATIONS, 4 * REPLICATIONS, 16 * REPLICATIONS];
-/// Tiles that are given the last of them, at most.
+/// Largest number of tiles with the last number of paths. [judged, not recorded]
 const MAX_DEEP_TILES: usize = 32;
-/// Chance of a tile whose light does not vary at all, relative to the mean.
+/// Selection weight of a tile without variance, relative to the mean. [judged, not recorded]
 const MIN_CHANCE: f64 = 0.5;
-/// Tells the paths of the probe from those of the image.
+/// Separates the random numbers of the pilot from those of the image.
 const SALT: u64 = 0x7072_6f62_6564_2121;
 
-/// What a few tiles say of an image.
+/// Prediction for an image from a few of its tiles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pilot {
-    /// Seconds that a path takes, all threads working.
+    /// Seconds per path with all threads at work.
     pub seconds_per_path: f64,
-    /// The square of the [`super::super::Film::error`] that the image would have with each of [`PATHS`] everywhere.
+    /// The square of [`super::super::Film::error`] that the image would have with each of [`PATHS`] in every pixel.
     pub squared_errors: [f64; 3],
-    /// How many times fewer paths do where they go to where they lower the error most; at least 1.
+    /// Number of uniform paths over the number of adaptively allocated paths for equal error; at least 1.
     pub adaptive_gain: f64,
-    /// Root mean square of the image's radiance relative to its mean: an error common to all light, times this, is what
-    /// it adds to the image's error.
+    /// Root mean square of the image's radiance relative to its mean. It converts a relative error common to all light
+    /// to the image's error.
     pub contrast: f64,
 }
 
-/// The nets that so many paths of a pixel consist of, each by its number of points, a power of two: every replication has
-/// its own.
+/// The numbers of points of the nets that `paths` paths of a pixel consist of: for each replication the powers of two
+/// that add up to its paths.
 pub fn nets(paths: u32) -> impl Iterator<Item = u32> {
     let nets = |points: u32| (0..u32::BITS).map(move |bit| points & 1 << bit).filter(|&points| points > 0);
     (0..REPLICATIONS).flat_map(move |replication| nets(paths_of_replication(paths, replication)))
 }
 
-/// A tile that stands for others.
+/// A selected tile.
 struct PilotTile {
     tile: usize,
-    /// How many tiles it stands for.
+    /// Number of tiles it represents.
     weight: f64,
-    /// For how many of the chosen, with the same part in the error, it stands in the last pass; 0 if it is not in it.
+    /// Number of selected tiles it represents in the last pass; 0 if it is not part of that pass.
     deep_weight: f64,
-    /// Its mean at first sight.
+    /// Its mean in the first look.
     expected: f64,
     pixels: [Pixel; AREA],
-    /// Paths of each pixel, and the seconds they took.
+    /// Paths of each pixel, and the time they took in seconds.
     paths: f64,
     seconds: f64,
 }
@@ -83,17 +83,17 @@ struct PilotTile {
 struct TileSums {
     weight: f64,
     pixels: f64,
-    /// What was expected of `mean` and of `square`.
+    /// The values of `mean` and `square` expected from the first look.
     expected: [f64; 2],
     mean: f64,
     square: f64,
     variance: f64,
 }
 
-/// Renders some tiles; `clock` tells the time, from any start.
+/// Renders the pilot tiles; `clock` returns the time since an arbitrary start.
 ///
 /// # Errors
-/// A setting out of range, a camera that cannot see; cancelled.
+/// A setting out of range; a degenerate camera; cancelled.
 pub fn run(
     world: &World,
     camera: &Camera,
@@ -149,7 +149,7 @@ pub fn run(
     let variances = [mean(&few, &|t| t.variance), mean(&middle, &|t| t.variance), many];
     let seconds = clock().saturating_sub(start).as_secs_f64();
 
-    // What threads come to together, were the tiles as those of the image.
+    // Correct the time per path for the difference between the selected tiles and all tiles of the image.
     let sum = |of: &dyn Fn(&PilotTile, &TileSums) -> f64| chosen.iter().zip(&last).map(|(c, t)| of(c, t)).sum::<f64>();
     let paths = sum(&|c, t| c.paths * t.pixels);
     let alike = sum(&|c, _| c.seconds) / paths;
@@ -167,7 +167,7 @@ pub fn run(
     })
 }
 
-/// Tiles by how much their light varies.
+/// Selects tiles by the standard deviation of their light.
 fn choose(expected: &[TileMoments], grid: Grid, rng: &mut Rng) -> Result<Vec<PilotTile>> {
     let variances = try_collect(expected.iter().map(|l| l.variance))?;
     let varies = grid.max_with_neighbourhood_mean(&variances)?;
@@ -195,7 +195,7 @@ fn choose(expected: &[TileMoments], grid: Grid, rng: &mut Rng) -> Result<Vec<Pil
     Ok(chosen)
 }
 
-/// Evenly spaced steps along the chances of items in a row: those that are met are chosen.
+/// Systematic sampling: equidistant marks along the cumulative sum of the items' chances select items.
 struct SystematicSampler {
     step: f64,
     next: f64,
@@ -203,14 +203,14 @@ struct SystematicSampler {
 }
 
 impl SystematicSampler {
-    /// So many of them along all chances, which have this sum.
+    /// `count` marks along chances of this sum.
     fn new(sum: f64, count: usize, rng: &mut Rng) -> Self {
         let step = sum / count as f64;
         Self { step, next: rng.next_f64() * step, end: 0.0 }
     }
 
-    /// How many items like the next one, of this chance, it stands for; 0 if it is not chosen. One whose chance is longer than
-    /// a step is met more than once.
+    /// The weight of the next item, which has this chance: the number of items it represents; 0 if it is not selected.
+    /// An item with a chance longer than a step is selected more than once.
     fn weight_of(&mut self, chance: f64) -> f64 {
         self.end += chance;
         let mut met = 0.0;
@@ -234,12 +234,13 @@ fn tile_sums(grid: Grid, chosen: &PilotTile) -> TileSums {
     sum
 }
 
-/// Sum over the image.
+/// Estimated sum over the image.
 fn total(tile_sums: &[TileSums], of: &dyn Fn(&TileSums) -> f64) -> f64 {
     tile_sums.iter().map(|t| t.weight * of(t)).sum()
 }
 
-/// In proportion to the standard deviation of a tile's paths, the error of even paths needs so many times fewer (Neyman 1934).
+/// Number of uniform paths over the number of paths in proportion to the standard deviation of each tile, for equal
+/// error (Neyman 1934).
 fn adaptive_gain(tile_sums: &[TileSums], area: f64) -> f64 {
     let deviation = total(tile_sums, &|t| (t.variance * t.pixels).sqrt());
     if deviation > 0.0 { (total(tile_sums, &|t| t.variance) * area / (deviation * deviation)).max(1.0) } else { 1.0 }
@@ -251,7 +252,7 @@ mod tests {
 
     #[test]
     fn what_is_chosen_stands_for_all() {
-        // The sum of anything is found on the average, and that of the chances always.
+        // The estimate of any sum is unbiased, and the sum of the chances is exact.
         let chances = [0.1, 3.0, 0.0, 0.4, 1.5, 0.2, 7.0];
         let values = [5.0, 1.0, 0.0, 2.0, 4.0, 3.0, 9.0];
         let (mut rng, mut mean) = (Rng::new(3, &[]), 0.0);
@@ -263,7 +264,7 @@ mod tests {
             assert!((sum(&chances) - chances.iter().sum::<f64>()).abs() < 1e-9 && weights[2] == 0.0);
             mean += sum(&values) / f64::from(rounds);
         }
-        // The sum has a standard deviation of some 30.
+        // The standard deviation of an estimate is about 30.
         assert!((mean - 24.0).abs() < 4.0 * 30.0 / f64::from(rounds).sqrt(), "{mean}");
         assert_eq!(SystematicSampler::new(0.0, 4, &mut rng).weight_of(0.0), 0.0);
     }

@@ -1,8 +1,9 @@
-//! A look at a scene before it is rendered, for what light is worth to its pixels (`roulette_weight`).
+//! A prepass of a few paths over a scene, for the roulette weights of renders in parts (`roulette`).
 //!
-//! A render of the whole image learns that from its own paths as they come. Parts of one, done on many machines, know
-//! nothing of each other's; so each makes the same few paths over the image and, within a tile, over the tile, which tell
-//! all of them the same. These paths have seeds of their own and are no part of the image: no estimate is biased by them.
+//! A render of the whole image takes these weights from its own earlier passes. The parts of a distributed render do
+//! not know each other's paths; instead each part traces the same few paths over the image and over each of its tiles,
+//! with equal results. These paths have seeds of their own and are not part of the image, so that they bias no
+//! estimate.
 
 use super::adaptive::coarse_stride;
 use super::block::seed_of;
@@ -18,11 +19,11 @@ use crate::render::{Params, World};
 use glam::{DVec3, Vec3};
 use std::sync::atomic::AtomicU64;
 
-/// Paths of each pixel that is looked at for the brightness of the middling tile.
+/// Paths of each sampled pixel for the median radiance of the image. [judged, not recorded]
 const PATHS: u32 = 4;
-/// Distance between the pixels of a tile that are looked at, with one path each.
+/// Distance between the sampled pixels of a tile, with one path each. [judged, not recorded]
 const STEP: usize = 2;
-/// Tells the paths of the survey from those of the image.
+/// Separates the random numbers of the prepass from those of the image.
 const SALT: u64 = 0x7375_7276_6579_6564;
 
 pub struct Prepass<'a> {
@@ -44,12 +45,12 @@ impl<'a> Prepass<'a> {
         Ok(prepass)
     }
 
-    /// The brightness of the middling tile, per channel; none of nothing.
+    /// Median radiance of the sampled pixels, per channel; `None` without pixels.
     pub fn median_radiance(&self) -> Option<DVec3> {
         self.median_radiance
     }
 
-    /// What light of the brightness of the middling tile is worth in the tile with this corner.
+    /// Roulette weight of the tile with this corner.
     pub fn weight(&self, [left, top]: [usize; 2]) -> Option<Vec3> {
         let end = |start: usize, size: usize| (start + TILE).min(size);
         let (right, bottom) = (end(left, self.params.width), end(top, self.params.height));
@@ -60,10 +61,10 @@ impl<'a> Prepass<'a> {
             .map(|median_radiance| RouletteWeights::of(&pixels, median_radiance).weight(&Pixel::default()))
     }
 
-    /// Some paths of a pixel.
+    /// Samples `count` paths of a pixel.
     pub fn sample_pixel(&self, at: [usize; 2], count: u32) -> Pixel {
         let length = PathLength { max_bounces: self.eye.max_bounces, roulette_weight: None };
-        // What is no number is left out of the survey as of the image, but counted only there.
+        // Drop paths that are not finite, as in the image, but do not count them.
         let (mut pixel, discarded) = (Pixel::default(), AtomicU64::new(0));
         pixel.extend(count, |replication, indices| {
             let seed = seed_of(self.params.seed ^ SALT, at, replication);

@@ -1,8 +1,8 @@
-//! What light is worth to a pixel: errors are seen relative to what it shows.
+//! Weights for Russian roulette: errors matter relative to the radiance of the pixel.
 //!
-//! The same light means more to a pixel in the shade than to one under the lamp, and more to a black surface's than to a
-//! white one's. Paths are the longer for it. It is drawn from the paths that are there already; on these the chances of
-//! those to come may depend, and no estimate is biased ([`super::super::sampler::Sampler::chance`]).
+//! The same light changes a pixel in the shade more than one under a lamp, and a black surface more than a white one;
+//! their paths are traced further. The weights come from earlier paths. Survival probabilities may depend on them
+//! without bias ([`super::super::sampler::Sampler::chance`]).
 
 use super::grid::AREA;
 use super::pixel::Pixel;
@@ -12,19 +12,19 @@ use crate::image::try_collect;
 use crate::job::Job;
 use glam::{DVec3, Vec3};
 
-/// What is known of the surroundings counts as much as so many paths.
+/// Number of paths that the prior, the mean of the tile, is worth. [judged, not recorded]
 const PRIOR_PATHS: f64 = 8.0;
-/// Light is worth at most so many times more or less than in a middling pixel.
+/// Largest ratio of the median radiance to a pixel's radiance, and reciprocal of the smallest. [judged, not recorded]
 const MAX_WEIGHT: f64 = 50.0;
 
-/// The brightness of the middling tile, per channel; none without any paths.
+/// Median over the tiles of their mean radiance, per channel; `None` without any paths.
 pub fn median_radiance(pixels: &[Pixel], job: Job) -> Result<Option<DVec3>> {
     let tile = |i: usize| &pixels[i * AREA..(i + 1) * AREA];
     let means = exec::map(pixels.len() / AREA, job, |i| mean(tile(i)).map(|(mean, _)| mean))?;
     Ok(median(&try_collect(means.into_iter().flatten())?))
 }
 
-/// The median of each channel; none of nothing.
+/// The median of each channel; `None` for an empty list.
 pub fn median(means: &[DVec3]) -> Option<DVec3> {
     let median = |channel: usize| {
         let mut values: Vec<f64> = means.iter().map(|m| m[channel]).collect();
@@ -34,7 +34,7 @@ pub fn median(means: &[DVec3]) -> Option<DVec3> {
     (!means.is_empty()).then(|| DVec3::from_array([0, 1, 2].map(median)))
 }
 
-/// Mean of the pixels that have paths, and how many paths they have.
+/// Mean of the pixels that have paths, and the number of their paths.
 pub fn mean<'a>(pixels: impl IntoIterator<Item = &'a Pixel>) -> Option<(DVec3, f64)> {
     let (mut sum, mut count, mut paths) = (DVec3::ZERO, 0.0, 0.0);
     for pixel in pixels.into_iter().filter(|p| p.count() > 0) {
@@ -43,19 +43,19 @@ pub fn mean<'a>(pixels: impl IntoIterator<Item = &'a Pixel>) -> Option<(DVec3, f
     (count > 0.0).then(|| (sum / count, paths))
 }
 
-/// How much the mean of so many paths counts beside what is known of the surroundings, in `[0, 1)`.
+/// Shrinkage factor in `[0, 1)` of a mean of `paths` paths, beside a prior worth [`PRIOR_PATHS`].
 pub fn shrinkage(paths: f64) -> f64 {
     paths / (paths + PRIOR_PATHS)
 }
 
-/// What is around a pixel.
+/// The radiance of a tile relative to its image.
 pub struct RouletteWeights {
     median_radiance: DVec3,
     tile: DVec3,
 }
 
 impl RouletteWeights {
-    /// Of the pixels of a tile, in an image of that [`median_radiance`].
+    /// From the pixels of a tile, in an image of this [`median_radiance`].
     pub fn of(tile: &[Pixel], median_radiance: DVec3) -> Self {
         Self {
             median_radiance,
@@ -63,11 +63,11 @@ impl RouletteWeights {
         }
     }
 
-    /// What light of the brightness `median_radiance` is worth to a pixel, relative to what the pixel shows, per channel; positive.
+    /// Median radiance of the image relative to the radiance of a pixel, per channel; positive.
     pub fn weight(&self, pixel: &Pixel) -> Vec3 {
         let radiance = self.tile.lerp(pixel.mean(), shrinkage(f64::from(pixel.count())));
         let weight = (self.median_radiance / radiance).clamp(DVec3::splat(1.0 / MAX_WEIGHT), DVec3::splat(MAX_WEIGHT));
-        // Of a channel that is dark so far nothing is known.
+        // Where the median is 0, the channel is unknown: use 1.
         DVec3::select(self.median_radiance.cmpgt(DVec3::ZERO), weight, DVec3::ONE).as_vec3()
     }
 }
@@ -88,7 +88,7 @@ mod tests {
         let job = Monitor::default();
         let unseen = vec![Pixel::default(); 3 * AREA];
         assert!(median_radiance(&unseen, job.job()).unwrap().is_none());
-        // A lamp in view does not change what is middling.
+        // A lamp in view does not change the median.
         let mut pixels = unseen;
         for (tile, radiance) in [2.0, 1000.0, 0.5].into_iter().enumerate() {
             pixels[tile * AREA..(tile + 1) * AREA].fill(pixel(DVec3::new(radiance, radiance, 0.0), 64));
@@ -100,10 +100,10 @@ mod tests {
         };
         assert!((weight(0, &pixels[0]) - Vec3::ONE).abs().max_element() < 1e-5);
         assert!((weight(2, &pixels[2 * AREA]) - Vec3::new(4.0, 4.0, 1.0)).abs().max_element() < 0.05);
-        // Few paths say little: the tile speaks for a pixel that happens to be dark.
+        // With few paths, the tile determines the weight of a pixel that is dark by chance.
         let dark = weight(0, &pixel(DVec3::ZERO, 1)).x;
         assert!(dark > 1.0 && dark < 1.2, "{dark}");
-        // No pixel is so bright or so dark that light is worth nothing, or everything.
+        // Weights are bounded on both sides.
         assert_eq!(weight(1, &pixels[AREA]).x, 1.0 / MAX_WEIGHT as f32);
         assert_eq!(weight(2, &pixel(DVec3::ZERO, 1 << 20)).x, MAX_WEIGHT as f32);
     }

@@ -1,4 +1,4 @@
-//! The paths of one tile of the image, pass by pass.
+//! Traces the paths of one tile of the image, pass by pass.
 
 use super::adaptive::Pass;
 use super::block::{BlockPixel, BlockTracer, blocks, seed_of};
@@ -12,30 +12,30 @@ use crate::render::world::World;
 use glam::DVec3;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Paths of a pixel between two looks at the clock, alone and together with the others of its tile.
+/// Paths of a pixel between two checks of the clock, for single pixels and for blocks. [convention]
 const SLICE: u32 = 64;
 const BLOCK_SLICE: u32 = 16;
 
-/// What the paths of all tiles have in common.
+/// Context common to all tiles.
 #[derive(Clone, Copy)]
 pub struct TileContext<'a> {
     pub world: &'a World,
     pub eye: &'a Eye,
     pub seed: u64,
     pub grid: Grid,
-    /// The brightness of the middling tile.
+    /// Median radiance of the image's tiles.
     pub median_radiance: Option<DVec3>,
-    /// Paths that were left out because their radiance was no finite number.
+    /// Number of paths dropped because their radiance was not finite.
     pub discarded: &'a AtomicU64,
 }
 
-/// A tile in the hands of a worker.
+/// A tile that a worker processes.
 pub struct Tile<'a> {
     context: TileContext<'a>,
     number: usize,
     pixels: &'a mut [Pixel],
     roulette: Option<RouletteWeights>,
-    /// What is kept of its layers.
+    /// The totals of its layers.
     kept: Option<Kept<'a>>,
     tracer: BlockTracer<'a>,
 }
@@ -58,9 +58,9 @@ impl<'a> Tile<'a> {
         }
     }
 
-    /// Extends the paths of every pixel to what the pass asks for, or until the time is over.
+    /// Extends the paths of every pixel to the counts of a pass, or until the time is over.
     pub fn extend(&mut self, pass: &Pass, is_over: impl Fn() -> bool) {
-        // The first path of each pixel is alone, as coarse passes make it; from then on those of a tile go together.
+        // Trace the first path of each pixel alone, as in coarse passes; trace the others in blocks.
         for i in 0..AREA {
             let Some((x, y)) = self.context.grid.place(self.number, i) else { continue };
             let wanted = pass.count(self.number, x, y);
@@ -86,7 +86,7 @@ impl<'a> Tile<'a> {
         PathLength { max_bounces: self.context.eye.max_bounces, roulette_weight }
     }
 
-    /// Extends the paths of a pixel.
+    /// Extends the paths of a single pixel.
     fn extend_pixel(&mut self, pixel: usize, at: [usize; 2], count: u32) {
         let length = self.length(pixel);
         let TileContext { world, eye, seed, discarded, .. } = self.context;
@@ -100,7 +100,7 @@ impl<'a> Tile<'a> {
         }
     }
 
-    /// Extends the paths of all pixels, of which each has as many.
+    /// Extends the paths of all pixels, which have equal counts, in blocks.
     fn extend_blocks(&mut self, count: u32) {
         let TileContext { world, eye, seed, grid, discarded, .. } = self.context;
         let places: [_; AREA] = std::array::from_fn(|i| grid.place(self.number, i));

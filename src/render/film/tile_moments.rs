@@ -1,4 +1,4 @@
-//! A first look at all tiles of an image, with few paths, to tell how bright each is and how much its light varies.
+//! A first look at all tiles of an image with few paths: mean and variance of the radiance of each tile.
 
 use super::grid::{Grid, TILE};
 use super::prepass::Prepass;
@@ -6,22 +6,22 @@ use crate::error::Result;
 use crate::exec;
 use crate::job::Job;
 
-/// Paths of all tiles together, where tiles have more than [`MIN_ALONG`].
+/// Largest number of paths of all tiles together, for tiles of more than the minimum. [judged, not recorded]
 const MAX_TOTAL_PATHS: usize = 1 << 17;
-/// Most and fewest paths of a tile along each side: powers of two, as the side is.
+/// Largest and smallest number of paths along each side of a tile: powers of two, as its side is.
 const MAX_ALONG: usize = TILE;
 const MIN_ALONG: usize = 2;
 
-/// What a tile shows at first sight, averaged over the channels.
+/// Moments of a tile's radiance, averaged over the channels.
 #[derive(Clone, Copy)]
 pub struct TileMoments {
     /// Mean radiance.
     pub mean: f64,
-    /// Variance of the radiance of its paths.
+    /// Variance of the radiance of single paths.
     pub variance: f64,
 }
 
-/// Of all tiles.
+/// The moments of all tiles.
 pub fn tile_moments(prepass: &Prepass, grid: Grid, job: Job) -> Result<Vec<TileMoments>> {
     let mut along = MAX_ALONG;
     while along > MIN_ALONG && grid.tiles() * along * along > MAX_TOTAL_PATHS {
@@ -31,7 +31,7 @@ pub fn tile_moments(prepass: &Prepass, grid: Grid, job: Job) -> Result<Vec<TileM
 }
 
 impl TileMoments {
-    /// One path in each of `along` by `along` squares of the tile, at another place in each of its rows.
+    /// One path in each of `along` by `along` squares of the tile, at a different position in each row of squares.
     fn of(prepass: &Prepass, grid: Grid, tile: usize, along: usize) -> Self {
         let (left, top) = grid.corner(tile);
         let (mut sum, mut squares) = (0.0, 0.0);

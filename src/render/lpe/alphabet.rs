@@ -1,4 +1,4 @@
-//! The events that can happen in a scene, numbered. Objects whose labels no expression tells apart share their events.
+//! The numbered events of a scene. Objects whose labels no expression distinguishes share their events.
 
 use super::parse::{Event, kind, mode};
 use super::{EmitterAs, Expression};
@@ -10,7 +10,7 @@ use glam::Vec2;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-/// The ways a surface scatters.
+/// The kinds of scattering at a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scatter {
     Diffuse,
@@ -20,22 +20,22 @@ pub enum Scatter {
 }
 
 pub struct Alphabet {
-    /// Events of scattering, four to a class of meshes, in the order of [`Scatter`].
+    /// Scattering events: four for each class of meshes, in the order of [`Scatter`].
     pub scatters: Vec<Event>,
-    /// Events at a light's end of a path.
+    /// Events at the light end of a path.
     pub lights: Vec<Event>,
-    /// Number of a mesh's class, which is that of its light too.
+    /// Class of each mesh; also the index of its light event.
     class_of_mesh: Vec<u32>,
-    /// Of meshes whose lamps are told apart.
+    /// For meshes whose lamps are distinguished.
     lamps: Vec<Option<Lamps>>,
     punctual: Vec<u32>,
     environment: u32,
 }
 
-/// The patches of an emission texture, each a light of its own.
+/// The lamps of an emission texture: each connected patch has a light event of its own.
 struct Lamps {
     texture: Arc<LampTexture>,
-    /// The light of each patch, after that of what belongs to none.
+    /// The light event of texels outside any patch, then that of each patch.
     lights: Vec<u32>,
 }
 
@@ -47,7 +47,7 @@ struct LampTexture {
 
 impl Alphabet {
     /// # Errors
-    /// A label that nothing bears.
+    /// An expression names a label that does not exist in the scene.
     pub fn new(scene: &Scene, expressions: &[&Expression], emitter_as: EmitterAs) -> Result<Self> {
         let names = |mesh: &Mesh| {
             [mesh.name.clone(), scene.materials.get(mesh.material).map_or(String::new(), |m| m.name.clone())]
@@ -64,8 +64,8 @@ impl Alphabet {
             let set: BTreeSet<&String> = names.iter().filter(|n| named_labels.contains(*n)).collect();
             set.into_iter().cloned().collect()
         };
-        // Meshes of the same labels are one class; that of none is always there, so that what an expression can match
-        // does not depend on what a scene happens to have.
+        // Meshes of equal labels form a class. The class without labels always exists, so that the set of matchable
+        // expressions does not depend on the scene.
         let mut classes = BTreeMap::new();
         let (mut scatters, mut lights) = (Vec::new(), Vec::new());
         let mut class = |labels: Vec<String>| {
@@ -79,7 +79,7 @@ impl Alphabet {
         };
         class(Vec::new());
         let class_of_mesh: Vec<u32> = scene.meshes.iter().map(|mesh| class(keep_named(&names(mesh)))).collect();
-        // So with lights without a surface.
+        // Punctual lights and the environment: lights of equal kinds and labels share an event.
         let mut by_labels = BTreeMap::new();
         let mut light = |kinds: u8, labels: Vec<String>| {
             *by_labels.entry((kinds, labels.clone())).or_insert_with(|| {
@@ -96,7 +96,7 @@ impl Alphabet {
             let texture = lamp_textures.get(&mesh.material)?.clone();
             let of_lamp = |i: usize| {
                 let of_it = names(mesh).map(|name| lamp_label(&name, i));
-                // One that no expression names is like the rest of the mesh.
+                // A lamp that no expression names belongs to its mesh's class.
                 if of_it.iter().any(|name| named_labels.contains(name)) {
                     light(surface_kinds(emitter_as), keep_named(&[names(mesh), of_it].concat()))
                 } else {
@@ -110,7 +110,7 @@ impl Alphabet {
         Ok(Self { scatters, lights, class_of_mesh, lamps, punctual, environment })
     }
 
-    /// How many classes of meshes there are.
+    /// Number of mesh classes.
     #[inline]
     pub fn classes(&self) -> usize {
         self.scatters.len() / SCATTERS.len()
@@ -141,7 +141,7 @@ impl Lamps {
     }
 }
 
-/// The emission textures of materials whose lamps an expression may name: `'Ceiling#3'`, after mesh or material.
+/// The emission textures whose lamps an expression may name, as in `'Ceiling#3'`, by mesh or by material.
 fn lamp_textures(
     scene: &Scene,
     expressions: &[&Expression],
@@ -199,7 +199,7 @@ fn environment_kinds(emitter_as: EmitterAs) -> u8 {
     }
 }
 
-/// The labels that expressions name; those that an event must bear have to be borne by something.
+/// The labels that expressions name. Labels that an event must have need to exist in the scene.
 fn named_labels(expressions: &[&Expression], existing: &BTreeSet<String>) -> Result<BTreeSet<String>> {
     let mut named_labels = BTreeSet::new();
     for expression in expressions {

@@ -1,9 +1,9 @@
-//! All expressions of a rendering as one deterministic automaton (Thompson 1968; subset construction, Rabin and Scott 1959;
-//! minimised by refinement, Moore 1956).
+//! All expressions of a render as one deterministic finite automaton (Thompson 1968; subset construction by Rabin and
+//! Scott 1959; minimised by partition refinement, Moore 1956).
 //!
-//! A path of camera, scatterings and a light moves through it one look-up per event. States from which no light can
-//! complete any expression are one, [`DEAD`]: what a path carries there is dropped. States that no future event tells
-//! apart are one as well, so a path has as few parts as the expressions allow.
+//! A path of camera, scattering events and a light moves through it with one look-up per event. All states from which
+//! no light can complete an expression are merged into [`DEAD`]; a share of a path in that state is dropped. Equivalent
+//! states are merged, so that a path has as few components as the expressions allow.
 
 use super::alphabet::{Alphabet, SCATTERS, Scatter};
 use super::parse::{Event, EventSet, Node, kind};
@@ -13,31 +13,32 @@ use crate::render::LightSource;
 use crate::scene::Scene;
 use std::collections::BTreeMap;
 
-/// The state that leads nowhere.
+/// The state from which no expression can be completed.
 pub const DEAD: u16 = 0;
 
-/// Bounds of the construction: places of all expressions, states before they are merged, and moves looked at.
+/// Limits of the construction: states of the nondeterministic automaton, states before minimisation, transitions
+/// visited.
 const MAX_NFA_STATES: usize = 20_000;
 const MAX_STATES: usize = 4096;
 const MAX_TRANSITIONS: usize = 20_000_000;
 
-/// The automaton of a scene's events.
+/// The automaton over the events of a scene.
 pub struct Automaton {
     alphabet: Alphabet,
     start: u16,
-    /// State by state and class of meshes by class, where each way of scattering leads.
+    /// The next states by state, class of meshes and kind of scattering.
     next: Vec<[u16; SCATTERS.len()]>,
-    /// State by state, which of `lists` holds when a path ends at each light.
+    /// By state and light, the index in `lists` of the accepting expressions.
     ends: Vec<u16>,
-    /// Expressions that accept the same paths; the first list is empty.
+    /// Lists of expressions that accept the same paths; the first list is empty.
     lists: Vec<Vec<u16>>,
-    /// States that no scattering leaves.
+    /// States that every scattering event leaves unchanged.
     absorbing: Vec<bool>,
 }
 
 impl Automaton {
     /// # Errors
-    /// A label that nothing in the scene bears, an expression that no path can match, or too many states.
+    /// A label that does not exist in the scene; an expression that no path can match; too many states.
     pub fn new(scene: &Scene, expressions: &[&Expression], emitter_as: EmitterAs) -> Result<Self> {
         let alphabet = Alphabet::new(scene, expressions, emitter_as)?;
         let mut nfa = Nfa::default();
@@ -49,7 +50,7 @@ impl Automaton {
         let mut construction = SubsetConstruction::new(&nfa, &alphabet);
         let first = construction.explore(start)?;
         let SubsetConstruction { next, ends, lists, .. } = construction;
-        // Every expression must have a path that it accepts.
+        // Reject expressions that accept no path.
         for (number, expression) in expressions.iter().enumerate() {
             if !lists.iter().flatten().any(|&n| usize::from(n) == number) {
                 return Err(Error::argument(format!(
@@ -67,7 +68,7 @@ impl Automaton {
         self.start
     }
 
-    /// Number of the class of a mesh: expressions do not tell those of a class apart.
+    /// Class of a mesh: expressions do not distinguish the meshes of a class.
     #[inline]
     pub fn class(&self, mesh: u32) -> usize {
         self.alphabet.class(mesh)
@@ -79,7 +80,7 @@ impl Automaton {
         &self.next[usize::from(state) * self.alphabet.classes() + class]
     }
 
-    /// Adds the states after a surface that spreads light, by any of its layers, to those known.
+    /// Adds to `states` the states after non-specular scattering off a mesh, by any of its layers.
     pub fn spread(&self, state: u16, mesh: u32, is_layered: bool, states: &mut Vec<u16>) {
         let next = self.next(state, self.class(mesh));
         for scatter in [Scatter::Diffuse, Scatter::Glossy].into_iter().take(1 + usize::from(is_layered)) {
@@ -90,13 +91,13 @@ impl Automaton {
         }
     }
 
-    /// Number of a light.
+    /// Index of the event of a light.
     #[inline]
     pub fn light(&self, source: LightSource) -> usize {
         self.alphabet.light(source)
     }
 
-    /// Which of the lists names the expressions that accept a path that ends at such a light. That of number 0 is empty.
+    /// Index of the list of expressions that accept a path which ends at a light. List 0 is empty.
     #[inline]
     pub fn accepting(&self, state: u16, light: usize) -> u16 {
         self.ends[usize::from(state) * self.alphabet.lights.len() + light]
@@ -107,7 +108,7 @@ impl Automaton {
         &self.lists
     }
 
-    /// Whether no scattering can lead on from a state.
+    /// Whether every scattering event leaves the state unchanged.
     #[inline]
     pub fn is_absorbing(&self, state: u16) -> bool {
         self.absorbing[usize::from(state)]
@@ -118,11 +119,11 @@ impl Automaton {
         self.ends.len() / self.alphabet.lights.len()
     }
 
-    /// The same with states merged that no path tells apart.
+    /// The automaton with equivalent states merged.
     fn minimised(self) -> Self {
         let (classes, lights) = (self.alphabet.classes(), self.alphabet.lights.len());
         let count = self.ends.len() / lights;
-        // Tell apart by what is accepted now, then again and again by where events lead.
+        // Separate states by the expressions they accept, then repeatedly by the groups of their successors.
         let mut group = vec![0u16; count];
         let mut groups = 0;
         loop {
@@ -143,7 +144,7 @@ impl Automaton {
             }
             groups = found;
         }
-        // Groups are numbered by their first state, so the dead one, state 0, stays 0.
+        // Groups are numbered by their first state, so that the dead state 0 stays 0.
         let mut next = vec![[0; SCATTERS.len()]; groups * classes];
         let mut ends = vec![0; groups * lights];
         for state in 0..count {
@@ -160,12 +161,12 @@ impl Automaton {
     }
 }
 
-/// The expressions as one automaton that may be in many places at once.
+/// The expressions as one nondeterministic finite automaton.
 #[derive(Default)]
 struct Nfa<'a> {
-    /// Places that can be entered from each without an event.
+    /// Epsilon transitions of each state.
     epsilon: Vec<Vec<u32>>,
-    /// The events that lead on, and where.
+    /// The event transition of each state.
     transitions: Vec<Option<(&'a EventSet, u32)>>,
     accepts: Vec<Vec<u16>>,
 }
@@ -185,7 +186,7 @@ impl<'a> Nfa<'a> {
         self.epsilon[from as usize].push(to);
     }
 
-    /// Adds what a node matches after place `from`; returns the place after it.
+    /// Adds what a node matches after state `from`; returns the end state.
     fn build(&mut self, node: &'a Node, from: u32) -> Result<u32> {
         match node {
             Node::Event(set) => {
@@ -228,18 +229,18 @@ impl<'a> Nfa<'a> {
     }
 }
 
-/// The sets of places that paths reach, as states.
+/// Subset construction: sets of NFA states become states.
 struct SubsetConstruction<'a> {
     nfa: &'a Nfa<'a>,
     scatters: &'a [Event],
     lights: &'a [Event],
-    /// Numbers of the sets and of the lists seen so far.
+    /// Indices of the sets and of the lists seen so far.
     number_of_set: BTreeMap<Vec<u32>, u16>,
     number_of_list: BTreeMap<Vec<u16>, u16>,
     next: Vec<u16>,
     ends: Vec<u16>,
     lists: Vec<Vec<u16>>,
-    /// The last round that met each place, and how many there were.
+    /// The last round that visited each NFA state, and the number of rounds.
     visited: Vec<u32>,
     rounds: u32,
     transitions_left: usize,
@@ -262,7 +263,7 @@ impl<'a> SubsetConstruction<'a> {
         }
     }
 
-    /// Visits all that can follow the camera; returns the state after it.
+    /// Visits all states reachable behind the camera; returns the state after it.
     fn explore(&mut self, start: u32) -> Result<u16> {
         let camera = Event { kinds: kind::CAMERA, modes: 0, labels: Vec::new() };
         let mut sets = vec![Vec::new()];
@@ -314,7 +315,7 @@ impl<'a> SubsetConstruction<'a> {
         self.closure(&reached)
     }
 
-    /// The places that can be entered from some others without an event; those that only pass on are left out.
+    /// Epsilon closure of some NFA states, without states that only have epsilon transitions.
     fn closure(&mut self, from: &[u32]) -> Result<Vec<u32>> {
         self.rounds += 1;
         let matters = |p: usize| self.nfa.transitions[p].is_some() || !self.nfa.accepts[p].is_empty();

@@ -1,12 +1,12 @@
-//! What a path carries through the automaton: parts, each a state and its share of whatever the path brings.
+//! The states of a path in the automaton: components, each a state with its share of the path's light.
 //!
-//! Where a surface has a diffuse and a glossy layer, one sample stands for both (Veach 1997, 9.2.4: the sampled direction
-//! is weighed by the sum of the layers), so a part goes on as two whose shares are those of the layers in that sum, channel
-//! by channel. Parts of equal state are one again: there are never more of them than states, and nothing has to be cut
-//! off. Parts that no expression can accept any more are dropped, and a path whose parts have all come to states that
-//! nothing leaves carries them on for free.
+//! A sample of a surface with a diffuse and a glossy layer stands for both layers (Veach 1997, 9.2.4: it is weighed by
+//! the sum of the layers). A component therefore splits in two, in proportion to the layers' values, channel by
+//! channel. Components of equal state are merged: there are never more components than states, and no truncation is
+//! needed. Components in the dead state are dropped. Once all components are in absorbing states, further scattering
+//! costs nothing.
 //!
-//! A path that several others will go on along is followed once, from each of the states in which they may come to it.
+//! A subpath that several paths replay is tracked once, from each state in which they may join it.
 
 use super::alphabet::Scatter;
 use super::automaton::{Automaton, DEAD};
@@ -17,17 +17,16 @@ use crate::render::path::Strategy;
 use crate::render::world::{Pane, World};
 use glam::{Vec3, Vec3A};
 
-/// A share of a path, and the state that it is in.
+/// A state with its share of the path.
 #[derive(Clone, Copy)]
 struct Component {
-    /// Where what it brings stands in the ledger: for each state in which the path may have begun, one sum for each list
-    /// of expressions.
+    /// Offset of its sums: for each initial state of the path, there is one sum per list of expressions.
     offset: u32,
     state: u16,
     share: Vec3A,
 }
 
-/// What is for a list of expressions when a path has begun in a state.
+/// Light of a recorded subpath for one initial state and one list of expressions.
 pub struct PathOutcome {
     origin: u16,
     list: u16,
@@ -37,16 +36,17 @@ pub struct PathOutcome {
 pub struct Trail<'a> {
     automaton: &'a Automaton,
     components: Vec<Component>,
-    /// Whether no scattering changes any of the parts.
+    /// Whether all components are in absorbing states.
     absorbing: bool,
-    /// The parts before a step, and those at a light.
+    /// Scratch memory: the components before an event, and those at a light.
     before: Vec<Component>,
     ends: Vec<Component>,
-    /// What stands between a vertex and the light chosen for it.
+    /// The panes between a vertex and its light sample.
     panes: Vec<Pane>,
-    /// What the path has brought so far.
+    /// Light of the path so far, by initial state and list.
     sums: SparseSums,
-    /// What it has brought since it settled, by lights of this number: its parts share in it alike, in the end.
+    /// Light since all states became absorbing, from the light event `rest_light`; it is distributed to the components
+    /// later.
     rest: Vec3A,
     rest_light: usize,
 }
@@ -58,13 +58,13 @@ impl<'a> Trail<'a> {
         Self { automaton, components, absorbing: false, before, ends, panes, sums, rest: Vec3A::ZERO, rest_light: 0 }
     }
 
-    /// A new path leaves the camera.
+    /// Begins a path at the camera.
     #[inline]
     pub fn start(&mut self) {
         self.start_from(&[self.automaton.start()]);
     }
 
-    /// A path begins of which nobody knows yet in which of some states: it is followed from each.
+    /// Begins a subpath, tracked from each of several initial states.
     #[inline]
     pub fn start_from(&mut self, origins: &[u16]) {
         self.sums.begin(origins.len() * self.automaton.lists().len());
@@ -72,7 +72,7 @@ impl<'a> Trail<'a> {
         self.set_out(origins);
     }
 
-    /// The path leaves the camera once more, on another way. What it has brought stays.
+    /// Returns to the camera, to leave it along another path. The sums are kept.
     #[inline]
     pub fn restart(&mut self) {
         self.flush_rest();
@@ -88,14 +88,14 @@ impl<'a> Trail<'a> {
         self.absorbing = origins.iter().all(|&state| self.automaton.is_absorbing(state));
     }
 
-    /// The path goes on as one that was followed from every state that it can be in.
+    /// Continues along a recorded subpath.
     pub fn follow(&mut self, outcome: &[PathOutcome], importance: Vec3A) {
         for component in &self.components {
             replay_outcome(&mut self.sums, component.state, component.share * importance, outcome);
         }
     }
 
-    /// The same of a path that leaves the camera once more and goes on from its first surface, of a mesh.
+    /// Returns to the camera, scatters at the primary vertex on a mesh, and continues along a recorded subpath.
     #[inline]
     pub fn follow_from(&mut self, mesh: u32, lobes: Lobes, outcome: &[PathOutcome], importance: Vec3A) {
         let [diffuse, glossy, ..] = *self.automaton.next(self.automaton.start(), self.automaton.class(mesh));
@@ -110,7 +110,7 @@ impl<'a> Trail<'a> {
         }
     }
 
-    /// Says which panes stand between a vertex and the light chosen for it, if they matter.
+    /// Sets the panes between a vertex and its light sample, if any state depends on them.
     pub fn set_panes(&mut self, panes: &[Pane]) {
         if !self.absorbing && !(panes.is_empty() && self.panes.is_empty()) {
             self.panes.clear();
@@ -118,7 +118,7 @@ impl<'a> Trail<'a> {
         }
     }
 
-    /// A place for the panes between a vertex and a light, if they matter.
+    /// A list for the panes between a vertex and its light sample, if any state depends on them.
     #[inline]
     pub fn panes_wanted(&mut self) -> Option<&mut Vec<Pane>> {
         if self.absorbing { None } else { Some(&mut self.panes) }
@@ -135,7 +135,7 @@ impl<'a> Trail<'a> {
             ScatterKind::Pane => Some(Scatter::Pane),
         };
         match (way, &mut self.components[..]) {
-            // Most paths are still whole.
+            // Most paths have a single component.
             (Some(way), [component]) => {
                 component.state = self.automaton.next(component.state, self.automaton.class(mesh))[way as usize];
                 self.absorbing = self.automaton.is_absorbing(component.state);
@@ -144,7 +144,7 @@ impl<'a> Trail<'a> {
         }
     }
 
-    /// The same for a path of several parts, or one that goes on in several ways.
+    /// Handles several components, and scattering that splits a component.
     #[inline(never)]
     fn divide(&mut self, mesh: u32, way: Option<Scatter>, lobes: Lobes) {
         let Self { automaton, components, before, .. } = self;
@@ -153,8 +153,7 @@ impl<'a> Trail<'a> {
         self.absorbing = components.iter().all(|component| automaton.is_absorbing(component.state));
     }
 
-    /// The path, or a connection of it, has come to a light, and brings a contribution: each part of it is for the
-    /// expressions of a list.
+    /// Adds the contribution of a light that the path or a connection has reached, by the list of each component.
     #[inline(always)]
     pub fn add(&mut self, world: &World, contribution: Vec3A, source: LightSource, strategy: Strategy) {
         let light = self.automaton.light(source);
@@ -177,7 +176,7 @@ impl<'a> Trail<'a> {
         }
     }
 
-    /// A contribution of which each part has its share.
+    /// Distributes a contribution to all components.
     #[inline(never)]
     fn add_to_components(&mut self, light: usize, contribution: Vec3A) {
         let Self { automaton, components, sums, .. } = self;
@@ -186,7 +185,7 @@ impl<'a> Trail<'a> {
         }
     }
 
-    /// A connection of a vertex to a light.
+    /// Adds a light sample at a vertex.
     #[inline(never)]
     fn connect(&mut self, light: usize, contribution: Vec3A, mesh: u32, lobes: Lobes) {
         let Self { automaton, components, sums, .. } = self;
@@ -212,12 +211,12 @@ impl<'a> Trail<'a> {
         }
     }
 
-    /// A connection of a vertex to a light behind panes, each of which splits it.
+    /// Adds a light sample at a vertex behind panes; each pane splits the components.
     #[inline(never)]
     fn connect_through_panes(&mut self, world: &World, light: usize, contribution: Vec3A, mesh: u32, lobes: Lobes) {
         let Self { automaton, components, before, ends, panes, sums, .. } = self;
         advance(automaton, automaton.class(mesh), only_layer(lobes), lobes, components, ends);
-        // In the order in which light from the vertex would meet them.
+        // Sort the panes by distance from the vertex.
         panes.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.triangle.cmp(&b.triangle)));
         for pane in panes.iter() {
             let (mesh, _) = world.locate(pane.triangle);
@@ -247,14 +246,14 @@ impl<'a> Trail<'a> {
         }
     }
 
-    /// Ends the path: gives what it has brought for each list of expressions.
+    /// Ends the path: passes the light of each list of expressions to `take`.
     #[inline]
     pub fn end(&mut self, take: impl FnMut(usize, Vec3A)) {
         self.flush_rest();
         self.sums.drain(take);
     }
 
-    /// The same for one that may have begun in any of some states.
+    /// Ends a subpath: stores its light by initial state and list.
     pub fn end_from(&mut self, origins: &[u16], outcome: &mut Vec<PathOutcome>) {
         let lists = self.automaton.lists().len();
         outcome.clear();
@@ -264,7 +263,7 @@ impl<'a> Trail<'a> {
     }
 }
 
-/// Notes a contribution of a part for a list of expressions.
+/// Adds a contribution to the sum of a list, for one initial state.
 #[inline(always)]
 fn add_to_list(sums: &mut SparseSums, offset: u32, list: u16, light: Vec3A) {
     if list != 0 {
@@ -272,7 +271,7 @@ fn add_to_list(sums: &mut SparseSums, offset: u32, list: u16, light: Vec3A) {
     }
 }
 
-/// Notes what came of a path for one of its viewers, who was in a state.
+/// Adds the light of a recorded subpath that a component joins in `state`.
 #[inline(always)]
 fn replay_outcome(sums: &mut SparseSums, state: u16, importance: Vec3A, outcome: &[PathOutcome]) {
     for PathOutcome { list, light, .. } in outcome.iter().filter(|b| b.origin == state) {
@@ -280,7 +279,7 @@ fn replay_outcome(sums: &mut SparseSums, state: u16, importance: Vec3A, outcome:
     }
 }
 
-/// The layer that sends all of it on, if one does.
+/// The only layer with a non-zero value, if there is just one.
 #[inline]
 fn only_layer(lobes: Lobes) -> Option<Scatter> {
     if lobes.glossy == Vec3::ZERO {
@@ -292,7 +291,7 @@ fn only_layer(lobes: Lobes) -> Option<Scatter> {
     }
 }
 
-/// All parts go on by one event, or by the layers of a surface.
+/// Advances all components by one event, or by the layers of a surface.
 fn advance(
     automaton: &Automaton,
     class: usize,
@@ -314,7 +313,7 @@ fn advance(
     }
 }
 
-/// Of a part, the share `first` goes to one state and the rest to another.
+/// Splits a component: the share `first` goes to one state, the remainder to another.
 #[inline]
 fn split_component(to: &mut Vec<Component>, component: &Component, one: u16, other: u16, first: Vec3A) {
     if one == other {
@@ -325,7 +324,7 @@ fn split_component(to: &mut Vec<Component>, component: &Component, one: u16, oth
     add(to, component, other, component.share - first);
 }
 
-/// Adds what a part comes to, to one of equal place and state if there is one.
+/// Adds a component, merged with one of equal offset and state.
 #[inline(always)]
 fn add(components: &mut Vec<Component>, from: &Component, state: u16, share: Vec3A) {
     if state == DEAD {
@@ -342,7 +341,7 @@ fn diffuse_fraction(lobes: Lobes) -> Vec3A {
     fraction(lobes.diffuse, lobes.sum())
 }
 
-/// Channel by channel; none of nothing.
+/// Ratio per channel; 0 where the whole is 0.
 #[inline]
 fn fraction(component: Vec3, whole: Vec3) -> Vec3A {
     let (component, whole) = (Vec3A::from(component), Vec3A::from(whole));

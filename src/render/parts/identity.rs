@@ -1,4 +1,4 @@
-//! What all parts of one render have in common, as texts that files can hold and people can read.
+//! The identity of a render, which all its parts share, as readable texts for files.
 
 use crate::render::Params;
 use crate::render::lpe::EmitterAs;
@@ -22,7 +22,7 @@ impl Identity {
             EmitterAs::Light => "light",
             EmitterAs::Object => "object",
         };
-        // Paths may differ from version to version.
+        // Include the version: it may change the paths.
         let texts = vec![
             ("version", env!("CARGO_PKG_VERSION").to_string()),
             ("scene", format!("{:016x}", scene.fingerprint())),

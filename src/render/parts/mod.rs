@@ -1,15 +1,16 @@
-//! Renders in parts: rectangles of the image and ranges of its paths, for many machines to share.
+//! Renders in parts: rectangles of the image and ranges of its paths, for distribution to many machines.
 //!
-//! [`run`] sums a part, [`File`] keeps its sums, [`merge`] adds those of all parts up to the image. Path number n of a pixel
-//! is the same in every part, so that the parts make the very paths that one render of the whole in a single part makes, and
-//! the image is the same but for the rounding of sums in f64 (`film::sums`), whatever the parts and their order.
+//! [`run`] computes the sums of a part, a [`File`] stores them, and [`merge`] adds the sums of all parts up to the
+//! image. Path number n of a pixel is the same in every partition. The merged image therefore equals a render in a
+//! single part up to the rounding of sums in f64 (`film::sums`), for any partition and order.
 //!
-//! Pixels next to a part whose block it cuts are traced with it, for what their paths find: parts at multiples of 8 pixels
-//! cost nothing extra. Otherwise a part cannot know what others have found. So all have a fixed number of paths: no target, no time budget. And how long
-//! paths are follows from a few paths ahead of the image (`film::prepass`), not from those of the passes before as in
-//! [`super::run`]; both are unbiased, but the images of the two differ within their errors.
+//! Pixels outside a part whose block it cuts are traced with the part, for their secondary vertices; parts at multiples
+//! of 8 pixels avoid this cost. Apart from that, a part does not know the results of others. All parts therefore have a
+//! fixed number of paths, without error targets or a time budget. The roulette weights come from a prepass
+//! (`film::prepass`) instead of the previous passes of [`super::run`]. Both are unbiased, but their images differ
+//! within their errors.
 //!
-//! `cover` tells whether the parts are all there, `identity` whether they are of one render.
+//! `cover` checks that the parts are complete; `identity` checks that they belong to one render.
 
 mod cover;
 mod file;
@@ -34,19 +35,19 @@ pub struct Part {
     pub y: usize,
     pub width: usize,
     pub height: usize,
-    /// Number of the first path.
+    /// Index of the first path.
     pub first: u32,
     pub samples: u32,
 }
 
 impl Part {
-    /// All of an image in one part.
+    /// The whole image in one part.
     pub fn whole(params: &Params) -> Self {
         Self { x: 0, y: 0, width: params.width, height: params.height, first: 0, samples: params.samples }
     }
 
-    /// Part number `index` of `columns` × `rows` rectangles and `ranges` ranges of paths of about the same size. Rectangles
-    /// go on row by row, and all of a range come before the next.
+    /// Part number `index` of `columns` × `rows` rectangles and `ranges` ranges of paths, of about equal size.
+    /// Rectangles are numbered row by row; all rectangles of a range come before the next range.
     pub fn split(params: &Params, [columns, rows, ranges]: [u32; 3], index: u32) -> Result<Self> {
         params.check()?;
         check_range("columns", columns as usize, 1, params.width)?;
@@ -90,13 +91,13 @@ impl fmt::Display for Part {
     }
 }
 
-/// Where one of `count` pieces begins: at multiples of a unit, where that changes little.
+/// Start of one of `count` pieces, rounded to multiples of `unit` if the pieces are large enough.
 fn bound(size: usize, count: u32, piece: u32, unit: usize) -> usize {
     let exact = (size as u64 * u64::from(piece) / u64::from(count)) as usize;
     if exact == size || size / (count as usize) < 4 * unit { exact } else { exact / unit * unit }
 }
 
-/// A part that has been rendered.
+/// A rendered part.
 pub struct Rendered {
     sums: Sums,
     identity: Identity,
@@ -104,11 +105,11 @@ pub struct Rendered {
     pub film: Film,
 }
 
-/// Renders a part. To be called on the library's own pool.
+/// Renders a part. Call it on the library's own thread pool.
 ///
 /// # Errors
-/// Parameters out of range, or that let the number of paths depend on what they find; a part that is none of the image's; a
-/// camera that cannot see; no memory; cancelled.
+/// Parameters out of range, or error targets and time budgets; a part outside the image; a degenerate camera; no
+/// memory; cancelled.
 pub fn run(world: &World, camera: &Camera, params: &Params, part: &Part, job: Job) -> Result<Rendered> {
     check(camera, params)?;
     part.check(params)?;
@@ -120,18 +121,18 @@ pub fn run(world: &World, camera: &Camera, params: &Params, part: &Part, job: Jo
 }
 
 impl Rendered {
-    /// Writes the sums into a file; an existing one is replaced only by a complete one.
+    /// Writes the sums to a file; replaces an existing file only when the new one is complete.
     pub fn save(&self, path: &Path) -> Result<()> {
         file::save(path, &self.sums, &self.identity, &self.film.beauty)
     }
 }
 
-/// Adds parts up to an image; the order of the files does not matter. The scene, the camera and the parameters are those the
-/// parts were made with. To be called on the library's own pool.
+/// Merges parts to an image, in any order of the files. The scene, the camera and the parameters must be those of the
+/// parts. Call it on the library's own thread pool.
 ///
 /// # Errors
-/// Parts of another render, by what is different; parts that overlap; paths that are in no part, by which; files that cannot
-/// be read; what [`run`] refuses.
+/// Parts of another render, with the difference; overlapping parts; missing paths, with the first hole; unreadable
+/// files; the errors of [`run`].
 pub fn merge(world: &World, camera: &Camera, params: &Params, files: &[File], job: Job) -> Result<Film> {
     check(camera, params)?;
     let guided = preview::guided(params);
@@ -141,7 +142,7 @@ pub fn merge(world: &World, camera: &Camera, params: &Params, files: &[File], jo
     for file in files {
         file.check(&identity, sums.width(), params)?;
     }
-    // Summed in an order of their own, they give the same bits in whatever order they come.
+    // Sum in a fixed order, so that the bits do not depend on the order of the files.
     for (done, &index) in cover::order(files, params, job)?.iter().enumerate() {
         let from = done as f64 / files.len() as f64;
         job.report(0.9 * from);
@@ -151,7 +152,7 @@ pub fn merge(world: &World, camera: &Camera, params: &Params, files: &[File], jo
     film(world, camera, params, &sums, job.part(0.9, 1.0))
 }
 
-/// The image of sums.
+/// The image of the sums of a part.
 fn film(world: &World, camera: &Camera, params: &Params, sums: &Sums, job: Job) -> Result<Film> {
     let guided = preview::guided(params);
     let canvas = Canvas::of_sums(world, camera, &guided, sums, job.part(0.0, 0.2))?;
