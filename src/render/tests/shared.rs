@@ -1,4 +1,4 @@
-//! Paths that share what they find: the same light as paths on their own, with less scatter.
+//! Tests of path sharing: the same light as separate paths, with less variance.
 
 use super::*;
 use crate::render::path::{self, PathLength};
@@ -7,8 +7,8 @@ use crate::render::shared::{self, MAX_SHARED, Scratch, Start};
 use crate::render::tape::Sum as Light;
 use crate::scene::accel::Ray;
 
-/// A room of all that decides who takes part: matt, glossy, metal, mirror and glass, a smooth ball, leaves that are partly
-/// there, a pane before a corner, and a pane that nobody sees.
+/// A room with every case that decides about sharing: matt, glossy, metal, mirror and glass, a smooth ball, leaves with
+/// alpha, a pane in front of a corner, and a pane outside the view.
 fn room() -> Scene {
     let mut scene = everything();
     let materials = scene.materials.len();
@@ -31,7 +31,7 @@ fn room() -> Scene {
     scene
 }
 
-/// Mean of estimates along some rays, and the variance of one. Each mean is of 64 paths of one point sequence.
+/// Mean of estimates along several rays, and the variance of one. Each mean is over 64 paths of one point sequence.
 fn estimates(mut make: impl FnMut(u64) -> [Vec3; MAX_SHARED], count: u64) -> [[DVec3; 2]; MAX_SHARED] {
     let mut sums = [[DVec3::ZERO; 2]; MAX_SHARED];
     for trial in 0..count {
@@ -83,7 +83,7 @@ fn together(world: &World, rays: &[Ray; MAX_SHARED], length: PathLength, trial: 
 #[test]
 fn shared_paths_bring_the_same_light() {
     let world = world(room());
-    // Into corners, along edges, on the ball, through panes and leaves; paths cut short, and whole.
+    // Into corners, along edges, on the ball, through panes and leaves; with limited and with unlimited bounces.
     let targets = [
         Vec3::new(-1.4, -0.5, -1.4),
         Vec3::new(0.0, -0.6, -0.4),
@@ -110,7 +110,7 @@ fn shared_paths_bring_the_same_light() {
             }
         }
     }
-    // Of 720 distances, by Student's law with 62 degrees of freedom at least, one in ten thousand runs has one above 6.
+    // Of 720 deviations of Student's t with at least 62 degrees of freedom, one exceeds 6 in one of ten thousand runs.
     assert!(tests == 720 && worst < 6.0, "{worst}");
 }
 
@@ -122,7 +122,7 @@ fn shared_paths_scatter_less() {
         ..Scene::default()
     };
     let world = world(scene);
-    // What lies above the lamp is in its shade.
+    // Surfaces above the lamp are in its shadow.
     let rays = rays(&world, Vec3::new(0.0, 2.5, -1.5));
     let length = PathLength { max_bounces: 2, roulette_weight: None };
     let own = estimates(|trial| apart(&world, &rays, length, trial), 64);
