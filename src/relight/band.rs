@@ -1,5 +1,5 @@
-//! Band-limited look-ups of a texture that repeats, with their slopes: cubic B-splines on a pyramid, between whose levels it
-//! is interpolated. Unlike texels and bilinear filters these have slopes everywhere that gradients need.
+//! Band-limited look-ups of a repeating texture with their derivatives: cubic B-splines on the levels of a pyramid,
+//! interpolated linearly between levels. Unlike texels and bilinear filters, they are differentiable everywhere.
 
 use crate::error::Result;
 use crate::image::{Image, pyramid};
@@ -16,7 +16,7 @@ struct Level {
     texels: Vec<DVec3>,
 }
 
-/// A value and how it changes along the texture's coordinates and with the level.
+/// A filtered value with its partial derivatives by texture coordinates and by pyramid level.
 #[derive(Clone, Copy)]
 pub(super) struct TextureSample {
     pub value: DVec3,
@@ -26,7 +26,7 @@ pub(super) struct TextureSample {
 }
 
 impl Pyramid {
-    /// Negative values count as 0.
+    /// Negative values are clamped to 0.
     pub fn new(image: &Image, job: Job) -> Result<Self> {
         let mut image = image.to_rgb()?;
         image.data.iter_mut().for_each(|v| *v = v.max(0.0));
@@ -38,7 +38,7 @@ impl Pyramid {
         Ok(Self { levels })
     }
 
-    /// At texture coordinates, filtered so that a texel of level 0 has `2^level` its size.
+    /// The texture at `uv`, filtered so that a texel of level 0 grows to `2^level` times its side.
     pub fn look_up(&self, uv: DVec2, level: f64) -> TextureSample {
         let most = (self.levels.len() - 1) as f64;
         let within = level.clamp(0.0, most);
@@ -84,7 +84,7 @@ impl Level {
     }
 }
 
-/// The texels that a cubic B-spline draws on, with its weights and their slopes along the coordinate.
+/// The four texels under a cubic B-spline, with its weights and their derivatives by the coordinate.
 struct Taps {
     texels: [usize; 4],
     weights: [f64; 4],
@@ -138,11 +138,11 @@ mod tests {
             for (slope, difference) in [sample.d_du, sample.d_dv, sample.d_dlevel].into_iter().zip(differences) {
                 assert!((slope - difference).abs().max_element() < 1e-5, "{slope} {difference}");
             }
-            // It repeats, and the last level is the mean.
+            // The texture repeats, and the last level is its mean.
             assert!((sample.value - step(uv + 1.0, level)).abs().max_element() < 1e-9);
             assert!((step(uv, 99.0).x - mean).abs() < 1e-6);
         }
-        // A plane of one colour stays as it is.
+        // A constant texture stays constant.
         let flat = Pyramid::new(&Image::from_fn(5, 3, |_, _| [0.7]).unwrap(), monitor.job()).unwrap();
         let sample = flat.look_up(DVec2::new(0.3, 0.9), 0.4);
         assert!(

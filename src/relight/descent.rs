@@ -1,25 +1,25 @@
-//! The least of a smooth function of a few numbers within bounds: projected BFGS (Nocedal and Wright 2006, chapter 6; Bertsekas
-//! 1982 for the projection).
+//! Bounded minimisation of a smooth function of a few variables: projected BFGS (Nocedal and Wright 2006, chapter 6;
+//! Bertsekas 1982 for the projection).
 
 use crate::job::Job;
 
-/// What the numbers may be.
+/// Bounds of the variables.
 pub(super) struct Bounds<const N: usize> {
     pub min: [f64; N],
     pub max: [f64; N],
-    /// After which the function repeats; numbers that may be all of that are not bounded.
+    /// Period of the function in each variable. A variable whose range covers a period is unbounded.
     pub period: [f64; N],
 }
 
-/// Most steps.
+/// Largest number of steps. [judged, not recorded]
 const MAX_STEPS: usize = 60;
-/// Most halvings of a step.
+/// Largest number of halvings of a step. [convention]
 const MAX_HALVINGS: usize = 30;
-/// How much of the forecast a step must bring (Armijo).
+/// Smallest accepted decrease relative to the linear prediction (Armijo condition). [convention]
 const ARMIJO: f64 = 1e-4;
-/// Length of the first step, as a share of what the numbers may be.
+/// Length of the first step. [judged, not recorded]
 const FIRST_STEP: f64 = 0.05;
-/// Changes that end the search, relative.
+/// Relative decrease below which the search ends. [judged, not recorded]
 const MIN_RELATIVE_GAIN: f64 = 1e-10;
 
 impl<const N: usize> Bounds<N> {
@@ -31,26 +31,26 @@ impl<const N: usize> Bounds<N> {
         std::array::from_fn(|i| if self.is_open(i) { x[i] } else { x[i].clamp(self.min[i], self.max[i]) })
     }
 
-    /// At a share of the way.
+    /// The point at relative positions `share` in the ranges of the variables.
     pub fn between(&self, share: [f64; N]) -> [f64; N] {
         std::array::from_fn(|i| self.min[i] + share[i] * (self.max[i] - self.min[i]))
     }
 
-    /// The same within the bounds, by whole periods.
+    /// The same point within the bounds, moved by whole periods.
     pub fn wrapped(&self, x: [f64; N]) -> [f64; N] {
         std::array::from_fn(|i| {
             if self.is_open(i) { self.min[i] + (x[i] - self.min[i]).rem_euclid(self.period[i]) } else { x[i] }
         })
     }
 
-    /// Whether a number can follow its slope.
+    /// Whether a variable may move along the negative gradient.
     fn is_free(&self, i: usize, x: &[f64; N], slope: &[f64; N]) -> bool {
         let held = x[i] <= self.min[i] && slope[i] >= 0.0 || x[i] >= self.max[i] && slope[i] <= 0.0;
         self.is_open(i) || self.min[i] < self.max[i] && !held
     }
 }
 
-/// Goes down from `x`; `f` gives the value and its slopes. Ends early where it is cancelled.
+/// Minimises from `x`; `f` returns the value and its gradient. Ends early if the job is cancelled.
 pub(super) fn run<const N: usize>(
     bounds: &Bounds<N>,
     mut x: [f64; N],
@@ -69,7 +69,7 @@ pub(super) fn run<const N: usize>(
         if length == 0.0 || !length.is_finite() {
             break;
         }
-        // Newton's direction by the inverse there is, or straight down.
+        // Take the quasi-Newton direction if it descends, else the steepest descent.
         let mut step = steepest.map(|s| s * FIRST_STEP / length);
         if let Some(inverse) = &inverse {
             let newton = std::array::from_fn(|i| if free[i] { dot(&inverse[i], &steepest) } else { 0.0 });
@@ -77,7 +77,7 @@ pub(super) fn run<const N: usize>(
                 step = newton;
             }
         }
-        // Half of it as often as it takes to go down.
+        // Halve the step until the Armijo condition holds.
         let mut next = None;
         for halving in 0..MAX_HALVINGS {
             let share = 0.5f64.powi(halving as i32);
@@ -101,13 +101,13 @@ pub(super) fn run<const N: usize>(
     x
 }
 
-/// The BFGS update of the inverse of the second derivatives, after a step along which the slopes turned.
+/// BFGS update of the inverse Hessian from a step and the change of the gradient.
 fn update<const N: usize>(inverse: &mut Option<[[f64; N]; N]>, step_taken: &[f64; N], gradient_change: &[f64; N]) {
     let curvature = dot(step_taken, gradient_change);
     if !(curvature > 1e-12 * dot(step_taken, step_taken).sqrt() * dot(gradient_change, gradient_change).sqrt()) {
         return;
     }
-    // At first the curvature that was met, in all directions.
+    // Initialise with the observed curvature in all directions.
     let scale = curvature / dot(gradient_change, gradient_change);
     let h = inverse.get_or_insert(std::array::from_fn(|i| std::array::from_fn(|j| if i == j { scale } else { 0.0 })));
     let along: [f64; N] = std::array::from_fn(|i| dot(&h[i], gradient_change));
@@ -129,7 +129,7 @@ mod tests {
     use super::*;
     use crate::job::Monitor;
 
-    /// Rosenbrock's valley, whose least is at (1, 1); within x <= 0.5 it is at (0.5, 0.25).
+    /// Rosenbrock's function has its minimum at (1, 1); within x <= 0.5 it is at (0.5, 0.25).
     #[test]
     fn a_valley_with_and_without_bounds() {
         let valley = |[x, y]: [f64; 2]| {
@@ -142,7 +142,7 @@ mod tests {
             let found = run(&bounds, [-1.2, 1.0], valley, monitor.job());
             assert!(found.iter().zip(expected).all(|(x, e)| (x - e).abs() < 1e-4), "{found:?}");
         }
-        // A wave has no bounds over its period, and a number that may not change stays.
+        // A wave over its whole period is unbounded, and a variable with equal bounds is fixed.
         let wave = |[x, y]: [f64; 2]| ((x - 3.0).cos(), [-(x - 3.0).sin(), 1.0 + y]);
         let bounds = Bounds { min: [-3.2, 0.7], max: [3.2, 0.7], period: [std::f64::consts::TAU, 1.0] };
         let found = run(&bounds, [2.9, 0.7], wave, monitor.job());

@@ -1,11 +1,11 @@
-//! Gradients against differences, and placements whose best is known.
+//! Tests of gradients against differences, and of placements with a known optimum.
 
 use super::*;
 use crate::exec::Pool;
 use crate::job::Monitor;
 use std::f64::consts::PI;
 
-/// A map that is brightest at the middle, warm, and falls smoothly to the sides.
+/// A warm map with its maximum in the centre and a smooth decay to the sides.
 fn map() -> Importance {
     let cell = |i: usize, n: usize| (PI * ((i as f64 + 0.5) / n as f64 - 0.5)).cos();
     let (width, height) = (40, 32);
@@ -16,7 +16,7 @@ fn map() -> Importance {
     Importance::even(width, height, cells.collect(), DVec3::splat(0.5))
 }
 
-/// A warm lamp of 8 x 8 texels among 64 x 64.
+/// A warm lamp of 8 × 8 texels in a texture of 64 × 64.
 fn lamp(x: usize, y: usize) -> Image {
     let inside = |at: usize, from: usize| (from..from + 8).contains(&at);
     Image::from_fn(64, 64, |i, j| if inside(i, x) && inside(j, y) { [900.0, 700.0, 400.0] } else { [1.0; 3] }).unwrap()
@@ -57,15 +57,15 @@ fn place(texture: &Image, params: &PlaceParams) -> Placement {
     Pool::new(2).unwrap().run(|| map().place(texture, params, monitor.job()).unwrap())
 }
 
-/// One lamp comes to the middle of the surface, where it means most, from wherever it is in its texture, or to the corner,
-/// where it means least.
+/// A single lamp moves to the centre of the surface, where the importance is largest, from anywhere in its texture; or
+/// to the corner, where it is smallest.
 #[test]
 fn a_lamp_comes_to_where_it_means_most_or_least() {
     for (x, y) in [(10, 40), (50, 3)] {
         let at = DVec2::new(x as f64 + 4.0, y as f64 + 4.0) / 64.0;
         for (aim, where_to) in [(Aim::Brightest, DVec2::splat(0.5)), (Aim::Darkest, DVec2::ZERO)] {
             let found = place(&lamp(x, y), &PlaceParams { aim, ..PlaceParams::default() });
-            // The texture's point `at` is seen where `uv + offset = at`.
+            // The texture's point `at` appears where `uv + offset = at`.
             let off = at - found.pose.offset - where_to;
             let off = off - off.round();
             assert!(off.abs().max_element() < 0.01, "{aim:?}: {:?}", found.pose);
@@ -75,7 +75,7 @@ fn a_lamp_comes_to_where_it_means_most_or_least() {
     }
 }
 
-/// With scale and rotation free as well a target that is reachable is met, and its prediction is that of `respond`.
+/// With free scale and rotation, a reachable target is met, and the prediction equals that of `respond`.
 #[test]
 fn a_target_is_met_by_moving_the_lamp() {
     let texture = lamp(10, 40);
@@ -97,12 +97,12 @@ fn a_target_is_met_by_moving_the_lamp() {
         let again = map().respond(&texture, &matrix, Monitor::default().job()).unwrap();
         assert_eq!(again.light, found.response.light);
     }
-    // Bounds hold: the lamp may not move.
+    // Bounds hold: the lamp must not move.
     let held = PlaceParams { min: Pose::IDENTITY, max: Pose::IDENTITY, ..PlaceParams::default() };
     assert_eq!(place(&texture, &held).pose, Pose::IDENTITY);
 }
 
-/// A pattern with several periods, and noise in it: the multi-start finds what trying all offsets finds.
+/// A pattern with several periods and noise: the multi-start search finds the optimum over all offsets.
 #[test]
 fn many_starts_find_the_best_of_a_periodic_pattern() {
     let texture = Image::from_fn(60, 60, |x, y| {
