@@ -68,8 +68,8 @@ pub struct Response {
 /// Largest number of cells along each side: such a map takes 200 MB. [convention]
 const MAX_CELLS: usize = 512;
 
-/// Look-ups along each side of a cell: at least 16, or 1024 divided by the number of cells where that is less; at most 64.
-/// With too few look-ups, texels cut by cell borders would get wrong weights, with a bias for periodic patterns.
+/// Look-ups along each side of a cell: at least 16, or 1024 divided by the number of cells if that is less; at most 64. With
+/// too few look-ups, texels cut by cell borders would get wrong weights, with a bias for periodic patterns.
 /// [judged, not recorded]
 const MIN_LOOK_UPS: usize = 16;
 const LOOK_UPS_ACROSS: usize = 1024;

@@ -38,7 +38,7 @@ impl Terms<'_> {
         };
         let chosen: Vec<usize> = (0..x.len()).map(nearest).collect();
         let light = self.matrix.chunks_exact(x.len()).map(|row| dot(row, x)).collect();
-        // Start from the nearest levels of all groups, and from unrounded powers, which the first round replaces one by one.
+        // Start from the nearest levels of all groups, and from unrounded powers, which the first round rounds in turn.
         let after = State { powers: x.to_vec(), chosen, light };
         let mut at_once = after.clone();
         (0..x.len()).for_each(|j| self.set(&mut at_once, j, after.chosen[j], levels));

@@ -59,8 +59,8 @@ impl Sampler {
     fn point(&self, index: u32) -> [u32; 4] {
         let row = |byte: usize| &SOBOL[byte][(index >> (8 * byte)) as usize & 255];
         let low = row(3);
-        // Indices below 256 differ only in their low eight bits. Shuffling flips their higher bits alike, which XORs all
-        // points with one constant, and so does the scrambling of the points.
+        // Indices below 256 differ only in their low eight bits. Shuffling flips their higher bits alike, which XORs
+        // all points with one constant, and so does the scrambling of the points.
         if self.index & 0x00ff_ffff == 0 {
             return *low;
         }

@@ -161,7 +161,7 @@ fn other_light_that_is_too_bright_is_named() {
 #[test]
 fn every_reason_is_told() {
     let (world, lamps) = lamp_room(&[[3, 3], [12, 12]], &[1.0; 2]);
-    let told = |world: &World, goals: &[Goal], params: &GroupParams| {
+    let reason_for = |world: &World, goals: &[Goal], params: &GroupParams| {
         let responses = respond(world, &lamps, goals);
         powers(&responses, goals, params).unwrap().unreachable.unwrap_or_default()
     };
@@ -171,27 +171,28 @@ fn every_reason_is_told() {
     let mut redless = (**world.scene()).clone();
     redless.materials[0].base_color.x = 0.0;
     let redless = World::build(Arc::new(redless), Monitor::default().job()).unwrap();
-    let reason = told(&redless, &[floor(Vec3::splat(5.0))], &free);
+    let reason = reason_for(&redless, &[floor(Vec3::splat(5.0))], &free);
     assert!(reason.contains("in red") && reason.contains("no light of these lamps finds its way there"), "{reason}");
     // Groups that cannot produce a colour, and contradictory goals, with fixed and with free colours.
-    let reason = told(&world, &[floor(Vec3::new(9.0, 5.0, 1.0))], &kept);
+    let reason = reason_for(&world, &[floor(Vec3::new(9.0, 5.0, 1.0))], &kept);
     assert!(reason.contains("a colour that the groups do not have"), "{reason}");
     let torn = [floor(Vec3::splat(5.0)), floor(Vec3::splat(9.0))];
-    let reason = told(&world, &torn, &free);
+    let reason = reason_for(&world, &torn, &free);
     assert!(reason.contains("different things") && !reason.contains("colours"), "{reason}");
     let lux = torn.map(|goal| Goal { aspect: Aspect::Luminance, ..goal });
-    let reason = told(&world, &lux, &kept);
+    let reason = reason_for(&world, &lux, &kept);
     assert!(
         reason.contains("luminance") && reason.contains("different things") && !reason.contains("colour"),
         "{reason}"
     );
     // A bound, and other lights (to be below them, the power would have to be negative).
-    let reason = told(&world, &[floor(Vec3::splat(1e6))], &GroupParams { max_scale: vec![1.0; 2], ..kept.clone() });
+    let reason =
+        reason_for(&world, &[floor(Vec3::splat(1e6))], &GroupParams { max_scale: vec![1.0; 2], ..kept.clone() });
     assert!(reason.contains("all groups are at their largest power"), "{reason}");
     let mut bright = (**world.scene()).clone();
     bright.lights.push(PunctualLight::Point { position: Vec3::new(2.0, 1.0, 2.0), intensity: Vec3::splat(1e4) });
     let bright = World::build(Arc::new(bright), Monitor::default().job()).unwrap();
-    let reason = told(&bright, &[floor(Vec3::ONE)], &kept);
+    let reason = reason_for(&bright, &[floor(Vec3::ONE)], &kept);
     assert!(reason.contains("the other lights alone are brighter"), "{reason}");
     // No response at all is an error.
     let mut black = (**world.scene()).clone();
