@@ -1,6 +1,5 @@
 //! The triangle data that shading a hit needs, in one cache line.
 
-use super::world::NONE;
 use crate::scene::Mesh;
 use glam::{DVec3, Vec2, Vec3};
 
@@ -24,6 +23,9 @@ pub struct Facet {
 
 /// Relative rounding error of an interpolated point: sixteen errors of 2^-24 of its largest coordinate. [rounding]
 pub const OFFSET: f32 = 1.0 / (1 << 20) as f32;
+/// Marks a missing triangle or emitter.
+pub const NONE: u32 = u32::MAX;
+/// Flag of a varying shading normal.
 const SMOOTH: u32 = 1 << 31;
 
 impl Facet {

@@ -6,11 +6,11 @@
 //!
 //! Not modelled: maintenance factors, cylindrical illuminance, glare ratings.
 
+use super::contribution::{LightSource, PathSink};
 use super::path::{self, Contributions};
 use super::sampler::Sampler;
 use super::vertex::Vertex;
 use super::world::World;
-use super::{LightSource, PathSink};
 use crate::error::{Error, Result, check_range};
 use crate::exec;
 use crate::image::{Image, MAX_SIDE, colour, try_vec};

@@ -3,13 +3,12 @@
 //! They use the paths of the main image and do not change its bits. The sums of a pass are in f64; the totals of a
 //! pixel are in f32 and grow pass by pass.
 
-use super::LightSource;
 use super::aov::{Aov, Surfaces};
 use super::bsdf::{Lobes, ScatterKind};
+use super::contribution::LightSource;
 use super::lpe::{Automaton, EmitterAs, Expression, Trail};
 use super::path::{Observer, PrimaryHit, Strategy};
-use super::shared::{MAX_SHARED, Scratch};
-use super::tape::LpeTape;
+use super::shared::MAX_SHARED;
 use super::world::{Pane, World};
 use crate::error::{Error, Result};
 use crate::exec;
@@ -75,12 +74,12 @@ pub struct Layer {
 
 /// The totals of all layers so far, tile by tile as the pixels of the main image.
 pub struct Layers<'a> {
-    world: &'a World,
+    pub(super) world: &'a World,
     outputs: &'a Outputs,
     /// The camera's position in world coordinates, and its unit viewing direction.
     eye: Vec3,
     forward: Vec3,
-    automaton: Automaton,
+    pub(super) automaton: Automaton,
     /// Numbers per pixel.
     width: usize,
     /// One worker at a time processes a tile, so the locks never wait.
@@ -168,11 +167,6 @@ impl<'a> Layers<'a> {
     /// A recorder for each path of a block.
     pub fn recorders(&self) -> Vec<Recorder<'_>> {
         (0..MAX_SHARED).map(|_| self.recorder()).collect()
-    }
-
-    /// Scratch memory for subpaths that several recorders replay.
-    pub fn scratch(&self) -> Scratch<LpeTape<'_>> {
-        Scratch::new(LpeTape::new(self.world, &self.automaton))
     }
 
     /// The images so far. `places` has the tile, the number within the tile and the sample count of each pixel.

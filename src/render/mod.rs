@@ -21,6 +21,7 @@ mod aov;
 mod ballot;
 mod bsdf;
 mod compiled_material;
+mod contribution;
 pub mod denoise;
 mod distribution;
 mod emissive;
@@ -32,6 +33,8 @@ pub mod illuminance;
 mod layers;
 mod light;
 pub mod lpe;
+mod output;
+mod params;
 pub mod parts;
 mod path;
 mod preview;
@@ -39,43 +42,27 @@ mod requirements;
 mod sampler;
 mod shared;
 mod tape;
+mod texture_context;
 mod vertex;
 mod world;
 
 pub use aov::Aov;
+pub use contribution::{LightSource, PathSink};
 pub use film::pilot::{self, Pilot};
 pub use layers::{Layer, Outputs};
+pub use output::Film;
+pub use params::Params;
 pub use requirements::Requirements;
 pub use world::World;
 
-use crate::error::{Error, Result, check_range};
-use crate::image::{Image, MAX_SIDE};
+use crate::error::Result;
 use crate::job::{Job, Monitor};
 use crate::scene::Camera;
 use film::{AdaptiveSampler, Canvas, Clock};
 use glam::{Vec2, Vec3};
+use params::check_camera;
 use sampler::Sampler;
 use vertex::Vertex;
-
-/// The light that a path contribution comes from.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum LightSource {
-    /// An emissive triangle; `uv` are the coordinates of the look-up in its emission texture.
-    Surface {
-        mesh: u32,
-        triangle: u32,
-        uv: Vec2,
-    },
-    /// Index of a punctual light of the scene.
-    Punctual(u32),
-    Environment,
-}
-
-/// Receives the contributions of a path; the sum of their products `importance * emission` is the estimate.
-pub trait PathSink {
-    /// `importance` is every factor but the emission: throughput × mis_weight / pdf.
-    fn add(&mut self, source: LightSource, importance: Vec3, emission: Vec3);
-}
 
 /// A point of a surface at which irradiance is estimated.
 #[derive(Clone, Copy, Debug)]
@@ -117,113 +104,6 @@ pub fn irradiance_in_air<S: PathSink>(
     if normal != Vec3::ZERO && position.is_finite() {
         let vertex = Vertex::free(world, position, normal);
         path::gather(world, &vertex, true, &mut Sampler::new(seed, sample), &mut path::Contributions(sink));
-    }
-}
-
-#[derive(Clone, Debug, PartialEq)]
-pub struct Params {
-    /// Size of the image in pixels, each in `[1, 65536]`.
-    pub width: usize,
-    pub height: usize,
-    /// Paths per pixel, in `[1, 1 << 20]`: for each pixel without an error target, the mean over the image with one.
-    pub samples: u32,
-    /// Stop when [`Film::error`] falls to this value, with paths allocated to minimise it; 0 = never.
-    pub target_error: f32,
-    /// Stop when each tile of 8 × 8 pixels reaches this error: the root mean square over its pixels of the half-width
-    /// of the 95 % interval of the luminance, relative to that luminance. 0.1 means "within 10 % of the value, 19 times
-    /// out of 20". Pixels darker than a tenth of the image's mean luminance are measured against that tenth. A tile
-    /// gets at most 64 times `samples` paths per pixel, though it may miss the target. 0 = never. If several targets
-    /// are set, all of them are met.
-    pub pixel_error: f32,
-    /// Stop when [`Film::relative_error`] falls to this value, with paths allocated to minimise it; 0 = never.
-    pub relative_error: f32,
-    /// Stop after this many milliseconds; 0 = never.
-    pub time_budget_ms: u32,
-    /// End every path when its remaining bounces carry at most this share of all scattered light, in `[0, 1)`
-    /// ([`Requirements::bounces`]); the image is too dark by up to that share. 0 = never: only Russian roulette ends
-    /// paths.
-    pub bounce_error: f32,
-    /// Strength of the filter that makes [`Film::preview`] (`denoise`), in `[0, 10]`, usually 1; 0 = no preview, for
-    /// final images.
-    pub preview: f32,
-    pub seed: u64,
-    /// Images to render beside the main image.
-    pub outputs: Outputs,
-}
-
-impl Default for Params {
-    fn default() -> Self {
-        Self {
-            width: 1280,
-            height: 720,
-            samples: 64,
-            target_error: 0.0,
-            pixel_error: 0.0,
-            relative_error: 0.0,
-            time_budget_ms: 0,
-            bounce_error: 0.0,
-            preview: 0.0,
-            seed: 1,
-            outputs: Outputs::default(),
-        }
-    }
-}
-
-impl Params {
-    /// Checks that every setting is in its range.
-    pub fn check(&self) -> Result<()> {
-        check_range("width", self.width, 1, MAX_SIDE)?;
-        check_range("height", self.height, 1, MAX_SIDE)?;
-        check_range("samples", self.samples, 1, 1 << 20)?;
-        check_range("target_error", self.target_error, 0.0, f32::MAX)?;
-        check_range("pixel_error", self.pixel_error, 0.0, f32::MAX)?;
-        check_range("relative_error", self.relative_error, 0.0, f32::MAX)?;
-        check_range("bounce_error", self.bounce_error, 0.0, 1.0f32.next_down())?;
-        check_range("preview", self.preview, 0.0, 10.0)?;
-        Ok(())
-    }
-}
-
-/// The image rendered so far; it stays usable after a cancel or at the end of the time budget.
-#[derive(Clone, Debug)]
-pub struct Film {
-    /// Mean radiance per pixel, linear RGB in cd/m². A pixel without paths shows a nearby pixel.
-    pub beauty: Image,
-    /// Variance of that mean per channel, each pixel from its own paths; infinite below two paths. [`Film::interval`]
-    /// derives confidence intervals from it.
-    pub variance: Image,
-    /// Number of paths of each pixel; one channel.
-    pub paths: Image,
-    /// Mean number of paths per pixel so far.
-    pub samples: u32,
-    /// Root mean square over pixels and channels of the standard error, relative to the mean of the image.
-    pub error: f64,
-    /// Root mean square of the standard error relative to the radiance of each pixel (mean of its channels, at least a
-    /// hundredth of the image's mean). With few paths it overestimates: with 8 paths by about a quarter.
-    pub relative_error: f64,
-    /// Number of paths dropped because their radiance was not finite.
-    pub discarded: u64,
-    /// The additional images: those of expressions in order, then the AOVs in order.
-    pub layers: Vec<Layer>,
-    /// The filtered image and an estimate of its bias, if requested. It is not an unbiased estimate.
-    pub preview: Option<denoise::Output>,
-}
-
-impl Film {
-    /// Clones the film, or returns an error if there is no memory for the copy.
-    pub fn try_clone(&self) -> Result<Self> {
-        let layer = |l: &Layer| {
-            Ok(Layer { image: l.image.try_clone()?, name: l.name.clone(), expression: l.expression.clone(), ..*l })
-        };
-        let preview = |p: &denoise::Output| Ok(denoise::Output { image: p.image.try_clone()?, ..*p });
-        Ok(Self {
-            beauty: self.beauty.try_clone()?,
-            variance: self.variance.try_clone()?,
-            paths: self.paths.try_clone()?,
-            layers: self.layers.iter().map(layer).collect::<Result<_>>()?,
-            preview: self.preview.as_ref().map(preview).transpose()?,
-            ..*self
-        })
     }
 }
 
@@ -271,19 +151,6 @@ pub fn run(world: &World, camera: &Camera, params: &Params, job: Job, publish: &
     };
     job.report(1.0);
     Ok(film)
-}
-
-fn check_camera(camera: &Camera) -> Result<()> {
-    let vectors = [camera.position, camera.forward, camera.up];
-    let sees = camera.forward.cross(camera.up).length_squared() > 0.0;
-    if vectors.iter().any(|v| !v.is_finite()) || !sees || !(camera.fov_y > 0.0 && camera.fov_y < std::f32::consts::PI) {
-        return Err(Error::argument(format!(
-            "camera {:?} cannot see: its position must be finite, forward and up must not be parallel, and fov_y (now {}) \
-             must lie in (0, pi)",
-            camera.name, camera.fov_y
-        )));
-    }
-    Ok(())
 }
 
 #[cfg(test)]

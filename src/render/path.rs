@@ -5,12 +5,14 @@
 //! the vertex before the pane. Contributions are not clamped: the estimate is unbiased.
 
 use super::bsdf::{Bsdf, BsdfSample, Lobes, ScatterKind};
+use super::contribution::{LightSource, PathSink};
 use super::environment;
+use super::facet::NONE;
 use super::light::{LightEnd, LightSample, Receiver};
 use super::sampler::Sampler;
 use super::vertex::Vertex;
-use super::world::{NONE, Pane, World};
-use super::{LightSource, PathSink};
+use super::world::{Pane, World};
+
 use crate::scene::accel::Ray;
 use glam::{Vec2, Vec3};
 

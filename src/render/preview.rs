@@ -1,8 +1,10 @@
 //! Previews of a render in progress: runs `denoise` on the render's own outputs and adds the guide images it needs.
 
+use super::aov::Aov;
 use super::denoise::{self, Input};
 use super::film::Canvas;
-use super::{Aov, Film, Params};
+use super::output::Film;
+use super::params::Params;
 use crate::error::{Error, ErrorKind, Result};
 use crate::job::Job;
 

@@ -1,11 +1,11 @@
 //! Recordings of subpaths: one that sums contributions, one that also tracks the states of light path expressions.
 
-use super::LightSource;
 use super::bsdf::{Lobes, ScatterKind};
-use super::layers::Recorder;
+use super::contribution::LightSource;
+use super::layers::{Layers, Recorder};
 use super::lpe::{Automaton, PathOutcome, Trail};
 use super::path::{Observer, Strategy};
-use super::shared::{ReplayObserver, Tape};
+use super::shared::{ReplayObserver, Scratch, Tape};
 use super::world::{Pane, World};
 use glam::Vec3;
 
@@ -107,6 +107,13 @@ impl Tape for LpeTape<'_> {
     fn end(&mut self) -> bool {
         self.trail.end_from(&self.origins, &mut self.outcome);
         self.sum != Vec3::ZERO
+    }
+}
+
+impl Layers<'_> {
+    /// Scratch memory for subpaths that several recorders replay.
+    pub fn scratch(&self) -> Scratch<LpeTape<'_>> {
+        Scratch::new(LpeTape::new(self.world, &self.automaton))
     }
 }
 

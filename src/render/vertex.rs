@@ -1,13 +1,12 @@
 //! A surface point on a path: its position, orientation and material.
 
 use super::bsdf::{Bsdf, Substance};
-use super::compiled_material::{self, CompiledMaterial};
-use super::facet::{self, Facet};
+use super::facet::{self, Facet, NONE};
 use super::ggx::AlbedoTable;
-use super::world::{NONE, World};
+use super::texture_context::TextureContext;
+use super::world::World;
 use crate::scene::accel::{Hit, Ray};
-use crate::scene::{Material, Mesh, TextureRef};
-use glam::{Vec2, Vec3, Vec4};
+use glam::{Vec2, Vec3};
 
 pub struct Vertex {
     pub mesh: u32,
@@ -81,7 +80,7 @@ impl Vertex {
         let shading =
             if facet.is_smooth() || compiled.has_normal_map { self.shading_normal(world, facet) } else { self.normal };
         let substance = if compiled.is_textured {
-            TextureContext::new(world, facet, self.triangle, self.barycentric).substance(compiled)
+            TextureContext::new(world.scene(), facet, self.triangle, self.barycentric).substance(compiled)
         } else {
             compiled.substance
         };
@@ -89,7 +88,7 @@ impl Vertex {
     }
 
     fn shading_normal(&self, world: &World, facet: &Facet) -> Vec3 {
-        let context = TextureContext::new(world, facet, self.triangle, self.barycentric);
+        let context = TextureContext::new(world.scene(), facet, self.triangle, self.barycentric);
         let (mesh, material) = (context.mesh, context.material);
         let mut normal = self.normal;
         if !mesh.normals.is_empty() {
@@ -126,74 +125,5 @@ impl<'w> Surface<'w> {
     #[inline]
     pub fn seen_from(&self, wo: Vec3) -> Bsdf<'w> {
         Bsdf::new(&self.substance, self.layered, self.normals, wo, self.table)
-    }
-}
-
-/// A point of a triangle with its mesh and material, for texture look-ups.
-pub struct TextureContext<'w> {
-    world: &'w World,
-    pub mesh: &'w Mesh,
-    pub material: &'w Material,
-    triangle: u32,
-    barycentric: Vec2,
-}
-
-impl<'w> TextureContext<'w> {
-    /// `triangle` is the index in the mesh.
-    pub fn new(world: &'w World, facet: &Facet, triangle: u32, barycentric: Vec2) -> Self {
-        let scene = world.scene();
-        let (mesh, material) = (&scene.meshes[facet.mesh as usize], &scene.materials[facet.material()]);
-        Self { world, mesh, material, triangle, barycentric }
-    }
-
-    /// Opacity (coverage) of the surface at this point.
-    pub fn opacity(&self) -> f32 {
-        let texture = self.material.base_color_texture.as_ref();
-        self.material.alpha * texture.map_or(1.0, |t| self.look_up(t).w)
-    }
-
-    /// The material at this point.
-    pub fn substance(&self, compiled: &CompiledMaterial) -> Substance {
-        if !compiled.is_textured {
-            return compiled.substance;
-        }
-        let material = self.material;
-        let mut base = material.base_color;
-        if let Some(texture) = &material.base_color_texture {
-            base *= self.look_up(texture).truncate();
-        }
-        let (mut metallic, mut roughness) = (material.metallic, material.roughness);
-        if let Some(texture) = &material.metallic_roughness_texture {
-            let texel = self.look_up(texture);
-            (roughness, metallic) = (roughness * texel.y, metallic * texel.z);
-        }
-        compiled_material::substance(material, base, metallic, roughness)
-    }
-
-    fn look_up(&self, texture: &TextureRef) -> Vec4 {
-        let uvs = &self.mesh.uvs[texture.uv_set];
-        let mut uv = Vec2::ZERO;
-        if !uvs.is_empty() {
-            let [p, q, r] = self.mesh.triangles[self.triangle as usize].map(|i| uvs[i as usize]);
-            let v = self.barycentric;
-            uv = texture.transform.transform_point2(p * (1.0 - v.x - v.y) + q * v.x + r * v.y);
-        }
-        self.world.scene().textures[texture.texture].sample(uv)
-    }
-
-    fn corner_uvs(&self, texture: &TextureRef) -> Option<[Vec2; 3]> {
-        let uvs = &self.mesh.uvs[texture.uv_set];
-        let corners = || self.mesh.triangles[self.triangle as usize];
-        (!uvs.is_empty()).then(|| corners().map(|i| texture.transform.transform_point2(uvs[i as usize])))
-    }
-
-    /// Directions of increasing u and increasing v.
-    fn tangents(&self, facet: &Facet, texture: &TextureRef) -> Option<(Vec3, Vec3)> {
-        let [a, b, c] = facet.corners();
-        let [p, q, r] = self.corner_uvs(texture)?;
-        let (e, f, d, g) = (b - a, c - a, q - p, r - p);
-        let determinant = d.perp_dot(g);
-        let (u, v) = ((e * g.y - f * d.y) / determinant, (f * d.x - e * g.x) / determinant);
-        (u.is_finite() && v.is_finite()).then_some((u, v))
     }
 }

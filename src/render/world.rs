@@ -2,11 +2,11 @@
 
 use super::compiled_material::CompiledMaterial;
 use super::emissive::Emitters;
-use super::facet::{self, Facet};
+use super::facet::{self, Facet, NONE};
 use super::ggx::AlbedoTable;
 use super::light::Lights;
 use super::requirements::{self, Requirements};
-use super::vertex::TextureContext;
+use super::texture_context::TextureContext;
 use crate::error::{Error, Result};
 use crate::image::try_vec;
 use crate::job::Job;
@@ -45,9 +45,6 @@ pub struct Pane {
     /// Share of the light transmitted by the surface, per channel.
     pub through: Vec3,
 }
-
-/// Marks a missing triangle or emitter.
-pub const NONE: u32 = u32::MAX;
 
 impl World {
     /// Validates a scene and prepares it for rendering. The scene may be empty. Call it on the library's own thread
@@ -280,7 +277,7 @@ impl World {
     }
 
     fn context(&self, facet: &Facet, hit: &Hit) -> TextureContext<'_> {
-        TextureContext::new(self, facet, hit.triangle - self.first(facet.mesh), Vec2::new(hit.u, hit.v))
+        TextureContext::new(&self.scene, facet, hit.triangle - self.first(facet.mesh), Vec2::new(hit.u, hit.v))
     }
 }
 

@@ -14,7 +14,7 @@ mod tiles;
 pub use emitter::{Emitter, mean_channel};
 
 use super::facet::Facet;
-use super::light::Bounds;
+use super::light::bounds::Bounds;
 use crate::error::Result;
 use crate::image::{make_room, try_collect, try_vec, try_with_capacity};
 use crate::scene::Scene;

@@ -21,7 +21,7 @@ use crate::error::Result;
 use crate::exec;
 use crate::image::{colour::luminance, try_vec};
 use crate::job::Job;
-use crate::render::Params;
+use crate::render::params::Params;
 use glam::DVec3;
 
 /// Largest number of pixels in the coarsest image. [judged, not recorded]

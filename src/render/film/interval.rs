@@ -7,11 +7,11 @@
 //! Their means with binomial weights over 7 × 7 pixels give a coverage of 93 to 97 % from 8 paths on;
 //! `benches/error_control.rs` measures it.
 
-use super::super::Film;
 use crate::error::Result;
 use crate::exec;
 use crate::image::Image;
 use crate::job::Job;
+use crate::render::output::Film;
 
 /// Half-width in standard deviations of the interval that contains 95 % of a normal distribution.
 pub const NORMAL_95: f64 = 1.959_964;

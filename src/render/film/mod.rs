@@ -30,12 +30,13 @@ pub use interval::pooled;
 pub use sums::Sums;
 
 use super::layers::{Layers, Recorder};
+use super::output::Film;
+use super::params::Params;
 use super::path::{self, MAX_BOUNCES, PathLength};
 use super::sampler::Sampler;
 use super::shared::Start;
 use super::tape::Sum;
 use super::world::World;
-use super::{Film, Params};
 use crate::error::Result;
 use crate::exec;
 use crate::image::{Image, try_vec};

@@ -25,7 +25,8 @@ use crate::error::Result;
 use crate::exec;
 use crate::image::try_collect;
 use crate::job::Job;
-use crate::render::{Params, World};
+use crate::render::params::{self, Params};
+use crate::render::world::World;
 use crate::rng::Rng;
 use crate::scene::Camera;
 use std::sync::atomic::AtomicU64;
@@ -102,7 +103,7 @@ pub fn run(
     job: Job,
 ) -> Result<Pilot> {
     params.check()?;
-    crate::render::check_camera(camera)?;
+    params::check_camera(camera)?;
     let grid = Grid { width: params.width, height: params.height };
     let eye = Eye::new(world, camera, params);
     let params = &Params { seed: params.seed ^ SALT, ..params.clone() };

@@ -14,8 +14,9 @@ use super::{Eye, paths};
 use crate::error::Result;
 use crate::exec;
 use crate::job::Job;
+use crate::render::params::Params;
 use crate::render::path::PathLength;
-use crate::render::{Params, World};
+use crate::render::world::World;
 use glam::{DVec3, Vec3};
 use std::sync::atomic::AtomicU64;
 

@@ -5,13 +5,13 @@
 //! selection probability of a group is half by its power and half uniform: power ignores occlusion by walls, and no
 //! group may starve.
 
-mod bounds;
+pub(super) mod bounds;
 mod punctual;
 mod tree;
 
 pub use bounds::{Bounds, Receiver};
 
-use super::LightSource;
+use super::contribution::LightSource;
 use super::distribution::Distribution;
 use super::emissive::{Emitters, mean_channel};
 use super::environment::{self, EnvironmentSampler};

@@ -4,7 +4,7 @@ use super::parse::{Event, kind, mode};
 use super::{EmitterAs, Expression};
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::patches::Patches;
-use crate::render::LightSource;
+use crate::render::contribution::LightSource;
 use crate::scene::{Mesh, Scene, Texture, Wrap, texel_at};
 use glam::Vec2;
 use std::collections::{BTreeMap, BTreeSet};

@@ -9,7 +9,7 @@ use super::alphabet::{Alphabet, SCATTERS, Scatter};
 use super::parse::{Event, EventSet, Node, kind};
 use super::{EmitterAs, Expression};
 use crate::error::{Error, Result};
-use crate::render::LightSource;
+use crate::render::contribution::LightSource;
 use crate::scene::Scene;
 use std::collections::BTreeMap;
 

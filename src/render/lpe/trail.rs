@@ -11,8 +11,8 @@
 use super::alphabet::Scatter;
 use super::automaton::{Automaton, DEAD};
 use super::sparse_sums::SparseSums;
-use crate::render::LightSource;
 use crate::render::bsdf::{Lobes, ScatterKind};
+use crate::render::contribution::LightSource;
 use crate::render::path::Strategy;
 use crate::render::world::{Pane, World};
 use glam::{Vec3, Vec3A};

@@ -4,7 +4,7 @@ use super::{File, Part};
 use crate::error::{Error, Result};
 use crate::image::try_vec;
 use crate::job::Job;
-use crate::render::Params;
+use crate::render::params::Params;
 
 /// Checks the cover and returns the order of summation: by first path, then from top to bottom and from left to right.
 pub fn order(files: &[File], params: &Params, job: Job) -> Result<Vec<usize>> {

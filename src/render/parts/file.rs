@@ -4,9 +4,9 @@ use super::{Identity, Part};
 use crate::error::{Error, Result};
 use crate::image::numbers::{self, Head};
 use crate::image::{Image, io};
-use crate::render::Params;
 use crate::render::film::Sums;
 use crate::render::layers::Layers;
+use crate::render::params::Params;
 use std::path::{Path, PathBuf};
 
 /// Prefix of all attribute names in the header.

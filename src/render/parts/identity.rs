@@ -1,7 +1,7 @@
 //! The identity of a render, which all its parts share, as readable texts for files.
 
-use crate::render::Params;
 use crate::render::lpe::EmitterAs;
+use crate::render::params::Params;
 use crate::scene::{Camera, Scene};
 
 pub struct Identity {

@@ -19,7 +19,10 @@ mod identity;
 pub use file::File;
 
 use super::film::{Canvas, Sums, TILE};
-use super::{Film, Params, World, check_camera, preview};
+use super::output::Film;
+use super::params::{Params, check_camera};
+use super::preview;
+use super::world::World;
 use crate::error::{Error, Result, check_range};
 use crate::job::Job;
 use crate::render::layers::Layers;
