@@ -10,10 +10,10 @@
 //! The residuals are those of goals, each a mean over many paths. Single texels are never compared: their noise would
 //! bias the powers towards dark.
 
-use super::TargetStatus;
 use super::estimate::{BATCHES, STUDENT_T, mean, standard_error};
 use super::responses::{Aspect, Estimate, Goal, Responses};
 use super::sided::{self, Problem, Sense};
+use super::solution::TargetStatus;
 use super::steps::Terms;
 use crate::error::{Error, ErrorKind, Result, check_range};
 use crate::exec;

@@ -10,13 +10,13 @@
 
 use super::bins::{Bins, Division};
 use super::estimate::BATCHES;
-use super::placement::Cells;
+use super::params::Params;
 use super::responses::{Estimate, Goal};
 use super::sided::Sense;
+use super::solution::Solution;
 use super::solve::{self, Measured};
 use super::target::Sampler;
 use super::transport::{Batches, Stop};
-use super::{Params, Solution};
 use crate::error::{Error, Result, check_range};
 use crate::exec;
 use crate::image::Image;
@@ -63,6 +63,13 @@ pub struct Response {
     /// is a third of it.
     pub band_error: DVec3,
     measured: Vec<DVec3>,
+}
+
+/// The mean importance map.
+pub(super) struct Cells {
+    pub width: usize,
+    pub height: usize,
+    pub importance: Vec<DVec3>,
 }
 
 /// Largest number of cells along each side: such a map takes 200 MB. [convention]

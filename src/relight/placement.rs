@@ -11,7 +11,7 @@
 use super::band::Pyramid;
 use super::descent::{self, Bounds};
 use super::groups::LUMINANCE;
-use super::importance::{Importance, Response};
+use super::importance::{Cells, Importance, Response};
 use crate::error::{Error, Result, check_range};
 use crate::exec;
 use crate::image::Image;
@@ -198,13 +198,6 @@ struct Search {
     texels: DVec2,
     background: DVec3,
     aim: Aim,
-}
-
-/// The mean importance map.
-pub(super) struct Cells {
-    pub width: usize,
-    pub height: usize,
-    pub importance: Vec<DVec3>,
 }
 
 impl Search {

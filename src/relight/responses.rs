@@ -3,10 +3,10 @@
 use super::bins::{Bins, Division};
 use super::estimate::{BATCHES, STUDENT_T, mean, standard_error};
 use super::lamps::Lamps;
+use super::params::{Params, Place, Quantity};
 use super::sided::Sense;
 use super::target::Sampler;
 use super::transport::{Batches, Means, Stop};
-use super::{Params, Place, Quantity};
 use crate::error::{Error, Result};
 use crate::image::try_vec;
 use crate::job::Job;

@@ -2,8 +2,8 @@
 
 use super::estimate::{BATCHES, STUDENT_T, mean, pseudo_values, standard_error, without};
 use super::sided::Sense;
+use super::solution::{Solution, TargetStatus};
 use super::transport::Pairs;
-use super::{Solution, TargetStatus};
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::colour;
 use glam::DVec3;

@@ -1,6 +1,6 @@
 //! Sampling of target points uniform by area, with their reflectance.
 
-use super::{Place, Quantity};
+use super::params::{Place, Quantity};
 use crate::error::{Error, Result};
 use crate::render::{self, PathSink, SurfacePoint, World};
 use crate::scene::{Material, Mesh, Scene};

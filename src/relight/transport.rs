@@ -1,8 +1,8 @@
 //! Light transport: traces paths from the target and sums their light by bin, in independent batches.
 
-use super::Params;
 use super::bins::{Bins, Sorter};
 use super::estimate::BATCHES;
+use super::params::Params;
 use super::target::Sampler;
 use crate::error::Result;
 use crate::exec;

@@ -8,7 +8,7 @@ use crate::error::ErrorKind;
 use crate::exec::Pool;
 use crate::job::Monitor;
 use crate::scene::{Material, Mesh, PunctualLight, Scene};
-use glam::Vec2;
+use glam::{DVec3, Vec2};
 use std::sync::Arc;
 
 const EXACTLY: [Sense; 3] = [Sense::Exactly; 3];

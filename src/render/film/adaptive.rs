@@ -12,20 +12,16 @@
 //! neighbours (after Dammertz et al. 2010, "A hierarchical automatic stopping condition for Monte Carlo global
 //! illumination"). The tests and `benches/error_control.rs` measure the remaining bias.
 
-use super::grid::{AREA, TILE};
-use super::interval::{NORMAL_95, pooled};
-use super::pixel::Pixel;
-use super::roulette::{mean, shrinkage};
-use super::{Canvas, Clock};
+use super::canvas::Canvas;
+use super::clock::Clock;
+use super::grid::coarse_stride;
+use super::pass::Pass;
+use super::statistics::{Statistics, whole};
 use crate::error::Result;
-use crate::exec;
-use crate::image::{colour::luminance, try_vec};
+use crate::image::try_vec;
 use crate::job::Job;
 use crate::render::params::Params;
-use glam::DVec3;
 
-/// Largest number of pixels in the coarsest image. [judged, not recorded]
-const COARSE_PIXELS: usize = 1024;
 /// Paths per pixel of the first complete pass. [judged, not recorded]
 const FIRST_PASS_PATHS: u32 = 4;
 /// Paths per pixel before the first adaptive decision. [judged, not recorded]
@@ -36,138 +32,6 @@ const MAX_TILE_RATIO: u32 = 64;
 /// Smallest luminance, relative to the mean of the image, to which the error of a pixel is related. [judged, not
 /// recorded]
 const MIN_RELATIVE_LUMINANCE: f64 = 0.1;
-/// Smallest radiance, relative to the mean of the image, to which the error of a pixel is related in the error of the
-/// whole image. It may be lower than for errors of single pixels: a dark pixel does not hold up the others. [judged,
-/// not recorded]
-const MIN_RELATIVE_RADIANCE: f64 = 0.01;
-
-/// The number of paths of each pixel after a pass.
-pub struct Pass {
-    /// Paths per pixel of each tile.
-    counts: Vec<u32>,
-    /// The pass covers only pixels whose column and row are multiples of this power of two.
-    stride: usize,
-}
-
-impl Pass {
-    /// A pass of `count` paths for every pixel.
-    pub fn uniform(tiles: usize, count: u32) -> Result<Self> {
-        Ok(Self { counts: try_vec(tiles, count)?, stride: 1 })
-    }
-
-    pub fn count(&self, tile: usize, x: usize, y: usize) -> u32 {
-        if (x | y) & (self.stride - 1) == 0 { self.counts[tile] } else { 0 }
-    }
-
-    /// Whether the pass covers all pixels.
-    pub fn is_dense(&self) -> bool {
-        self.stride == 1
-    }
-
-    /// Whether the pass covers no pixel of the tile with this corner; a coarse pass covers at most the first pixel of a
-    /// tile.
-    pub fn passes_over(&self, (left, top): (usize, usize)) -> bool {
-        self.stride >= TILE && (left | top) & (self.stride - 1) != 0
-    }
-
-    /// Mean number of paths per pixel of a tile.
-    pub fn per_pixel(&self, tile: usize) -> f64 {
-        f64::from(self.counts[tile]) / (self.stride * self.stride) as f64
-    }
-}
-
-/// Sums over the pixels of a tile or of the image.
-#[derive(Clone, Copy, Default)]
-pub struct Statistics {
-    pub paths: u64,
-    pixels: u32,
-    /// Largest number of paths of a pixel.
-    max_paths: u32,
-    /// Sum of the means of the pixels, averaged over the channels.
-    mean: f64,
-    /// Sum of the variances of these means.
-    variance: f64,
-    /// Sum of the variances of single paths.
-    path_variance: f64,
-}
-
-impl Statistics {
-    fn add(&mut self, other: &Self) {
-        self.paths += other.paths;
-        self.pixels += other.pixels;
-        self.max_paths = self.max_paths.max(other.max_paths);
-        self.mean += other.mean;
-        self.variance += other.variance;
-        self.path_variance += other.path_variance;
-    }
-
-    /// Mean radiance of the pixels.
-    fn mean_radiance(&self) -> f64 {
-        self.mean / f64::from(self.pixels.max(1))
-    }
-
-    /// Root mean square of the standard errors, relative to the mean radiance.
-    pub fn error(&self) -> f64 {
-        let variance = self.variance / f64::from(self.pixels.max(1));
-        if variance == 0.0 { 0.0 } else { variance.sqrt() / self.mean_radiance() }
-    }
-}
-
-impl Canvas<'_> {
-    /// The statistics of the whole image.
-    pub fn total(&self, job: Job) -> Result<Statistics> {
-        Ok(whole(&self.statistics(|_, _| 1.0, job)?))
-    }
-
-    /// The statistics of the whole image, with the error of each pixel relative to its own radiance.
-    pub fn relative_total(&self, job: Job) -> Result<Statistics> {
-        let mean = self.total(job.part(0.0, 0.0))?.mean_radiance();
-        Ok(whole(&self.relative_statistics(mean, job)?))
-    }
-
-    /// Statistics with relative errors. A pixel with a rare bright path has a large variance and a large mean; its
-    /// error is related to the mean without that path. With few paths, the mean of the tile counts instead.
-    fn relative_statistics(&self, mean: f64, job: Job) -> Result<Vec<Statistics>> {
-        let weight = |pixel: &Pixel, tile: f64| {
-            let shown = tile + (pixel.trimmed_mean() - tile) * shrinkage(f64::from(pixel.count()));
-            if mean > 0.0 { mean / shown.max(MIN_RELATIVE_RADIANCE * mean) } else { 1.0 }
-        };
-        self.statistics(weight, job)
-    }
-
-    /// `weight` is the factor on the error of a pixel, given the mean of its tile.
-    fn statistics(&self, weight: impl Fn(&Pixel, f64) -> f64 + Sync, job: Job) -> Result<Vec<Statistics>> {
-        exec::map(self.grid.tiles(), job, |tile| {
-            let mut sum = Statistics::default();
-            let shown = mean(self.tile(tile)).map_or(0.0, |(mean, _)| average(mean));
-            for pixel in self.tile(tile) {
-                let variance = average(pixel.variance()) * weight(pixel, shown).powi(2);
-                sum.paths += u64::from(pixel.count());
-                sum.pixels += 1;
-                sum.max_paths = sum.max_paths.max(pixel.count());
-                sum.mean += average(pixel.mean());
-                sum.variance += variance;
-                sum.path_variance += variance * f64::from(pixel.count());
-            }
-            sum
-        })
-    }
-
-    /// The mean square of the pixels' relative intervals, per tile.
-    fn relative_intervals(&self, floor: f64, job: Job) -> Result<Vec<f64>> {
-        let variance = pooled(&self.variance(job)?, job)?;
-        exec::map(self.grid.tiles(), job, |tile| {
-            let pixels = (0..AREA).filter_map(|i| self.grid.place(tile, i));
-            let square = |(x, y): (usize, usize)| {
-                // Add the standard errors of the channels: they are correlated within a path.
-                let error = f64::from(luminance(variance.rgb(x, y).map(f32::sqrt)));
-                let value = f64::from(luminance(self.pixel(x, y).mean().as_vec3())).max(floor);
-                if error == 0.0 { 0.0 } else { (NORMAL_95 * error / value).powi(2) }
-            };
-            pixels.map(square).sum::<f64>() / self.grid.area(tile) as f64
-        })
-    }
-}
 
 /// Chooses the passes of a render.
 pub struct AdaptiveSampler<'p> {
@@ -299,24 +163,4 @@ impl<'p> AdaptiveSampler<'p> {
         target_paths.iter_mut().zip(&deviations).for_each(|(w, d)| *w = w.max(needed.min(allowed) * d));
         Ok(())
     }
-}
-
-/// Mean of the channels.
-fn average(v: DVec3) -> f64 {
-    v.element_sum() / 3.0
-}
-
-/// Distance between the pixels of the coarsest image: a power of two.
-pub fn coarse_stride(width: usize, height: usize) -> usize {
-    let mut stride = 1;
-    while width.div_ceil(stride) * height.div_ceil(stride) > COARSE_PIXELS {
-        stride *= 2;
-    }
-    stride
-}
-
-fn whole(statistics: &[Statistics]) -> Statistics {
-    let mut whole = Statistics::default();
-    statistics.iter().for_each(|t| whole.add(t));
-    whole
 }

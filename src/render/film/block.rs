@@ -3,7 +3,7 @@
 //! A block has 4 × 2 pixels of a tile, or 2 × 4 in every other replication, so that the correlated errors of its pixels
 //! do not show as blocks. The blocks depend on the position in the image alone.
 
-use super::Eye;
+use super::eye::Eye;
 use super::grid::{AREA, TILE};
 use crate::render::layers::{Layers, Recorder};
 use crate::render::path::PathLength;

@@ -8,6 +8,9 @@ pub const TILE: usize = 8;
 /// Number of pixels in a tile.
 pub const AREA: usize = TILE * TILE;
 
+/// Largest number of pixels in the coarsest image. [judged, not recorded]
+const COARSE_PIXELS: usize = 1024;
+
 /// An image divided into tiles, row by row; the last tiles may extend beyond its right and lower borders.
 #[derive(Clone, Copy)]
 pub struct Grid {
@@ -63,6 +66,15 @@ impl Grid {
         };
         try_collect((0..values.len()).map(at))
     }
+}
+
+/// Distance between the pixels of the coarsest image: a power of two.
+pub fn coarse_stride(width: usize, height: usize) -> usize {
+    let mut stride = 1;
+    while width.div_ceil(stride) * height.div_ceil(stride) > COARSE_PIXELS {
+        stride *= 2;
+    }
+    stride
 }
 
 #[cfg(test)]

@@ -13,9 +13,9 @@
 //! therefore measured at three numbers of paths; at the largest of them only for some of the tiles, selected in
 //! proportion to their part of the variance at the second.
 
-use super::Eye;
-use super::adaptive::Pass;
+use super::eye::Eye;
 use super::grid::{AREA, Grid};
+use super::pass::Pass;
 pub use super::pixel::REPLICATIONS;
 use super::pixel::{Pixel, paths_of_replication};
 use super::prepass::Prepass;

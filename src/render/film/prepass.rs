@@ -5,12 +5,11 @@
 //! with equal results. These paths have seeds of their own and are not part of the image, so that they bias no
 //! estimate.
 
-use super::adaptive::coarse_stride;
 use super::block::seed_of;
-use super::grid::TILE;
+use super::eye::{Eye, paths};
+use super::grid::{TILE, coarse_stride};
 use super::pixel::Pixel;
 use super::roulette::{RouletteWeights, median};
-use super::{Eye, paths};
 use crate::error::Result;
 use crate::exec;
 use crate::job::Job;

@@ -3,8 +3,8 @@
 //! The path of a given index in a pixel is the same in every part, as are its replication and its position in the point
 //! sequence. The sums are in f64: for an f32 image, the order and the partition of the additions hardly ever show.
 
-use super::Eye;
 use super::block::{BlockPixel, BlockTracer, blocks};
+use super::eye::Eye;
 use super::grid::{AREA, Grid, TILE};
 use super::pixel::{REPLICATIONS, paths_of_replication};
 use super::prepass::Prepass;

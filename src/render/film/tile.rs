@@ -1,11 +1,11 @@
 //! Traces the paths of one tile of the image, pass by pass.
 
-use super::adaptive::Pass;
 use super::block::{BlockPixel, BlockTracer, blocks, seed_of};
+use super::eye::{Eye, paths};
 use super::grid::{AREA, Grid};
+use super::pass::Pass;
 use super::pixel::{Pixel, REPLICATIONS, paths_of_replication};
 use super::roulette::RouletteWeights;
-use super::{Eye, paths};
 use crate::render::layers::{Kept, Layers};
 use crate::render::path::PathLength;
 use crate::render::world::World;

@@ -1,6 +1,7 @@
 //! Checks that parts cover an image: every path of every pixel must be in exactly one part.
 
-use super::{File, Part};
+use super::file::File;
+use super::part::Part;
 use crate::error::{Error, Result};
 use crate::image::try_vec;
 use crate::job::Job;

@@ -1,6 +1,7 @@
 //! Files of parts (`image::numbers`): the sums, their place in the image, and the identity of the render.
 
-use super::{Identity, Part};
+use super::identity::Identity;
+use super::part::Part;
 use crate::error::{Error, Result};
 use crate::image::numbers::{self, Head};
 use crate::image::{Image, io};

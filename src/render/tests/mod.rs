@@ -16,6 +16,8 @@ mod requirements;
 mod shared;
 
 use super::*;
+use crate::error::Error;
+use crate::image::Image;
 use crate::job::Monitor;
 use crate::scene::{AlphaMode, Environment, Material, Mesh, PunctualLight, Scene, Texture, TextureRef};
 use glam::DVec3;
