@@ -135,66 +135,96 @@ pub fn analyse(scene: &Scene, table: Option<&AlbedoTable>) -> (Requirements, Vec
     for (index, material) in scene.materials.iter().enumerate() {
         let base = range(&material.base_color_texture);
         let layers = range(&material.metallic_roughness_texture);
-        let emission = range(&material.emission_texture);
         let compiled = compile_material(material, base, layers, range(&material.normal_texture));
         compiled_materials.push(compiled);
-        if !used[index] {
-            continue;
-        }
-        needed.alpha |= compiled.has_alpha;
-        needed.normal_maps |= compiled.has_normal_map;
-        for substance in extremes(material, base, layers) {
-            needed.include(&substance);
-            if substance.transmission != Vec3::ZERO && substance.roughness >= MIRROR_ROUGHNESS {
-                needed.frosted.get_or_insert(index);
-            }
-            let albedo = albedo_bound(&substance, table);
-            if needed.brightest.is_none() || albedo.max_element() > needed.albedo.max_element() {
-                needed.brightest = Some(index);
-            }
-            needed.albedo = needed.albedo.max(albedo);
-        }
-        if (material.emission * emission.high.truncate()).max_element() > 0.0 {
-            needed.surfaces = true;
-            needed.textured_surfaces |= !emission.is_constant();
-        }
-        for (texture, counts) in [
-            (&material.base_color_texture, compiled.is_textured || compiled.has_alpha),
-            (&material.metallic_roughness_texture, compiled.is_textured),
-            (&material.normal_texture, compiled.has_normal_map),
-            (&material.emission_texture, material.emission.max_element() > 0.0),
-        ] {
-            if let Some(t) = texture {
-                varied[t.texture] |= counts && !ranges[t.texture].is_constant();
-            }
-        }
-    }
-    for (index, mesh) in scene.meshes.iter().enumerate() {
-        let material = &scene.materials[mesh.material];
-        if material.transmission > 0.0 && material.metallic < 1.0 && mesh.is_closed() {
-            needed.solids += 1;
-            needed.first_solid.get_or_insert(index);
+        if used[index] {
+            needed.include_material(index, &compiled, extremes(material, base, layers), table);
+            needed.include_emission(material, range(&material.emission_texture));
+            mark_varied_textures(material, &compiled, &ranges, &mut varied);
         }
     }
     needed.textures = varied.iter().filter(|&&v| v).count();
-    for light in &scene.lights {
-        let (kind, strength) = match light {
-            PunctualLight::Point { intensity, .. } => (&mut needed.points, intensity),
-            PunctualLight::Spot { intensity, .. } => (&mut needed.spots, intensity),
-            PunctualLight::Directional { illuminance, .. } => (&mut needed.directional, illuminance),
-            PunctualLight::Luminaire { colour, .. } => (&mut needed.points, colour),
-        };
-        *kind |= strength.max_element() > 0.0;
-    }
-    needed.environment = match &scene.environment {
-        None => false,
-        Some(Environment::Constant(radiance)) => radiance.max_element() > 0.0,
-        Some(Environment::Image(image)) => range_of(image).high.truncate().max_element() > 0.0,
-    };
+    needed.include_solids(scene);
+    needed.include_lights(scene);
     (needed, compiled_materials)
 }
 
+/// Marks the textures of a material that affect its scattering or its emission.
+fn mark_varied_textures(material: &Material, compiled: &CompiledMaterial, ranges: &[Range], varied: &mut [bool]) {
+    for (texture, counts) in [
+        (&material.base_color_texture, compiled.is_textured || compiled.has_alpha),
+        (&material.metallic_roughness_texture, compiled.is_textured),
+        (&material.normal_texture, compiled.has_normal_map),
+        (&material.emission_texture, material.emission.max_element() > 0.0),
+    ] {
+        if let Some(t) = texture {
+            varied[t.texture] |= counts && !ranges[t.texture].is_constant();
+        }
+    }
+}
+
 impl Requirements {
+    /// Adds the kinds of scattering and the albedo of a material with these extreme parameter sets.
+    fn include_material(
+        &mut self,
+        index: usize,
+        compiled: &CompiledMaterial,
+        extremes: impl Iterator<Item = Substance>,
+        table: Option<&AlbedoTable>,
+    ) {
+        self.alpha |= compiled.has_alpha;
+        self.normal_maps |= compiled.has_normal_map;
+        for substance in extremes {
+            self.include(&substance);
+            if substance.transmission != Vec3::ZERO && substance.roughness >= MIRROR_ROUGHNESS {
+                self.frosted.get_or_insert(index);
+            }
+            let albedo = albedo_bound(&substance, table);
+            if self.brightest.is_none() || albedo.max_element() > self.albedo.max_element() {
+                self.brightest = Some(index);
+            }
+            self.albedo = self.albedo.max(albedo);
+        }
+    }
+
+    /// Adds the emission of a material with an emission texture of this range.
+    fn include_emission(&mut self, material: &Material, emission: Range) {
+        if (material.emission * emission.high.truncate()).max_element() > 0.0 {
+            self.surfaces = true;
+            self.textured_surfaces |= !emission.is_constant();
+        }
+    }
+
+    /// Counts the closed transparent meshes.
+    fn include_solids(&mut self, scene: &Scene) {
+        for (index, mesh) in scene.meshes.iter().enumerate() {
+            let material = &scene.materials[mesh.material];
+            if material.transmission > 0.0 && material.metallic < 1.0 && mesh.is_closed() {
+                self.solids += 1;
+                self.first_solid.get_or_insert(index);
+            }
+        }
+    }
+
+    /// Adds the punctual lights and the environment.
+    fn include_lights(&mut self, scene: &Scene) {
+        for light in &scene.lights {
+            let (kind, strength) = match light {
+                PunctualLight::Point { intensity, .. } => (&mut self.points, intensity),
+                PunctualLight::Spot { intensity, .. } => (&mut self.spots, intensity),
+                PunctualLight::Directional { illuminance, .. } => (&mut self.directional, illuminance),
+                PunctualLight::Luminaire { colour, .. } => (&mut self.points, colour),
+            };
+            *kind |= strength.max_element() > 0.0;
+        }
+        self.environment = match &scene.environment {
+            None => false,
+            Some(Environment::Constant(radiance)) => radiance.max_element() > 0.0,
+            Some(Environment::Image(image)) => range_of(image).high.truncate().max_element() > 0.0,
+        };
+    }
+
+    /// Adds the kinds of scattering of a parameter set.
     fn include(&mut self, s: &Substance) {
         self.diffuse |= s.diffuse != Vec3::ZERO;
         self.glass |= s.transmission != Vec3::ZERO;

@@ -122,23 +122,11 @@ pub fn run(
         discarded: &discarded,
     };
     let start = clock();
-    let render = |chosen: &mut [PilotTile], count: u32, part: Job| -> Result<Vec<TileSums>> {
-        let wanted = Pass::uniform(grid.tiles(), count)?;
-        exec::for_rows(chosen, 1, part, |_, chosen| {
-            let PilotTile { tile, pixels, seconds, paths, deep_weight, .. } = &mut chosen[0];
-            if *deep_weight > 0.0 {
-                let start = clock();
-                Tile::new(context, *tile, pixels, None).extend(&wanted, || part.is_cancelled());
-                *seconds += clock().saturating_sub(start).as_secs_f64();
-                *paths = f64::from(count);
-            }
-        })?;
-        job.check()?;
-        Ok(chosen.iter().map(|c| tile_sums(grid, c)).collect())
-    };
+    let render = |chosen: &mut [PilotTile], count: u32, part: Job| render_tiles(context, chosen, count, clock, part);
     let area = (grid.width * grid.height) as f64;
     let mean = |tile_sums: &[TileSums], of: &dyn Fn(&TileSums) -> f64| total(tile_sums, of) / area;
 
+    // Measure the variance at three numbers of paths; at the last one only for some of the tiles.
     let few = render(&mut chosen, PATHS[0], job.part(0.1, 0.2))?;
     let middle = render(&mut chosen, PATHS[1], job.part(0.2, 0.6))?;
     let part = |t: &TileSums| t.weight * t.variance;
@@ -150,22 +138,50 @@ pub fn run(
     let variances = [mean(&few, &|t| t.variance), mean(&middle, &|t| t.variance), many];
     let seconds = clock().saturating_sub(start).as_secs_f64();
 
-    // Correct the time per path for the difference between the selected tiles and all tiles of the image.
-    let sum = |of: &dyn Fn(&PilotTile, &TileSums) -> f64| chosen.iter().zip(&last).map(|(c, t)| of(c, t)).sum::<f64>();
-    let paths = sum(&|c, t| c.paths * t.pixels);
-    let alike = sum(&|c, _| c.seconds) / paths;
-    let weighed = sum(&|c, _| c.weight * c.seconds / c.paths) / sum(&|c, t| c.weight * t.pixels);
-    let bias = if alike > 0.0 { weighed / alike } else { 1.0 };
+    // Estimate the mean and the mean square by the difference estimator.
     let seen =
         |power: i32| (0..grid.tiles()).map(|t| grid.area(t) as f64 * expected[t].mean.powi(power)).sum::<f64>() / area;
     let brightness = (seen(1) + mean(&last, &|t| t.mean - t.expected[0])).max(f64::MIN_POSITIVE);
     let square = seen(2) + mean(&last, &|t| t.square - t.expected[1]);
     Ok(Pilot {
-        seconds_per_path: seconds / paths * bias,
+        seconds_per_path: seconds_per_path(&chosen, &last, seconds),
         squared_errors: variances.map(|v| v / (brightness * brightness)),
         adaptive_gain: adaptive_gain(&middle, area),
         contrast: (square.max(0.0).sqrt() / brightness).max(1.0),
     })
+}
+
+/// Extends the paths of the tiles of the current pass to `count` per pixel; returns the sums of all tiles.
+fn render_tiles(
+    context: TileContext,
+    chosen: &mut [PilotTile],
+    count: u32,
+    clock: &(dyn Fn() -> Duration + Sync),
+    job: Job,
+) -> Result<Vec<TileSums>> {
+    let wanted = Pass::uniform(context.grid.tiles(), count)?;
+    exec::for_rows(chosen, 1, job, |_, chosen| {
+        let PilotTile { tile, pixels, seconds, paths, deep_weight, .. } = &mut chosen[0];
+        if *deep_weight > 0.0 {
+            let start = clock();
+            Tile::new(context, *tile, pixels, None).extend(&wanted, || job.is_cancelled());
+            *seconds += clock().saturating_sub(start).as_secs_f64();
+            *paths = f64::from(count);
+        }
+    })?;
+    job.check()?;
+    Ok(chosen.iter().map(|c| tile_sums(context.grid, c)).collect())
+}
+
+/// Time per path of the image, from the time that all pilot tiles took together: corrected for the difference between the
+/// selected tiles and all tiles of the image.
+fn seconds_per_path(chosen: &[PilotTile], sums: &[TileSums], seconds: f64) -> f64 {
+    let sum = |of: &dyn Fn(&PilotTile, &TileSums) -> f64| chosen.iter().zip(sums).map(|(c, t)| of(c, t)).sum::<f64>();
+    let paths = sum(&|c, t| c.paths * t.pixels);
+    let unweighted = sum(&|c, _| c.seconds) / paths;
+    let weighted = sum(&|c, _| c.weight * c.seconds / c.paths) / sum(&|c, t| c.weight * t.pixels);
+    let bias = if unweighted > 0.0 { weighted / unweighted } else { 1.0 };
+    seconds / paths * bias
 }
 
 /// Selects tiles by the standard deviation of their light.

@@ -49,16 +49,9 @@ impl Alphabet {
     /// # Errors
     /// An expression names a label that does not exist in the scene.
     pub fn new(scene: &Scene, expressions: &[&Expression], emitter_as: EmitterAs) -> Result<Self> {
-        let names = |mesh: &Mesh| {
-            [mesh.name.clone(), scene.materials.get(mesh.material).map_or(String::new(), |m| m.name.clone())]
-        };
-        let mut existing: BTreeSet<String> = scene.meshes.iter().flat_map(names).collect();
-        existing.extend((0..scene.lights.len()).map(punctual_label));
-        existing.insert(ENVIRONMENT.to_string());
+        let names = |mesh: &Mesh| names_of(scene, mesh);
         let lamp_textures = lamp_textures(scene, expressions, names)?;
-        for (mesh, texture) in scene.meshes.iter().filter_map(|m| Some((m, lamp_textures.get(&m.material)?))) {
-            existing.extend((0..texture.patches.count).flat_map(|i| names(mesh).map(|name| lamp_label(&name, i))));
-        }
+        let existing = existing_labels(scene, &lamp_textures);
         let named_labels = named_labels(expressions, &existing)?;
         let keep_named = |names: &[String]| -> Vec<String> {
             let set: BTreeSet<&String> = names.iter().filter(|n| named_labels.contains(*n)).collect();
@@ -139,6 +132,23 @@ impl Lamps {
         let LampTexture { size, wrap, patches } = &*self.texture;
         self.lights[patches.labels[texel_at(uv, *size, *wrap)] as usize]
     }
+}
+
+/// The names of a mesh and of its material.
+fn names_of(scene: &Scene, mesh: &Mesh) -> [String; 2] {
+    [mesh.name.clone(), scene.materials.get(mesh.material).map_or(String::new(), |m| m.name.clone())]
+}
+
+/// The labels of all meshes, materials, lights and lamps of a scene.
+fn existing_labels(scene: &Scene, lamp_textures: &BTreeMap<usize, Arc<LampTexture>>) -> BTreeSet<String> {
+    let names = |mesh: &Mesh| names_of(scene, mesh);
+    let mut existing: BTreeSet<String> = scene.meshes.iter().flat_map(names).collect();
+    existing.extend((0..scene.lights.len()).map(punctual_label));
+    existing.insert(ENVIRONMENT.to_string());
+    for (mesh, texture) in scene.meshes.iter().filter_map(|m| Some((m, lamp_textures.get(&m.material)?))) {
+        existing.extend((0..texture.patches.count).flat_map(|i| names(mesh).map(|name| lamp_label(&name, i))));
+    }
+    existing
 }
 
 /// The emission textures whose lamps an expression may name, as in `'Ceiling#3'`, by mesh or by material.
