@@ -1,9 +1,10 @@
 //! Statistics of independent batches: means, confidence intervals, and intervals of derived quantities.
 
 /// Number of batches of an estimate. With 32, Student's t is within 4 % of the normal quantile.
+/// [judged, not recorded]
 pub const BATCHES: usize = 32;
 
-/// 97.5 % quantile of Student's t with `BATCHES - 1` = 31 degrees of freedom.
+/// 97.5 % quantile of Student's t with `BATCHES - 1` = 31 degrees of freedom. [convention]
 pub(super) const STUDENT_T: f64 = 2.039_513;
 
 pub(super) fn mean(values: &[f64; BATCHES]) -> f64 {

@@ -340,6 +340,7 @@ impl<'a> TopAlbedo<'a> {
 
 /// Tilts a shading normal that faces away from the viewer until the viewer sees it at a grazing angle.
 fn face_viewer(normal: Vec3, wo: Vec3) -> Vec3 {
+    // Smallest cosine towards the viewer. [judged, not recorded]
     const MIN_COSINE: f32 = 1e-3;
     let cosine = normal.dot(wo);
     if cosine >= MIN_COSINE { normal } else { (normal + wo * (MIN_COSINE - cosine)).normalize_or(wo) }

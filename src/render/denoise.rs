@@ -61,7 +61,7 @@ pub struct Output {
 const STEPS: [usize; 6] = [1, 2, 4, 8, 16, 32];
 /// Kernel weight of a neighbour along an axis, relative to the pixel itself: the binomial kernel. [convention]
 const TAP: f32 = 0.5;
-/// Variance of a half, relative to the variance of the mean of both halves: exact for independent halves.
+/// Variance of a half, relative to the variance of the mean of both halves: exact for independent halves. [convention]
 const HALF: f32 = 2.0;
 /// Squared difference in luminance, relative to the sum of both variances, that lowers a weight by a factor e at
 /// strength 1. [judged, not recorded]
@@ -75,7 +75,7 @@ const FACING: f32 = 0.02;
 const COLOUR: f32 = 0.02;
 /// Smallest albedo to divide by, so that lamps and black surfaces keep their light. [judged, not recorded]
 const MIN_ALBEDO: f32 = 0.02;
-/// Side in pixels of the squares over which the bias is averaged.
+/// Side in pixels of the squares over which the bias is averaged. [convention]
 const SQUARE: usize = 8;
 
 /// Channels of the filtered image: red, green, blue, variance of the luminance.

@@ -21,7 +21,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 /// The totals of a tile, pixel after pixel.
 pub type Kept<'a> = MutexGuard<'a, Vec<f32>>;
 
-/// Longest name of a layer in bytes, and the largest number of layers.
+/// Longest name of a layer in bytes, and the largest number of layers. [convention]
 const MAX_NAME_BYTES: usize = 64;
 const MAX_LAYERS: usize = 1024;
 

@@ -14,7 +14,7 @@ use crate::image::Image;
 use crate::job::Job;
 use crate::render::output::Film;
 
-/// Half-width in standard deviations of the interval that contains 95 % of a normal distribution.
+/// Half-width in standard deviations of the interval that contains 95 % of a normal distribution. [convention]
 pub const NORMAL_95: f64 = 1.959_964;
 
 impl Film {

@@ -32,7 +32,7 @@ pub struct Bounds {
     pub intensity: f32,
 }
 
-/// The cone angle of full intensity in all directions.
+/// The cone angle of full intensity in all directions. [convention]
 const FULL_SPHERE: f32 = PI + FRAC_PI_2;
 
 impl Bounds {
