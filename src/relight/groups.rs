@@ -366,7 +366,7 @@ impl System<'_> {
         };
         let off = scale.iter().all(|x| x[channel] == 0.0);
         let full = !self.params.max_scale.is_empty()
-            && scale.iter().zip(&self.params.max_scale).all(|(x, most)| x[channel] >= *most);
+            && scale.iter().zip(&self.params.max_scale).all(|(x, max)| x[channel] >= *max);
         let why = match outcome.status[channel] {
             TargetStatus::Dark => "no light of these lamps finds its way there",
             TargetStatus::TooBright if off => {

@@ -251,8 +251,8 @@ impl Pieces {
 
     fn join(&mut self, triangle: &[u32; 3]) {
         let roots = triangle.map(|v| self.root(v));
-        let least = roots.into_iter().min().unwrap_or(0);
-        roots.into_iter().for_each(|r| self.0[r as usize] = least);
+        let lowest = roots.into_iter().min().unwrap_or(0);
+        roots.into_iter().for_each(|r| self.0[r as usize] = lowest);
     }
 }
 

@@ -35,6 +35,7 @@ pub enum Place<'a> {
     Grid { origin: Vec3, across: Vec3, down: Vec3, normal: Vec3 },
 }
 
+/// The parameters of relighting.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Params {
     pub quantity: Quantity,

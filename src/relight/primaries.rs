@@ -20,7 +20,7 @@ const MAX_RELATIVE_MISS: f64 = 1e-6;
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mixture {
-    /// Drive of each primary, in `[0, most]`.
+    /// Drive of each primary, in `[0, max_drive]`.
     pub drives: Vec<f64>,
     /// The colour of the mixture.
     pub colour: DVec3,
@@ -31,12 +31,12 @@ pub struct Mixture {
 }
 
 /// Mixes a linear RGB colour from primaries, each given as the linear RGB of a drive of 1 (with negative channels
-/// outside the gamut, as of LEDs), with drives of at most `most`.
+/// outside the gamut, as of LEDs), with drives of at most `max_drive`.
 ///
 /// # Errors
 /// Numbers that are not finite or out of range; no primaries or more than [`MAX_PRIMARIES`]; primaries that are all
 /// black.
-pub fn mix_primaries(primaries: &[DVec3], most: f64, wanted: DVec3) -> Result<Mixture> {
+pub fn mix_primaries(primaries: &[DVec3], max_drive: f64, wanted: DVec3) -> Result<Mixture> {
     if primaries.is_empty() || primaries.len() > MAX_PRIMARIES {
         return Err(Error::argument(format!(
             "there are {} primaries; there must be 1 to {MAX_PRIMARIES}",
@@ -46,7 +46,7 @@ pub fn mix_primaries(primaries: &[DVec3], most: f64, wanted: DVec3) -> Result<Mi
     if let Some(i) = primaries.iter().position(|p| !p.is_finite()) {
         return Err(Error::argument(format!("primary {i} is {}; it must be finite", primaries[i])));
     }
-    check_range("most", most, 0.0, f64::INFINITY)?;
+    check_range("most", max_drive, 0.0, f64::INFINITY)?;
     for channel in wanted.to_array() {
         check_range("colour", channel, 0.0, f64::from(f32::MAX))?;
     }
@@ -56,7 +56,7 @@ pub fn mix_primaries(primaries: &[DVec3], most: f64, wanted: DVec3) -> Result<Mi
     }
     let matrix: Vec<f64> = (0..3).flat_map(|c| primaries.iter().map(move |p| p[c])).collect();
     let squares: f64 = matrix.iter().map(|a| a * a).sum();
-    let (preferred, upper) = (vec![0.0; primaries.len()], vec![most; primaries.len()]);
+    let (preferred, upper) = (vec![0.0; primaries.len()], vec![max_drive; primaries.len()]);
     let problem = Problem {
         matrix: &matrix,
         right: &wanted.to_array(),
@@ -129,7 +129,8 @@ mod tests {
 
     #[test]
     fn bad_primaries_are_refused() {
-        let refused = |primaries: &[DVec3], most, wanted| mix_primaries(primaries, most, wanted).unwrap_err().kind;
+        let refused =
+            |primaries: &[DVec3], max_drive, wanted| mix_primaries(primaries, max_drive, wanted).unwrap_err().kind;
         assert_eq!(refused(&[], 1.0, DVec3::ONE), ErrorKind::InvalidArgument);
         assert_eq!(refused(&[DVec3::NAN], 1.0, DVec3::ONE), ErrorKind::InvalidArgument);
         assert_eq!(refused(&[DVec3::ONE], -1.0, DVec3::ONE), ErrorKind::InvalidArgument);

@@ -16,6 +16,7 @@ pub enum TargetStatus {
     Dark,
 }
 
+/// The scale of the emission with its confidence interval.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solution {
     /// Multiplier of the emission per channel, ≥ 0.

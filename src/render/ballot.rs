@@ -16,10 +16,10 @@ pub fn cast(ballot: &mut [f64], candidate: f64, votes: f64) {
         slots.iter().position(|s| s[1] > 0.0 && s[0] == candidate).or_else(|| slots.iter().position(|s| s[1] == 0.0))
     else {
         // Cancel votes: each cancelled vote cancels one vote of every candidate.
-        let least = slots.iter().fold(votes, |least, s| least.min(s[1]));
-        slots.iter_mut().for_each(|s| s[1] -= least);
-        if votes > least {
-            cast(ballot, candidate, votes - least);
+        let min_votes = slots.iter().fold(votes, |min_votes, s| min_votes.min(s[1]));
+        slots.iter_mut().for_each(|s| s[1] -= min_votes);
+        if votes > min_votes {
+            cast(ballot, candidate, votes - min_votes);
         }
         return;
     };

@@ -5,6 +5,7 @@ use crate::error::{Error, Result, check_range};
 use crate::image::MAX_SIDE;
 use crate::scene::Camera;
 
+/// The parameters of a render.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Params {
     /// Size of the image in pixels, each in `[1, 65536]`.
@@ -72,8 +73,11 @@ impl Params {
 /// Checks that a camera has a view.
 pub fn check_camera(camera: &Camera) -> Result<()> {
     let vectors = [camera.position, camera.forward, camera.up];
-    let sees = camera.forward.cross(camera.up).length_squared() > 0.0;
-    if vectors.iter().any(|v| !v.is_finite()) || !sees || !(camera.fov_y > 0.0 && camera.fov_y < std::f32::consts::PI) {
+    let has_view = camera.forward.cross(camera.up).length_squared() > 0.0;
+    if vectors.iter().any(|v| !v.is_finite())
+        || !has_view
+        || !(camera.fov_y > 0.0 && camera.fov_y < std::f32::consts::PI)
+    {
         return Err(Error::argument(format!(
             "camera {:?} cannot see: its position must be finite, forward and up must not be parallel, and fov_y (now {}) \
              must lie in (0, pi)",

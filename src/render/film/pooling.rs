@@ -32,10 +32,10 @@ pub fn pooled(variance: &Image, job: Job) -> Result<Image> {
 
 /// Weighted mean of the finite values around a position on a line of `n`, per channel; infinite if there are none.
 fn mean_around<'a>(at: usize, n: usize, out: &mut [f32], value: impl Fn(usize) -> &'a [f32]) {
-    let reach = WEIGHTS.len() - 1;
+    let radius = WEIGHTS.len() - 1;
     for (channel, out) in out.iter_mut().enumerate() {
         let (mut sum, mut weight) = (0.0, 0.0);
-        for i in at.saturating_sub(reach)..(at + reach + 1).min(n) {
+        for i in at.saturating_sub(radius)..(at + radius + 1).min(n) {
             let v = value(i)[channel];
             if v.is_finite() {
                 sum += WEIGHTS[i.abs_diff(at)] * v;

@@ -98,9 +98,9 @@ impl LightTree {
         while parts.len() < LANES {
             let divisible = (0..parts.len()).filter(|&i| parts[i] & LIGHT == 0);
             let cost = |i: usize| clusters[parts[i] as usize].cost;
-            let Some(most) = divisible.max_by(|&a, &b| cost(a).total_cmp(&cost(b))) else { break };
-            let two = clusters[parts[most] as usize].parts;
-            parts.splice(most..=most, two);
+            let Some(costliest) = divisible.max_by(|&a, &b| cost(a).total_cmp(&cost(b))) else { break };
+            let two = clusters[parts[costliest] as usize].parts;
+            parts.splice(costliest..=costliest, two);
         }
         let index = self.nodes.len();
         let mut children = [NONE; LANES];
