@@ -273,9 +273,9 @@ pub unsafe extern "C" fn luxfer_illuminance_get_report(
         let output = stage.output()?;
         out.set(luxfer_illuminance_report {
             points: output.points as u32,
-            least: output.least,
+            least: output.min,
             mean: output.mean,
-            largest: output.largest,
+            largest: output.max,
             mean_error: output.mean_error,
             ..luxfer_illuminance_report::defaults()
         });

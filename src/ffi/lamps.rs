@@ -252,7 +252,7 @@ impl luxfer_lamps_params {
     fn solving(&self, groups: usize, levels: Vec<f64>) -> GroupParams {
         GroupParams {
             colour: if self.free_colour == 1 { Colour::Free } else { Colour::Kept },
-            most: vec![self.most; groups],
+            max_scale: vec![self.most; groups],
             levels,
             evenness: self.evenness,
             tolerance: self.tolerance,

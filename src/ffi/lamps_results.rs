@@ -177,7 +177,7 @@ pub unsafe extern "C" fn luxfer_lamps_get_goal(
         let i = index as usize;
         let outcome = o.solution.outcomes.get(i).ok_or_else(|| missing("goal", index, o.targets.len()))?;
         out.set(luxfer_lamps_goal {
-            reach: outcome.reach.map(reach_value),
+            reach: outcome.status.map(reach_value),
             target: o.targets[i].as_dvec3().to_array(),
             achieved: outcome.achieved.to_array(),
             half_width: outcome.half_width.to_array(),

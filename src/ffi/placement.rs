@@ -63,12 +63,12 @@ unsafe impl Versioned for luxfer_placement_params {
             aim: LUXFER_AIM_MOST,
             radiance: [0.0; 3],
             starts: d.starts as u32,
-            least_offset: d.least.offset.to_array(),
-            most_offset: d.most.offset.to_array(),
-            least_scale: d.least.scale.to_array(),
-            most_scale: d.most.scale.to_array(),
-            least_rotation: d.least.rotation,
-            most_rotation: d.most.rotation,
+            least_offset: d.min.offset.to_array(),
+            most_offset: d.max.offset.to_array(),
+            least_scale: d.min.scale.to_array(),
+            most_scale: d.max.scale.to_array(),
+            least_rotation: d.min.rotation,
+            most_rotation: d.max.rotation,
             seed: d.seed,
         }
     }
@@ -83,13 +83,13 @@ impl luxfer_placement_params {
         };
         Ok(PlaceParams {
             aim: match self.aim {
-                LUXFER_AIM_MOST => Aim::Most,
-                LUXFER_AIM_LEAST => Aim::Least,
+                LUXFER_AIM_MOST => Aim::Brightest,
+                LUXFER_AIM_LEAST => Aim::Darkest,
                 LUXFER_AIM_RADIANCE => Aim::Radiance(Vec3::from_array(self.radiance)),
                 other => return Err(Error::argument(format!("aim is {other}; it must be a LUXFER_AIM_ value"))),
             },
-            least: pose(self.least_offset, self.least_scale, self.least_rotation),
-            most: pose(self.most_offset, self.most_scale, self.most_rotation),
+            min: pose(self.least_offset, self.least_scale, self.least_rotation),
+            max: pose(self.most_offset, self.most_scale, self.most_rotation),
             starts: self.starts as usize,
             seed: self.seed,
         })

@@ -14,7 +14,7 @@ use super::stage::{Stage, need};
 use super::status::luxfer_status;
 use crate::error::{Error, Result};
 use crate::image::try_collect;
-use crate::relight::{self, Fit, Quantity, Reach, Sense, Solution};
+use crate::relight::{self, Fit, Quantity, Sense, Solution, TargetStatus};
 use crate::scene::Scene;
 use glam::Vec3;
 use std::sync::Arc;
@@ -190,12 +190,12 @@ pub(super) fn sense(value: luxfer_sense) -> Result<Sense> {
     }
 }
 
-pub(super) fn reach_value(reach: Reach) -> luxfer_reach {
-    match reach {
-        Reach::Met => LUXFER_REACH_MET,
-        Reach::TooBright => LUXFER_REACH_TOO_BRIGHT,
-        Reach::Dark => LUXFER_REACH_DARK,
-        Reach::TooDim => LUXFER_REACH_TOO_DIM,
+pub(super) fn reach_value(status: TargetStatus) -> luxfer_reach {
+    match status {
+        TargetStatus::Met => LUXFER_REACH_MET,
+        TargetStatus::TooBright => LUXFER_REACH_TOO_BRIGHT,
+        TargetStatus::Dark => LUXFER_REACH_DARK,
+        TargetStatus::TooDim => LUXFER_REACH_TOO_DIM,
     }
 }
 
@@ -207,7 +207,7 @@ impl luxfer_relight_report {
             half_width: solution.half_width.to_array(),
             response: solution.response.to_array(),
             background: solution.background.to_array(),
-            reach: solution.reach.map(reach_value),
+            reach: solution.status.map(reach_value),
             error: solution.error(),
             delta_e: solution.delta_e,
             ..Self::defaults()

@@ -4,7 +4,7 @@
 //! relighting and rendering, with the expected time and error of each.
 //!
 //! The cost of a path and the variance of paths depend on the machine and the scene and cannot be predicted by
-//! counting, so they are measured: a few tiles of the image are rendered ([`picture`], `render::probe`), and a few
+//! counting, so they are measured: a few tiles of the image are rendered ([`picture`], `render::pilot`), and a few
 //! paths of the solution are traced ([`strength`]). Along the resulting curves of error against time, the time is
 //! allocated in small steps, each to the stage where it lowers the error of the picture most ([`curve`]). A
 //! stylisation is tried with settings from quick to careful at reduced resolution (`stylisation`).

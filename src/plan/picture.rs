@@ -4,8 +4,8 @@ use super::curve::{Curve, allocate};
 use super::{Clock, Expected, Goal, MAX_COST, overtime};
 use crate::error::Result;
 use crate::job::Job;
-use crate::render::probe::{self, PATHS, REPLICATIONS, nets};
-use crate::render::{self, Probe, World};
+use crate::render::pilot::{self, PATHS, REPLICATIONS, nets};
+use crate::render::{self, Pilot, World};
 use crate::scene::Camera;
 
 /// Minimum number of paths per pixel for which the error is estimated [origin not recorded].
@@ -43,22 +43,22 @@ pub fn rendering(
 /// Measured cost and error of a picture.
 pub(super) struct Picture {
     pixels: f64,
-    probe: Probe,
+    pilot: Pilot,
 }
 
 impl Picture {
     pub fn new(world: &World, camera: &Camera, params: &render::Params, clock: Clock, job: Job) -> Result<Self> {
-        let probe = probe::run(world, camera, params, clock, job)?;
-        Ok(Self { pixels: params.width as f64 * params.height as f64, probe })
+        let pilot = pilot::run(world, camera, params, clock, job)?;
+        Ok(Self { pixels: params.width as f64 * params.height as f64, pilot })
     }
 
     /// Root mean square of the picture divided by its mean.
     pub fn contrast(&self) -> f64 {
-        self.probe.contrast
+        self.pilot.contrast
     }
 
     fn seconds(&self, paths: f64) -> f64 {
-        self.pixels * paths * self.probe.seconds_per_path.max(1e-12)
+        self.pixels * paths * self.pilot.seconds_per_path.max(1e-12)
     }
 
     /// The error with uniform sampling. The curve is valid for whole nets; other numbers of paths combine several
@@ -71,14 +71,14 @@ impl Picture {
     }
 
     /// The factor by which adaptive sampling reduces the number of paths for an error. The ideal saving, which the
-    /// probe measures, is the square of the saving that doubling tiles one by one achieves.
+    /// pilot measures, is the square of the saving that doubling tiles one by one achieves.
     fn saved(&self) -> f64 {
-        self.probe.saved.sqrt()
+        self.pilot.adaptive_gain.sqrt()
     }
 
     /// Error against time with uniform sampling.
     pub fn curve(&self) -> Curve {
-        let points = [0, 1, 2].map(|i| [self.seconds(PATHS[i].into()), self.probe.squares[i]]);
+        let points = [0, 1, 2].map(|i| [self.seconds(PATHS[i].into()), self.pilot.squared_errors[i]]);
         Curve { min_seconds: self.seconds(MIN_PATHS), max_seconds: self.seconds(MAX_PATHS), points }
     }
 
