@@ -1,6 +1,6 @@
 """Scenes from USD files (.usda, .usdc, .usdz) and back, by Pixar's own library: `pip install luxfer[usd]`.
 
-What USD composes is taken as it is at the default time, in metres and Y up whatever the stage is in:
+load() reads the composed stage at the default time and converts it to metres and Y up:
 
 | in USD | becomes |
 |---|---|
@@ -12,9 +12,10 @@ What USD composes is taken as it is at the default time, in metres and Y up what
 | DomeLight | the environment, of one colour |
 | Camera | a camera |
 
-Left out: what is invisible, guides and proxies, curves, points, volumes, what a PointInstancer places, skinning, subdivision,
-other shaders, other textures, UsdTransform2d, the images of domes, other lights, light linking. save() leaves out lights
-without a surface and the environment, all textures but those of base colour and emission, and how textures are moved.
+load() ignores invisible prims, guides and proxies, curves, points, volumes, instances of a PointInstancer, skinning,
+subdivision, other shaders, other textures, UsdTransform2d, the images of domes, other lights, light linking. save()
+leaves out punctual lights and the environment, all textures but those of base colour and emission, and texture
+transforms.
 """
 
 from __future__ import annotations
@@ -41,7 +42,7 @@ WRAPS = {"repeat": "repeat", "mirror": "mirror", "clamp": "clamp", "black": "cla
 
 
 def load(context: Context, path: str | os.PathLike[str]) -> Scene:
-    """Loads a USD file with all it refers to. Meshes have the names of their prims."""
+    """Loads a USD file with all files that it refers to. Meshes have the names of their prims."""
     from pxr import Tf, Usd
 
     try:
