@@ -4598,8 +4598,8 @@ typedef struct luxfer_stylize_pass {
     /** 0. */
     uint32_t reserved;
     /**
-     * Share of the exemplar patches whose match is within the error budget, which ends at the knee of the error curve;
-     * in [0, 1].
+     * Share of the exemplar patches whose match is within the error budget, in [0, 1]. The budget ends at the knee of
+     * the error curve.
      */
     double knee;
     /** Share of the target with a match after this pass, in [0, 1]. */

@@ -111,8 +111,8 @@ pub struct luxfer_stylize_pass {
     pub struct_size: u32,
     /// 0.
     pub reserved: u32,
-    /// Share of the exemplar patches whose match is within the error budget, which ends at the knee of the error curve;
-    /// in [0, 1].
+    /// Share of the exemplar patches whose match is within the error budget, in [0, 1]. The budget ends at the knee of
+    /// the error curve.
     pub knee: f64,
     /// Share of the target with a match after this pass, in [0, 1].
     pub coverage: f64,

@@ -1885,8 +1885,8 @@ class StylizePass:
     """One matching pass under the error budget."""
 
     knee: float
-    """Share of the exemplar patches whose match is within the error budget, which ends at the knee of the error
-    curve; in [0, 1]."""
+    """Share of the exemplar patches whose match is within the error budget, in [0, 1]. The budget ends at the
+    knee of the error curve."""
     coverage: float
     """Share of the target with a match after this pass, in [0, 1]."""
     gained: int
