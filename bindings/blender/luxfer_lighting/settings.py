@@ -86,8 +86,7 @@ class LuxferSettings(bpy.types.PropertyGroup):
         name="Guides",
         items=(
             ("LUXFER", "Luxfer", "Rendered by the library from a glTF export of the scene: exact light paths"),
-            ("CYCLES", "Cycles", "Rendered by Cycles in a second Blender, on a copy of the file: all features of
-            Blender"),
+            ("CYCLES", "Cycles", "Rendered by Cycles in a second Blender, on a copy of the file: all Blender features"),
         ),
         default="LUXFER",
         description="Renderer of the guides, which show the light in the scene",
