@@ -93,7 +93,7 @@ impl Context {
         }
     }
 
-    /// Takes `bytes` from the memory budget for as long as the charge lives.
+    /// Charges `bytes` to the memory budget for the lifetime of the returned charge.
     pub(super) fn charge(self: &Arc<Self>, bytes: u64) -> Result<Charge> {
         let take = |used: u64| used.checked_add(bytes).filter(|&sum| self.budget == 0 || sum <= self.budget);
         match self.used.fetch_update(Ordering::Relaxed, Ordering::Relaxed, take) {

@@ -77,13 +77,13 @@ fn corners(place: *const f64, name: &str) -> Result<[DVec2; 4]> {
     }
 }
 
-/// `N` numbers of the caller's, at any alignment.
+/// Reads `N` numbers of the caller, at any alignment.
 pub(super) fn numbers<const N: usize>(place: *const f64, name: &str) -> Result<[f64; N]> {
     let list = list(place, N, name)?;
     Ok(std::array::from_fn(|i| list[i]))
 }
 
-/// `count` numbers of the caller's, at any alignment.
+/// Reads `count` numbers of the caller, at any alignment.
 pub(super) fn list(place: *const f64, count: usize, name: &str) -> Result<Vec<f64>> {
     let bytes = bytes(place.cast(), count.saturating_mul(size_of::<f64>()), name)?;
     let number = |raw: &[u8]| {

@@ -32,15 +32,15 @@ pub type luxfer_progress_fn = Option<unsafe extern "C" fn(user: *mut c_void, fra
 /// How often a waiting thread reports.
 const REPORT_INTERVAL: Duration = Duration::from_millis(20);
 
-/// What a `luxfer_job` refers to. It holds the context until its thread has ended, so neither that thread nor a worker of
-/// the pool ever drops the last reference to the pool, which would have it wait for itself.
+/// The object of a `luxfer_job`. It holds the context until its thread has ended. So neither that thread nor a worker
+/// of the pool drops the last reference to the pool, which would make it wait for itself.
 pub(super) struct Job {
     context: Arc<Context>,
     shared: Arc<Shared>,
     thread: Mutex<Option<JoinHandle<()>>>,
 }
 
-/// What the working and the waiting threads share.
+/// State shared by the working and the waiting threads.
 struct Shared {
     monitor: Monitor,
     result: Mutex<Option<Result<()>>>,
@@ -80,7 +80,7 @@ impl Job {
         Ok(Self { context: context.clone(), shared, thread: Mutex::new(Some(thread)) })
     }
 
-    /// The result, or `None` if there is none within `time`.
+    /// The result, or `None` if the job has not ended within `time`.
     fn wait(&self, time: Duration) -> Option<Result<()>> {
         let result = lock(&self.shared.result);
         let waited = self.shared.finished.wait_timeout_while(result, time, |r| r.is_none());
@@ -122,7 +122,7 @@ pub unsafe extern "C" fn luxfer_job_wait(
             let left = deadline.map_or(Duration::MAX, |d| d.saturating_duration_since(Instant::now()));
             let result = job.wait(left.min(REPORT_INTERVAL));
 
-            // Report; 1 is kept for the end, whatever the work has announced.
+            // Report the progress; 1 is reserved for the end.
             let fraction = match &result {
                 Some(Ok(())) => Some(1.0),
                 Some(Err(_)) => None,

@@ -105,13 +105,13 @@ unsafe impl Versioned for luxfer_lamps_params {
 pub(super) struct Inputs {
     pub emission: Option<(Arc<SceneObject>, Option<u32>)>,
     pub goals: Vec<Aim>,
-    /// Multipliers that the drivers have; empty for all.
+    /// Dimming levels of the drivers; empty for drivers without steps.
     pub levels: Vec<f64>,
 }
 
 pub(super) struct Output {
     pub scene: Arc<Scene>,
-    /// None where lights without a surface are the lamps.
+    /// `None` if the punctual lights are the lamps.
     pub material: Option<usize>,
     pub lamps: Lamps,
     pub group_of: Vec<u32>,

@@ -117,7 +117,7 @@ unsafe impl Versioned for luxfer_plan_report {
     }
 }
 
-/// What a plan has come to: settings, and what each stage should take and leave.
+/// The result of a plan: settings, and the predicted time and error of each stage.
 #[derive(Default)]
 pub(super) struct Made {
     whole: Expected,
@@ -140,7 +140,7 @@ impl From<plan::Lighting> for Made {
     }
 }
 
-/// Settings of a stylisation, and whether what an update needs is to be kept, which is the caller's matter.
+/// Settings of a stylisation, and the caller's choice to keep the data for updates.
 #[cfg(feature = "stylize")]
 pub(super) struct Stylisation {
     pub params: stylize::Params,
@@ -159,7 +159,7 @@ impl Made {
     }
 }
 
-/// What a plan has for a stage, which must be one that it is of.
+/// The part of a plan for a stage; an error if the plan does not cover the stage.
 fn planned<'a, T>(part: &'a Option<T>, does: &str) -> Result<&'a T> {
     part.as_ref().ok_or_else(|| Error::new(ErrorKind::NotFound, format!("the plan is of nothing that {does}")))
 }

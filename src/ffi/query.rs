@@ -46,7 +46,7 @@ pub struct luxfer_hit {
     pub v: f32,
 }
 
-/// Rays that are one piece of work.
+/// Rays per parallel task.
 const BLOCK: usize = 4096;
 
 /// Finds the nearest hits of count rays; all surfaces count as opaque and two-sided. Of hits at equal distance, the hit
@@ -89,7 +89,7 @@ fn nearest(world: &World, ray: &[u8]) -> [u32; 5] {
         *field = f32::from_ne_bytes([raw[0], raw[1], raw[2], raw[3]]);
     }
     let [ox, oy, oz, dx, dy, dz, t_max] = fields;
-    // Directions of any length: distances are counted in the power of two below theirs.
+    // Scale the direction by a power of two near its length, so that any length works.
     let direction = Vec3::new(dx, dy, dz);
     let unit = f64::from_bits(f64::from(direction.abs().max_element()).to_bits() & f64::INFINITY.to_bits());
     let ray = world.ray(Vec3::new(ox, oy, oz), (direction.as_dvec3() / unit).as_vec3());

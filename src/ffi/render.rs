@@ -165,7 +165,7 @@ pub(super) struct Inputs {
 }
 
 impl Inputs {
-    /// What is to be rendered: the scene, as it is now, and the camera.
+    /// The current scene and the camera.
     pub(super) fn view(&self) -> Result<(Arc<SceneObject>, Arc<Scene>, Camera)> {
         let object = need(&self.scene, "luxfer_render_set_scene")?.clone();
         let scene = object.snapshot();
@@ -187,7 +187,7 @@ impl Inputs {
     }
 }
 
-/// A rendering as it was asked for when its job started, whatever is changed while that runs.
+/// The inputs of a rendering at the start of its job; later changes do not affect them.
 pub(super) struct Shot {
     object: Arc<SceneObject>,
     scene: Arc<Scene>,
@@ -294,7 +294,7 @@ pub unsafe extern "C" fn luxfer_render_start(
         stage.start(job, move |_, stage, job| {
             let world = shot.world(job.part(0.0, 0.05))?;
             render::run(&world, &shot.camera, &shot.params, job.part(0.05, 1.0), &mut |film| {
-                // What is on the way can be done without.
+                // If memory is short, skip publishing this intermediate state.
                 if let Ok(copy) = film.try_clone() {
                     stage.publish(copy);
                 }

@@ -220,7 +220,7 @@ fn encode(film: &Film) -> Result<Vec<u8>> {
     let mut layers = vec![io::Layer { name: "", image: &film.beauty, channels: &["R", "G", "B"] }];
     let mut notes = vec![("luxfer.unit".to_string(), "cd/m^2".to_string())];
     for layer in &film.layers {
-        // Coverage belongs to the image itself; its depth is where programs without layers look for it.
+        // Alpha and Z also go into the main image, where programs without layers look for them.
         if layer.name == Aov::Alpha.name() || layer.name == Aov::Depth.name() {
             layers.push(io::Layer { name: "", image: &layer.image, channels: layer.channels });
         }

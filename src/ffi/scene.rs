@@ -164,7 +164,7 @@ impl SceneObject {
     pub(super) fn change<T>(&self, bytes: u64, change: impl FnOnce(&mut Scene) -> Result<T>) -> Result<T> {
         let charge = self.context.charge(bytes)?;
         let state = &mut *lock(&self.state);
-        // The scene inside a world is shared, and would be copied to be changed.
+        // Drop the world, which shares the scene: otherwise the change would copy the scene.
         state.world = None;
         let result = change(Arc::make_mut(&mut state.scene))?;
         if bytes > 0 {
@@ -181,7 +181,7 @@ impl SceneObject {
             job.report(1.0);
             return Ok(world);
         }
-        // Not under the lock: it takes its time, and the host may ask for other things meanwhile.
+        // Build without the lock, as it takes long and other calls should not wait.
         let world = Arc::new(World::build(scene.clone(), job)?);
         let state = &mut *lock(&self.state);
         if Arc::ptr_eq(&state.scene, scene) {

@@ -406,7 +406,7 @@ fn six_floats(pointer: *const f32) -> Result<Option<[f32; 6]>> {
     Ok(Some(values))
 }
 
-/// What a caller is told of a texture's use.
+/// The report of a texture's use.
 fn told(scene: &Scene, used: &TextureRef) -> luxfer_texture_use {
     let wrap = scene.textures.get(used.texture).map_or([Wrap::Repeat; 2], |t| t.wrap).map(|wrap| match wrap {
         Wrap::Repeat => LUXFER_WRAP_REPEAT,

@@ -142,7 +142,7 @@ fn lacks(mesh: u32, what: impl std::fmt::Display) -> Error {
     Error::new(ErrorKind::NotFound, format!("mesh {mesh} has no {what}"))
 }
 
-/// The caller's array and the bytes that go there; nothing where the caller wants nothing.
+/// The caller's array and the bytes to copy there; `None` if the caller passed null.
 fn place<'a, T: bytemuck::NoUninit>(
     place: *mut u8,
     data: &'a [T],

@@ -73,7 +73,7 @@ impl Pair {
     }
 }
 
-/// What is to be made of the target.
+/// The part of the target to paint.
 #[derive(Clone, Default)]
 enum Target {
     #[default]
@@ -82,14 +82,14 @@ enum Target {
 }
 
 impl Inputs {
-    /// Whether there is enough to start with.
+    /// Checks that the required inputs are set.
     pub(super) fn check(&self) -> Result<()> {
         need(&self.artwork, "luxfer_stylize_set_artwork")?;
         need(&self.guides.first(), "luxfer_stylize_add_guide")?;
         Ok(())
     }
 
-    /// Does what is to be done with the input, as of a first frame.
+    /// Calls `work` with the input, as for a first frame.
     pub(super) fn with_input<T>(&self, work: impl FnOnce(&stylize::Input) -> Result<T>) -> Result<T> {
         let guides: Vec<Guide> = self.guides.iter().map(Pair::guide).collect();
         let artwork = need(&self.artwork, "luxfer_stylize_set_artwork")?.image();

@@ -129,7 +129,7 @@ unsafe impl Versioned for luxfer_stylize_pass {
     }
 }
 
-/// What is known of a run, finished or not.
+/// The result of a run, finished or not.
 #[derive(Clone)]
 pub(super) struct Stylised {
     picture: Arc<Image>,
@@ -138,7 +138,7 @@ pub(super) struct Stylised {
     finished: Option<Finished>,
 }
 
-/// What only a finished run has.
+/// The result of a finished run only.
 #[derive(Clone)]
 struct Finished {
     guide_error: Arc<Image>,
@@ -186,7 +186,7 @@ impl Stylised {
         }
     }
 
-    /// The same run with the picture of an update.
+    /// This run with the picture of an update.
     pub(super) fn updated(&self, picture: Image, sources: Image) -> Self {
         let finished = self.finished.clone().map(|f| Finished { sources: Arc::new(sources), ..f });
         Self { picture: Arc::new(picture), finished, ..self.clone() }

@@ -197,7 +197,7 @@ unsafe impl Versioned for luxfer_fixture {
     }
 }
 
-/// A result of a stage, or which stage makes it.
+/// A result of a stage, or an error that names the stage.
 fn made<'a, T>(result: &'a Option<Arc<T>>, stage: &str) -> Result<&'a Arc<T>> {
     result.as_ref().ok_or_else(|| {
         Error::new(ErrorKind::NotReady, format!("there is no such result yet; LUXFER_STAGE_{stage} makes it"))
