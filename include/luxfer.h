@@ -170,8 +170,8 @@ luxfer_status luxfer_context_params_init(luxfer_context_params *params,
 
 /**
  * Creates a context and its threads; params may be NULL for the defaults. The caller releases *context. Any thread.
- * LUXFER_INVALID_ARGUMENT if context is NULL, struct_size is wrong or num_threads exceeds 1024; LUXFER_OUT_OF_MEMORY if
- * the threads cannot be started.
+ * LUXFER_INVALID_ARGUMENT if context is NULL, struct_size is wrong or num_threads exceeds 1024; LUXFER_OUT_OF_MEMORY
+ * if the threads cannot be started.
  */
 luxfer_status luxfer_context_create(const luxfer_context_params *params,
                                     luxfer_context **context);
@@ -504,8 +504,9 @@ luxfer_status luxfer_scene_set_environment(luxfer_scene *scene,
  * Sets an environment from an equirectangular image in linear values, multiplied by (red, green, blue), each finite
  * and >= 0: radiance in cd/m². The renderer samples it in proportion to its brightness. The centre of the image is
  * towards -z, its top towards +y, the centre of its right half towards +x. The image is copied and replaces any
- * earlier environment. Any thread. LUXFER_INVALID_ARGUMENT if a value of the image is negative or not finite;
- * LUXFER_OUT_OF_MEMORY beyond the memory budget.
+ * earlier environment. Any thread.
+ * LUXFER_INVALID_ARGUMENT if a value of the image is negative or not finite; LUXFER_OUT_OF_MEMORY beyond the memory
+ * budget.
  */
 luxfer_status luxfer_scene_set_environment_image(luxfer_scene *scene,
                                                  luxfer_image *image,
@@ -526,8 +527,9 @@ luxfer_status luxfer_scene_set_emission(luxfer_scene *scene,
 
 /**
  * Finds the planar surface that faces the room among the triangles of an object or material; name is UTF-8. Any
- * thread. LUXFER_NOT_FOUND if no object or material has that name: the message lists names that exist;
- * LUXFER_DEGENERATE if there is no planar surface.
+ * thread.
+ * LUXFER_NOT_FOUND if no object or material has that name: the message lists names that exist; LUXFER_DEGENERATE if
+ * there is no planar surface.
  */
 luxfer_status luxfer_scene_find_surface(luxfer_scene *scene,
                                         const char *name,
@@ -708,8 +710,8 @@ luxfer_status luxfer_scene_set_material_texture(luxfer_scene *scene,
                                                 const float *transform);
 
 /**
- * Gets the texture that a material uses for a purpose; role is a LUXFER_TEXTURE_ value. Any thread. LUXFER_NOT_FOUND
- * if there is no such material; LUXFER_INVALID_ARGUMENT for another role.
+ * Gets the texture that a material uses for a purpose; role is a LUXFER_TEXTURE_ value. Any thread.
+ * LUXFER_NOT_FOUND if there is no such material; LUXFER_INVALID_ARGUMENT for another role.
  */
 luxfer_status luxfer_scene_get_material_texture(luxfer_scene *scene,
                                                 uint32_t material_index,
@@ -883,7 +885,8 @@ luxfer_status luxfer_distribution_load_memory(luxfer_context *context,
 
 /**
  * Saves a distribution to an .ies or .ldt file; path is UTF-8. An existing file is replaced only once the new one is
- * complete. Any thread. LUXFER_INVALID_ARGUMENT for another extension, LUXFER_IO if the file cannot be written.
+ * complete. Any thread.
+ * LUXFER_INVALID_ARGUMENT for another extension, LUXFER_IO if the file cannot be written.
  */
 luxfer_status luxfer_distribution_save(luxfer_distribution *distribution,
                                        const char *path);
@@ -1188,8 +1191,9 @@ luxfer_status luxfer_scene_get_mesh_name(luxfer_scene *scene,
 /**
  * Copies a mesh into packed arrays of the caller: positions and normals with three floats per vertex, and indices with
  * three per triangle. Any of the arrays may be NULL. The capacities are numbers of vertices and of triangles. Any
- * thread. LUXFER_NOT_FOUND if there is no such mesh, or if normals is given and the mesh has none;
- * LUXFER_INVALID_ARGUMENT if a capacity is too small.
+ * thread.
+ * LUXFER_NOT_FOUND if there is no such mesh, or if normals is given and the mesh has none; LUXFER_INVALID_ARGUMENT if
+ * a capacity is too small.
  */
 luxfer_status luxfer_scene_read_mesh(luxfer_scene *scene,
                                      uint32_t index,
@@ -2064,9 +2068,9 @@ luxfer_status luxfer_emission_start_plan(luxfer_emission *emission,
  * Renders the rectangle of width x height texels of a planned texture whose top-left texel is (x, y): 4 channels,
  * linear RGB, and a mask that is 1 on lamps, else 0. The values are equal to the bit to the texture and mask of
  * luxfer_emission_start, for any size and order of the tiles. Takes up to a second per megapixel. The caller releases
- * *tile. Any thread; several threads may render tiles at the same time. LUXFER_NOT_READY before a job of
- * luxfer_emission_start_plan has succeeded; LUXFER_INVALID_ARGUMENT if the rectangle is empty or exceeds the texture;
- * LUXFER_OUT_OF_MEMORY beyond the memory budget.
+ * *tile. Any thread; several threads may render tiles at the same time.
+ * LUXFER_NOT_READY before a job of luxfer_emission_start_plan has succeeded; LUXFER_INVALID_ARGUMENT if the rectangle
+ * is empty or exceeds the texture; LUXFER_OUT_OF_MEMORY beyond the memory budget.
  */
 luxfer_status luxfer_emission_render_tile(luxfer_emission *emission,
                                           uint32_t x,
@@ -2422,8 +2426,9 @@ luxfer_status luxfer_render_part_init(luxfer_render_part *part,
  * Gets part number index of a rendering that is split into columns x rows rectangles and ranges of paths, all of about
  * equal size; index is less than columns * rows * ranges. The rectangles are numbered row by row, and all rectangles
  * of one range come before the next range. params may be NULL for the defaults; set part->struct_size before the call.
- * Any thread. LUXFER_INVALID_ARGUMENT if there is no such part, or if there are more parts than pixels or paths, so
- * that some would be empty.
+ * Any thread.
+ * LUXFER_INVALID_ARGUMENT if there is no such part, or if there are more parts than pixels or paths, so that some
+ * would be empty.
  */
 luxfer_status luxfer_render_split(luxfer_render *render,
                                   const luxfer_render_params *params,
@@ -2727,7 +2732,8 @@ luxfer_status luxfer_relight_create(luxfer_context *context, luxfer_relight **re
 /**
  * Sets the scene, the emitting material to solve for, and the mesh whose mean colour should match;
  * luxfer_scene_place_emission returns both indices. The solution is a factor for the emission that the material has in
- * the scene. Any thread. LUXFER_NOT_FOUND if the scene has no such material or mesh.
+ * the scene. Any thread.
+ * LUXFER_NOT_FOUND if the scene has no such material or mesh.
  */
 luxfer_status luxfer_relight_set_scene(luxfer_relight *relight,
                                        luxfer_scene *scene,
@@ -2754,8 +2760,8 @@ luxfer_status luxfer_relight_set_sense(luxfer_relight *relight,
 /**
  * Starts a job that solves. params may be NULL for the defaults. The caller releases *job. Any thread.
  * LUXFER_INVALID_OPERATION if the scene or the target is missing or a job runs already. The job may end with
- * LUXFER_UNREACHABLE if no light of the emission can reach the target, LUXFER_INVALID_ARGUMENT if the scene is not valid or
- * a setting is out of range.
+ * LUXFER_UNREACHABLE if no light of the emission can reach the target, LUXFER_INVALID_ARGUMENT if the scene is not
+ * valid or a setting is out of range.
  */
 luxfer_status luxfer_relight_start(luxfer_relight *relight,
                                    const luxfer_relight_params *params,
@@ -3129,9 +3135,9 @@ luxfer_status luxfer_importance_set_scene(luxfer_importance *importance,
 
 /**
  * Starts a job that traces the map and removes an earlier placement. params may be NULL for the defaults. The caller
- * releases *job. Any thread. LUXFER_INVALID_OPERATION if the scene is missing or a job runs already. The job may end
- * with LUXFER_INVALID_ARGUMENT if the scene is not valid, the surfaces have no texture coordinates, or a setting is
- * out of range.
+ * releases *job. Any thread.
+ * LUXFER_INVALID_OPERATION if the scene is missing or a job runs already. The job may end with LUXFER_INVALID_ARGUMENT
+ * if the scene is not valid, the surfaces have no texture coordinates, or a setting is out of range.
  */
 luxfer_status luxfer_importance_start(luxfer_importance *importance,
                                       const luxfer_importance_params *params,
@@ -3318,7 +3324,8 @@ luxfer_status luxfer_colour_temperature(luxfer_context *context,
 /**
  * Writes the linear colour, with luminance 1, of a colour temperature into rgb, three numbers: kelvin is in [1000,
  * 20000], duv, the distance from the blackbody, in [-0.05, 0.05]. A channel is negative if the colour is out of gamut.
- * Any thread. LUXFER_INVALID_ARGUMENT if a value is out of range.
+ * Any thread.
+ * LUXFER_INVALID_ARGUMENT if a value is out of range.
  */
 luxfer_status luxfer_colour_of_temperature(luxfer_context *context,
                                            double kelvin,
@@ -3464,8 +3471,8 @@ typedef struct luxfer_preset {
  * Mixes a linear RGB colour, three numbers that are finite and >= 0, from the LEDs of a luminaire. primaries holds the
  * linear RGB of count LEDs at drive level 1, with negative channels for colours out of gamut; count is in [1, 64].
  * drives receives count drive levels in [0, most]; most may be infinite. If several mixtures give the colour, the one
- * with the smallest sum of squared drive levels is returned. Any thread. LUXFER_DEGENERATE if all primaries are black,
- * LUXFER_INVALID_ARGUMENT if a number is out of range.
+ * with the smallest sum of squared drive levels is returned. Any thread.
+ * LUXFER_DEGENERATE if all primaries are black, LUXFER_INVALID_ARGUMENT if a number is out of range.
  */
 luxfer_status luxfer_mix_primaries(luxfer_context *context,
                                    const double *primaries,
@@ -4055,9 +4062,10 @@ luxfer_status luxfer_plan_create(luxfer_context *context, luxfer_plan **plan);
 /**
  * Starts a job that plans a rendering with the scene and the camera of render. settings gives the size of the picture
  * and the other settings that do not affect quality; NULL for the defaults. params gives the goal. The caller releases
- * *job. Any thread. LUXFER_INVALID_ARGUMENT if params is NULL or does not set exactly one goal, or if a setting is out
- * of range; LUXFER_INVALID_OPERATION if the scene is missing or a job runs already; LUXFER_NOT_FOUND if the scene has
- * no such camera.
+ * *job. Any thread.
+ * LUXFER_INVALID_ARGUMENT if params is NULL or does not set exactly one goal, or if a setting is out of range;
+ * LUXFER_INVALID_OPERATION if the scene is missing or a job runs already; LUXFER_NOT_FOUND if the scene has no such
+ * camera.
  */
 luxfer_status luxfer_plan_start_render(luxfer_plan *plan,
                                        luxfer_render *render,
@@ -4069,10 +4077,10 @@ luxfer_status luxfer_plan_start_render(luxfer_plan *plan,
  * Starts a job that plans the stages RELIGHT and RENDER of a transfer, with the lamps that its stage EMISSION has
  * made. settings are the settings with which the transfer will be started; NULL for the defaults. Afterwards replace
  * its relight and render by luxfer_plan_get_relight_params and luxfer_plan_get_render_params, which change the
- * settings that affect quality. params gives the goal. The caller releases *job. Any thread. LUXFER_INVALID_ARGUMENT
- * if params is NULL or does not set exactly one goal, or if a setting is out of range; LUXFER_INVALID_OPERATION before
- * the stage EMISSION has a result, or if a job runs already. The job may end with LUXFER_UNREACHABLE if no light of
- * the lamps is reflected back to their surface.
+ * settings that affect quality. params gives the goal. The caller releases *job. Any thread.
+ * LUXFER_INVALID_ARGUMENT if params is NULL or does not set exactly one goal, or if a setting is out of range;
+ * LUXFER_INVALID_OPERATION before the stage EMISSION has a result, or if a job runs already. The job may end with
+ * LUXFER_UNREACHABLE if no light of the lamps is reflected back to their surface.
  */
 luxfer_status luxfer_plan_start_transfer(luxfer_plan *plan,
                                          luxfer_transfer *transfer,

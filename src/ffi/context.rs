@@ -150,8 +150,8 @@ pub unsafe extern "C" fn luxfer_context_params_init(params: *mut luxfer_context_
 }
 
 /// Creates a context and its threads; params may be NULL for the defaults. The caller releases *context. Any thread.
-/// LUXFER_INVALID_ARGUMENT if context is NULL, struct_size is wrong or num_threads exceeds 1024; LUXFER_OUT_OF_MEMORY if
-/// the threads cannot be started.
+/// LUXFER_INVALID_ARGUMENT if context is NULL, struct_size is wrong or num_threads exceeds 1024; LUXFER_OUT_OF_MEMORY
+/// if the threads cannot be started.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_context_create(
     params: *const luxfer_context_params,

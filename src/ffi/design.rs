@@ -104,8 +104,8 @@ unsafe impl Versioned for luxfer_preset {
 /// Mixes a linear RGB colour, three numbers that are finite and >= 0, from the LEDs of a luminaire. primaries holds the
 /// linear RGB of count LEDs at drive level 1, with negative channels for colours out of gamut; count is in [1, 64].
 /// drives receives count drive levels in [0, most]; most may be infinite. If several mixtures give the colour, the one
-/// with the smallest sum of squared drive levels is returned. Any thread. LUXFER_DEGENERATE if all primaries are black,
-/// LUXFER_INVALID_ARGUMENT if a number is out of range.
+/// with the smallest sum of squared drive levels is returned. Any thread.
+/// LUXFER_DEGENERATE if all primaries are black, LUXFER_INVALID_ARGUMENT if a number is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_mix_primaries(
     context: *mut luxfer_context,

@@ -153,7 +153,8 @@ pub unsafe extern "C" fn luxfer_distribution_load_memory(
 }
 
 /// Saves a distribution to an .ies or .ldt file; path is UTF-8. An existing file is replaced only once the new one is
-/// complete. Any thread. LUXFER_INVALID_ARGUMENT for another extension, LUXFER_IO if the file cannot be written.
+/// complete. Any thread.
+/// LUXFER_INVALID_ARGUMENT for another extension, LUXFER_IO if the file cannot be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_distribution_save(
     distribution: *mut luxfer_distribution,

@@ -88,9 +88,9 @@ pub unsafe extern "C" fn luxfer_emission_start_plan(
 /// Renders the rectangle of width x height texels of a planned texture whose top-left texel is (x, y): 4 channels,
 /// linear RGB, and a mask that is 1 on lamps, else 0. The values are equal to the bit to the texture and mask of
 /// luxfer_emission_start, for any size and order of the tiles. Takes up to a second per megapixel. The caller releases
-/// *tile. Any thread; several threads may render tiles at the same time. LUXFER_NOT_READY before a job of
-/// luxfer_emission_start_plan has succeeded; LUXFER_INVALID_ARGUMENT if the rectangle is empty or exceeds the texture;
-/// LUXFER_OUT_OF_MEMORY beyond the memory budget.
+/// *tile. Any thread; several threads may render tiles at the same time.
+/// LUXFER_NOT_READY before a job of luxfer_emission_start_plan has succeeded; LUXFER_INVALID_ARGUMENT if the rectangle
+/// is empty or exceeds the texture; LUXFER_OUT_OF_MEMORY beyond the memory budget.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_render_tile(
     emission: *mut luxfer_emission,

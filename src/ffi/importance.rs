@@ -158,9 +158,9 @@ pub unsafe extern "C" fn luxfer_importance_set_scene(
 }
 
 /// Starts a job that traces the map and removes an earlier placement. params may be NULL for the defaults. The caller
-/// releases *job. Any thread. LUXFER_INVALID_OPERATION if the scene is missing or a job runs already. The job may end
-/// with LUXFER_INVALID_ARGUMENT if the scene is not valid, the surfaces have no texture coordinates, or a setting is
-/// out of range.
+/// releases *job. Any thread.
+/// LUXFER_INVALID_OPERATION if the scene is missing or a job runs already. The job may end with LUXFER_INVALID_ARGUMENT
+/// if the scene is not valid, the surfaces have no texture coordinates, or a setting is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_importance_start(
     importance: *mut luxfer_importance,

@@ -69,7 +69,8 @@ pub unsafe extern "C" fn luxfer_colour_temperature(
 
 /// Writes the linear colour, with luminance 1, of a colour temperature into rgb, three numbers: kelvin is in [1000,
 /// 20000], duv, the distance from the blackbody, in [-0.05, 0.05]. A channel is negative if the colour is out of gamut.
-/// Any thread. LUXFER_INVALID_ARGUMENT if a value is out of range.
+/// Any thread.
+/// LUXFER_INVALID_ARGUMENT if a value is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_colour_of_temperature(
     context: *mut luxfer_context,

@@ -190,9 +190,10 @@ pub unsafe extern "C" fn luxfer_plan_create(
 
 /// Starts a job that plans a rendering with the scene and the camera of render. settings gives the size of the picture
 /// and the other settings that do not affect quality; NULL for the defaults. params gives the goal. The caller releases
-/// *job. Any thread. LUXFER_INVALID_ARGUMENT if params is NULL or does not set exactly one goal, or if a setting is out
-/// of range; LUXFER_INVALID_OPERATION if the scene is missing or a job runs already; LUXFER_NOT_FOUND if the scene has
-/// no such camera.
+/// *job. Any thread.
+/// LUXFER_INVALID_ARGUMENT if params is NULL or does not set exactly one goal, or if a setting is out of range;
+/// LUXFER_INVALID_OPERATION if the scene is missing or a job runs already; LUXFER_NOT_FOUND if the scene has no such
+/// camera.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_plan_start_render(
     plan: *mut luxfer_plan,
@@ -216,10 +217,10 @@ pub unsafe extern "C" fn luxfer_plan_start_render(
 /// Starts a job that plans the stages RELIGHT and RENDER of a transfer, with the lamps that its stage EMISSION has
 /// made. settings are the settings with which the transfer will be started; NULL for the defaults. Afterwards replace
 /// its relight and render by luxfer_plan_get_relight_params and luxfer_plan_get_render_params, which change the
-/// settings that affect quality. params gives the goal. The caller releases *job. Any thread. LUXFER_INVALID_ARGUMENT
-/// if params is NULL or does not set exactly one goal, or if a setting is out of range; LUXFER_INVALID_OPERATION before
-/// the stage EMISSION has a result, or if a job runs already. The job may end with LUXFER_UNREACHABLE if no light of
-/// the lamps is reflected back to their surface.
+/// settings that affect quality. params gives the goal. The caller releases *job. Any thread.
+/// LUXFER_INVALID_ARGUMENT if params is NULL or does not set exactly one goal, or if a setting is out of range;
+/// LUXFER_INVALID_OPERATION before the stage EMISSION has a result, or if a job runs already. The job may end with
+/// LUXFER_UNREACHABLE if no light of the lamps is reflected back to their surface.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_plan_start_transfer(
     plan: *mut luxfer_plan,

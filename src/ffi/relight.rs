@@ -256,7 +256,8 @@ pub unsafe extern "C" fn luxfer_relight_create(
 
 /// Sets the scene, the emitting material to solve for, and the mesh whose mean colour should match;
 /// luxfer_scene_place_emission returns both indices. The solution is a factor for the emission that the material has in
-/// the scene. Any thread. LUXFER_NOT_FOUND if the scene has no such material or mesh.
+/// the scene. Any thread.
+/// LUXFER_NOT_FOUND if the scene has no such material or mesh.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_relight_set_scene(
     relight: *mut luxfer_relight,
@@ -332,8 +333,8 @@ impl Emitter {
 
 /// Starts a job that solves. params may be NULL for the defaults. The caller releases *job. Any thread.
 /// LUXFER_INVALID_OPERATION if the scene or the target is missing or a job runs already. The job may end with
-/// LUXFER_UNREACHABLE if no light of the emission can reach the target, LUXFER_INVALID_ARGUMENT if the scene is not valid or
-/// a setting is out of range.
+/// LUXFER_UNREACHABLE if no light of the emission can reach the target, LUXFER_INVALID_ARGUMENT if the scene is not
+/// valid or a setting is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_relight_start(
     relight: *mut luxfer_relight,

@@ -75,8 +75,9 @@ pub unsafe extern "C" fn luxfer_render_part_init(part: *mut luxfer_render_part, 
 /// Gets part number index of a rendering that is split into columns x rows rectangles and ranges of paths, all of about
 /// equal size; index is less than columns * rows * ranges. The rectangles are numbered row by row, and all rectangles
 /// of one range come before the next range. params may be NULL for the defaults; set part->struct_size before the call.
-/// Any thread. LUXFER_INVALID_ARGUMENT if there is no such part, or if there are more parts than pixels or paths, so
-/// that some would be empty.
+/// Any thread.
+/// LUXFER_INVALID_ARGUMENT if there is no such part, or if there are more parts than pixels or paths, so that some
+/// would be empty.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_split(
     render: *mut luxfer_render,

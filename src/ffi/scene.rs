@@ -330,8 +330,9 @@ pub unsafe extern "C" fn luxfer_scene_set_environment(
 /// Sets an environment from an equirectangular image in linear values, multiplied by (red, green, blue), each finite
 /// and >= 0: radiance in cd/m². The renderer samples it in proportion to its brightness. The centre of the image is
 /// towards -z, its top towards +y, the centre of its right half towards +x. The image is copied and replaces any
-/// earlier environment. Any thread. LUXFER_INVALID_ARGUMENT if a value of the image is negative or not finite;
-/// LUXFER_OUT_OF_MEMORY beyond the memory budget.
+/// earlier environment. Any thread.
+/// LUXFER_INVALID_ARGUMENT if a value of the image is negative or not finite; LUXFER_OUT_OF_MEMORY beyond the memory
+/// budget.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_set_environment_image(
     scene: *mut luxfer_scene,
@@ -384,8 +385,9 @@ pub unsafe extern "C" fn luxfer_scene_set_emission(
 }
 
 /// Finds the planar surface that faces the room among the triangles of an object or material; name is UTF-8. Any
-/// thread. LUXFER_NOT_FOUND if no object or material has that name: the message lists names that exist;
-/// LUXFER_DEGENERATE if there is no planar surface.
+/// thread.
+/// LUXFER_NOT_FOUND if no object or material has that name: the message lists names that exist; LUXFER_DEGENERATE if
+/// there is no planar surface.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_find_surface(
     scene: *mut luxfer_scene,

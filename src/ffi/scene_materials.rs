@@ -294,8 +294,8 @@ pub unsafe extern "C" fn luxfer_scene_set_material_texture(
     })
 }
 
-/// Gets the texture that a material uses for a purpose; role is a LUXFER_TEXTURE_ value. Any thread. LUXFER_NOT_FOUND
-/// if there is no such material; LUXFER_INVALID_ARGUMENT for another role.
+/// Gets the texture that a material uses for a purpose; role is a LUXFER_TEXTURE_ value. Any thread.
+/// LUXFER_NOT_FOUND if there is no such material; LUXFER_INVALID_ARGUMENT for another role.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_get_material_texture(
     scene: *mut luxfer_scene,

@@ -82,8 +82,9 @@ pub unsafe extern "C" fn luxfer_scene_get_mesh_name(
 
 /// Copies a mesh into packed arrays of the caller: positions and normals with three floats per vertex, and indices with
 /// three per triangle. Any of the arrays may be NULL. The capacities are numbers of vertices and of triangles. Any
-/// thread. LUXFER_NOT_FOUND if there is no such mesh, or if normals is given and the mesh has none;
-/// LUXFER_INVALID_ARGUMENT if a capacity is too small.
+/// thread.
+/// LUXFER_NOT_FOUND if there is no such mesh, or if normals is given and the mesh has none; LUXFER_INVALID_ARGUMENT if
+/// a capacity is too small.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_read_mesh(
     scene: *mut luxfer_scene,
