@@ -88,7 +88,7 @@ def relight(
 
 
 class _Task:
-    """What a worker is to do with an item, as it travels: the same task wherever it arrives."""
+    """A task for a worker, as it is sent: its work does not depend on the worker that receives it."""
 
     def __init__(self, work: Callable[..., Any], params: Any = None) -> None:
         self.work, self.params, self.key = work, params, uuid.uuid4().hex
@@ -124,7 +124,7 @@ class _Target(_Task):
 
 @lru_cache(maxsize=1)
 def _context() -> Context:
-    """The context of a worker: one for all its tasks, with as many threads as it has."""
+    """The context of a worker: one for all its tasks, with the number of threads of the worker."""
     from distributed import get_worker
 
     return Context(num_threads=get_worker().state.nthreads)
@@ -132,12 +132,12 @@ def _context() -> Context:
 
 @lru_cache(maxsize=2)
 def _prepared(task: _Task) -> tuple[Any, threading.Lock]:
-    """What a task works on, made once on this worker, not for every item. One item at a time: it has all threads."""
+    """The objects of a task, prepared once per worker. The worker processes one item at a time, with all threads."""
     return task.work(_context()), threading.Lock()
 
 
 def _as_completed(client: Client, task: _Task, items: Sequence[Any]) -> Iterable[tuple[int, Any]]:
-    """Results as they come, with their places. What has not begun when the caller gives up is not begun."""
+    """Results as they arrive, with their indices. If the caller stops, tasks that have not started are cancelled."""
     from distributed import as_completed
 
     futures = {client.submit(task, item, pure=False): index for index, item in enumerate(items)}
