@@ -200,9 +200,9 @@ luxfer_status luxfer_context_last_error(luxfer_context *context,
 /* ====================================================================================================================
  * Image
  *
- * An image holds 32-bit floating-point samples: scene-linear Rec.709 colour (D65 white), or data. Rows run downwards.
- * Images never change after they are made, so results are shared and not copied. The caller's pixels are described by a
- * view; the library never keeps a pointer to them. Sides are at most 65536 pixels.
+ * An image holds 32-bit floating-point samples: scene-linear Rec.709 colour (D65 white), or data. Rows run from top to
+ * bottom. An image never changes after its creation, so results are shared and not copied. A view describes pixels in
+ * the caller's memory; the library never keeps a pointer to them. Width and height are at most 65536 pixels.
  * ==================================================================================================================== */
 
 /** Flag of a view: the first row in memory is the bottom one. */
@@ -211,10 +211,10 @@ luxfer_status luxfer_context_last_error(luxfer_context *context,
 /** An image. See luxfer_image_create. */
 typedef struct luxfer_image luxfer_image;
 
-/** How a sample is stored: a LUXFER_SAMPLE_ value, in the machine's byte order. */
+/** Storage type of a sample, in the machine's byte order: a LUXFER_SAMPLE_ value. */
 typedef int32_t luxfer_sample;
 
-/** What the numbers mean: a LUXFER_COLOUR_ value. */
+/** Encoding of the values: a LUXFER_COLOUR_ value. */
 typedef int32_t luxfer_colour_space;
 
 /** An image in the caller's memory. Fill it with luxfer_image_view_init, then set size, sample and data. */
@@ -231,15 +231,15 @@ typedef struct luxfer_image_view {
     uint32_t width;
     /** Rows, in [1, 65536]; default 0, to be set. */
     uint32_t height;
-    /** LUXFER_VIEW_ flags, or 0, the default. Unknown flags are refused. */
+    /** LUXFER_VIEW_ flags, or 0, the default. Unknown flags are an error. */
     uint32_t flags;
     /** Must be 0. */
     uint32_t reserved;
-    /** Bytes from a pixel to the next; at least the pixel's size, or 0, the default: packed. */
+    /** Bytes from one pixel to the next; at least the size of a pixel, or 0, the default: packed. */
     size_t pixel_stride;
-    /** Bytes from a row to the next; at least the row's size, or 0, the default: packed. */
+    /** Bytes from one row to the next; at least the size of a row, or 0, the default: packed. */
     size_t row_stride;
-    /** Bytes at data that may be accessed; what the layout needs beyond is LUXFER_INVALID_ARGUMENT. To be set. */
+    /** Size of the memory at data in bytes; LUXFER_INVALID_ARGUMENT if the layout needs more. To be set. */
     size_t byte_size;
     /** The pixels; any alignment. Bytes between pixels and rows are never touched. To be set. */
     void *data;
@@ -257,32 +257,32 @@ typedef struct luxfer_image_view {
 /** 32-bit floating point. */
 #define LUXFER_SAMPLE_F32 3
 
-/** Scene-linear Rec.709, or data that is no colour. */
+/** Scene-linear Rec.709, or data that is not colour. */
 #define LUXFER_COLOUR_LINEAR 0
 
-/** Colour encoded with the sRGB curve; the second of two and the fourth of four channels is alpha, which is linear. */
+/** Colour with the sRGB curve; alpha, the second of two or the fourth of four channels, is linear. */
 #define LUXFER_COLOUR_SRGB 1
 
 /**
- * Fills *view with the defaults; size is sizeof *view. LUXFER_INVALID_ARGUMENT if view is NULL or size is not that of any
- * version of the struct.
+ * Fills *view with the defaults; size is sizeof *view. LUXFER_INVALID_ARGUMENT if view is NULL or no version of the
+ * struct has this size.
  */
 luxfer_status luxfer_image_view_init(luxfer_image_view *view,
                                      size_t size);
 
 /**
- * Creates an image from a copy of the caller's pixels; integers and sRGB are decoded, NaN and infinities kept. The caller
- * releases *image. Any thread.
- * LUXFER_INVALID_ARGUMENT if the view contradicts itself; LUXFER_OUT_OF_MEMORY beyond the context's memory budget.
+ * Creates an image from a copy of the caller's pixels. It decodes integers and sRGB, and keeps NaN and infinities. The
+ * caller releases *image. Any thread.
+ * LUXFER_INVALID_ARGUMENT if the view is inconsistent; LUXFER_OUT_OF_MEMORY beyond the context's memory budget.
  */
 luxfer_status luxfer_image_create(luxfer_context *context,
                                   const luxfer_image_view *view,
                                   luxfer_image **image);
 
 /**
- * Loads a PNG, JPEG, Radiance HDR or OpenEXR file; path is UTF-8. colour_space says how integer samples are encoded:
- * LUXFER_COLOUR_SRGB for pictures, LUXFER_COLOUR_LINEAR for data such as masks and depth; files with floating-point
- * samples are linear. The caller releases *image. Any thread.
+ * Loads a PNG, JPEG, Radiance HDR or OpenEXR file; path is UTF-8. colour_space is the encoding of integer samples:
+ * LUXFER_COLOUR_SRGB for pictures, LUXFER_COLOUR_LINEAR for data such as masks and depth; floating-point samples are
+ * always linear. The caller releases *image. Any thread.
  * LUXFER_IO if the file cannot be read, LUXFER_FORMAT if it is damaged or of another format, LUXFER_UNSUPPORTED if an
  * OpenEXR file has neither R, G, B nor a single channel, LUXFER_OUT_OF_MEMORY beyond the memory budget.
  */
@@ -291,7 +291,7 @@ luxfer_status luxfer_image_load(luxfer_context *context,
                                 luxfer_colour_space colour_space,
                                 luxfer_image **image);
 
-/** Loads an image from the size bytes of a file held in memory, otherwise as luxfer_image_load. */
+/** Loads an image from a file in memory of size bytes; otherwise as luxfer_image_load. */
 luxfer_status luxfer_image_load_memory(luxfer_context *context,
                                        const void *data,
                                        size_t size,
@@ -300,26 +300,26 @@ luxfer_status luxfer_image_load_memory(luxfer_context *context,
 
 /**
  * Saves an image; path is UTF-8 and its extension chooses the format. .png: 1, 3 or 4 channels, multiplied by exposure
- * (> 0, finite; 1 shows the value 1 as white), clamped to [0, 1] and encoded as 8-bit sRGB. .exr: up to 64 channels as
- * they are, in 32-bit floating point; exposure is not used. An existing file is replaced only by a complete one. Any
- * thread.
+ * (> 0, finite; 1 shows the value 1 as white), clamped to [0, 1] and encoded as 8-bit sRGB. .exr: up to 64 channels,
+ * unchanged, in 32-bit floating point; exposure is not used. An existing file is replaced only once the new one is
+ * complete. Any thread.
  * LUXFER_INVALID_ARGUMENT for another extension or number of channels; LUXFER_IO if the file cannot be written.
  */
 luxfer_status luxfer_image_save(luxfer_image *image,
                                 const char *path,
                                 float exposure);
 
-/** Tells width and height in pixels and the number of channels; any of the three may be NULL. Any thread. */
+/** Gets width and height in pixels and the number of channels; any of the three may be NULL. Any thread. */
 luxfer_status luxfer_image_size(luxfer_image *image,
                                 uint32_t *width,
                                 uint32_t *height,
                                 uint32_t *channels);
 
 /**
- * Writes an image into the caller's pixels. The view must have the image's size; if the image has more channels than the
- * view, those from first_channel on are written. Integers are clamped to their range and rounded, NaN becomes 0 in them.
+ * Copies an image into the caller's pixels. The view must have the image's size. It receives view->channels channels
+ * of the image, starting at first_channel. Integers are clamped to their range and rounded; NaN becomes 0 in integers.
  * Any thread.
- * LUXFER_INVALID_ARGUMENT if the view contradicts itself or the image.
+ * LUXFER_INVALID_ARGUMENT if the view is inconsistent or does not fit the image.
  */
 luxfer_status luxfer_image_read(luxfer_image *image,
                                 uint32_t first_channel,
@@ -328,7 +328,7 @@ luxfer_status luxfer_image_read(luxfer_image *image,
 /** Adds a reference. Any thread. */
 luxfer_status luxfer_image_retain(luxfer_image *image);
 
-/** Gives a reference back. Any thread. */
+/** Removes a reference. Any thread. */
 luxfer_status luxfer_image_release(luxfer_image *image);
 
 /* ====================================================================================================================

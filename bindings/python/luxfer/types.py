@@ -45,7 +45,7 @@ class Status(IntEnum):
 
 
 class Sample(IntEnum):
-    """How a sample is stored."""
+    """Storage type of a sample, in the machine's byte order."""
 
     U8 = 0
     """8-bit unsigned integer that stands for [0, 1]."""
@@ -58,13 +58,12 @@ class Sample(IntEnum):
 
 
 class ColourSpace(IntEnum):
-    """What the numbers mean."""
+    """Encoding of the values."""
 
     LINEAR = 0
-    """Scene-linear Rec.709, or data that is no colour."""
+    """Scene-linear Rec.709, or data that is not colour."""
     SRGB = 1
-    """Colour encoded with the sRGB curve; the second of two and the fourth of four channels is alpha, which is
-    linear."""
+    """Colour with the sRGB curve; alpha, the second of two or the fourth of four channels, is linear."""
 
 
 class AlphaMode(IntEnum):
@@ -713,14 +712,13 @@ class ImageView(TypedDict, total=False):
     height: int
     """Rows, in [1, 65536]; default 0, to be set."""
     flags: View | str | int
-    """View, or 0, the default. Unknown flags are refused."""
+    """View, or 0, the default. Unknown flags are an error."""
     pixel_stride: int
-    """Bytes from a pixel to the next; at least the pixel's size, or 0, the default: packed."""
+    """Bytes from one pixel to the next; at least the size of a pixel, or 0, the default: packed."""
     row_stride: int
-    """Bytes from a row to the next; at least the row's size, or 0, the default: packed."""
+    """Bytes from one row to the next; at least the size of a row, or 0, the default: packed."""
     byte_size: int
-    """Bytes at data that may be accessed; what the layout needs beyond is Status.INVALID_ARGUMENT. To be
-    set."""
+    """Size of the memory at data in bytes; Status.INVALID_ARGUMENT if the layout needs more. To be set."""
     data: int
     """The pixels; any alignment. Bytes between pixels and rows are never touched. To be set."""
 
