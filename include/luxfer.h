@@ -1250,21 +1250,21 @@ luxfer_status luxfer_image_warp(luxfer_image *source,
 /* ====================================================================================================================
  * Rectification
  *
- * From the straight lines of a photo to vanishing points and the camera, and, where a mask marks a plane, to that plane
- * seen straight on. Image points are in pixels, x right, y down, the top-left pixel's centre at (0.5, 0.5). Room axes 0 and
- * 2 are horizontal, axis 1 is vertical; camera space is x right, y down, z forward.
+ * Finds vanishing points and the camera from the straight lines of a photo and, if a mask marks a plane, unwarps that
+ * plane to a frontal view. Image points are in pixels, x to the right, y down; the centre of the top-left pixel is
+ * (0.5, 0.5). Room axes 0 and 2 are horizontal, axis 1 is vertical; camera space is x to the right, y down, z forward.
  * ==================================================================================================================== */
 
 /** Lines, vanishing points and the unwarped plane of a photo. See luxfer_rectify_create. */
 typedef struct luxfer_rectify luxfer_rectify;
 
-/** How lines are found: a LUXFER_LINES_ value. */
+/** Detector of lines: a LUXFER_LINES_ value. */
 typedef int32_t luxfer_lines;
 
-/** How vanishing points are found: a LUXFER_SEARCH_ value. */
+/** Search for vanishing points: a LUXFER_SEARCH_ value. */
 typedef int32_t luxfer_search;
 
-/** How far a vanishing point is from a line, in LUXFER_SEARCH_SUCCESSIVE: a LUXFER_METRIC_ value. */
+/** Distance of a vanishing point from a line, for LUXFER_SEARCH_SUCCESSIVE: a LUXFER_METRIC_ value. */
 typedef int32_t luxfer_metric;
 
 /** Settings of a rectification. Fill them with luxfer_rectify_params_init. */
@@ -1278,23 +1278,29 @@ typedef struct luxfer_rectify_params {
     /** LUXFER_METRIC_ value; default LUXFER_METRIC_SEGMENT. */
     luxfer_metric metric;
     /**
-     * Half-width in radians of the band around the gradient's direction that votes for a line, in [1e-4, pi/2]; default
-     * 0.0436, which is 2.5 degrees.
+     * Half-width in radians of the band around the gradient's direction that votes for a line, in [1e-4, pi/2], for
+     * LUXFER_LINES_HOUGH; default 0.0436, which is 2.5 degrees.
      */
     double hough_band;
-    /** Focal length in pixels, > 0, or 0, the default: unknown. */
+    /** Focal length in pixels, > 0; 0, the default: unknown. */
     double focal;
     /** Principal point in pixels; NaN, the default: the image's centre. */
     double principal[2];
-    /** The two room axes that the plane spans, each 0, 1 or 2; -1, the default: found from the lines in it. */
+    /**
+     * The two room axes that the plane spans, each 0, 1 or 2; -1, the default: estimated from the lines on the plane.
+     */
     int32_t plane_axes[2];
     /**
-     * Longest side of the unwarped image in pixels, in [16, 16384]; default 2048. The photo's own density decides below.
+     * Largest side of the unwarped image in pixels, in [16, 16384]; default 2048. The image is smaller if the
+     * resolution of the photo does not support this size.
      */
     uint32_t max_side;
     /** Must be 0. */
     uint32_t reserved;
-    /** Largest magnification of the photo, > 0; default 16. What is further away is cut off. */
+    /**
+     * Largest magnification of the photo, > 0; default 16. Parts of the plane that are too far away for it are cut
+     * off.
+     */
     double max_magnification;
     /** Seed of the search; default 1. */
     uint64_t seed;
@@ -1306,17 +1312,20 @@ typedef int32_t luxfer_rectify_image;
 /** Where a focal length came from: a LUXFER_FOCAL_ value. */
 typedef int32_t luxfer_focal_source;
 
-/** What the lines of a photo say about its camera, and how the plane was unwarped. Set struct_size before the call. */
+/** The camera found from the lines of a photo, and the unwarping of the plane. Set struct_size before the call. */
 typedef struct luxfer_rectify_report {
     /** sizeof(luxfer_rectify_report), set by the caller. */
     uint32_t struct_size;
     /** Number of line segments found. */
     uint32_t segments;
-    /** Vanishing points of the room axes, homogeneous pixels of unit length; the third coordinate is 0 at infinity. */
+    /**
+     * Vanishing points of the room axes, in homogeneous pixel coordinates of unit length; the third coordinate is 0 at
+     * infinity.
+     */
     double vanishing_points[3][3];
-    /** Standard deviation of their directions in camera space, in radians. */
+    /** Standard deviations of their directions in camera space, in radians. */
     double vanishing_errors[3];
-    /** Number of segments that agree with each; 0 = derived from the other two. */
+    /** Number of segments that agree with each vanishing point; 0: derived from the other two. */
     uint32_t vanishing_support[3];
     /** LUXFER_FOCAL_ value. */
     luxfer_focal_source focal_source;
@@ -1326,66 +1335,66 @@ typedef struct luxfer_rectify_report {
     double principal[2];
     /** Room axes as unit vectors in camera space. */
     double axes[3][3];
-    /** 1 if the plane has been unwarped, else 0, and what follows is 0. */
+    /** 1 if the plane has been unwarped; 0 if not: the fields from to_photo to aspect_confidence are then 0. */
     uint32_t is_unwarped;
     /** Must be 0. */
     uint32_t reserved;
-    /** The map from unwarped pixels to photo pixels, row by row. */
+    /** Homography from unwarped pixels to photo pixels, row by row. */
     double to_photo[9];
-    /** Corners of the unwarped rectangle in the photo, x and y. */
+    /** Corners of the unwarped rectangle in the photo, x and y in pixels. */
     double corners[4][2];
     /** Expected error of each corner, in unwarped pixels. */
     double corner_errors[4];
-    /** Size of an unwarped pixel as a share of the camera's distance from the plane. */
+    /** Size of an unwarped pixel, divided by the camera's distance from the plane. */
     double pixel_size;
-    /** Trust in the aspect ratio, in [0, 1]: low where the focal length had to be assumed. */
+    /** Confidence of the aspect ratio, in [0, 1]: low if the focal length was assumed. */
     double aspect_confidence;
     /**
-     * How far outwards the lens moves what it shows in the corners of the photo, as a share of their distance from its centre:
-     * below 0 for a barrel, as of wide angles. It is measured by how far straight lines are bent, and not undone. NaN where the
-     * photo has too few lines to tell.
+     * Lens distortion: the outward shift of the corners of the photo, as a share of their distance from its centre;
+     * below 0 for barrel distortion, as of wide-angle lenses. It is estimated from the curvature of straight edges,
+     * and not corrected. NaN if the photo has too few lines.
      */
     double distortion;
-    /** Its standard deviation; NaN where it is. */
+    /** Standard deviation of distortion; NaN if distortion is NaN. */
     double distortion_error;
     /**
-     * For each axis how far the angle between the two others is from a right one, in radians, by the lines of these two alone:
-     * walls that meet at other angles, pixels that are not square and a principal point elsewhere show here. The axes are made
-     * orthogonal all the same. NaN where an axis has no lines.
+     * For each axis, the deviation from 90 degrees, in radians, of the angle between the two other axes, each
+     * estimated from its own lines alone. Oblique walls, pixels that are not square and a wrong principal point show
+     * here; axes is orthogonal in any case. NaN if one of the two axes has no lines.
      */
     double squareness[3];
-    /** Standard deviation of each; NaN where it is. */
+    /** Standard deviations of squareness; NaN where squareness is NaN. */
     double squareness_errors[3];
 } luxfer_rectify_report;
 
-/** Regions of like gradient direction, with sub-pixel end points. */
+/** Segments from regions of similar gradient direction, with sub-pixel end points. */
 #define LUXFER_LINES_REGIONS 0
 
-/** The paper's: gradient-restricted Hough transform of Canny edges. */
+/** The paper's method: gradient-restricted Hough transform of Canny edges. */
 #define LUXFER_LINES_HOUGH 1
 
-/** Three orthogonal directions and the focal length at once, then each refined freely. */
+/** Searches three orthogonal directions and the focal length together, then refines each direction freely. */
 #define LUXFER_SEARCH_MANHATTAN 0
 
-/** The paper's: one group of lines after the other. */
+/** The paper's method: one group of lines after the other. */
 #define LUXFER_SEARCH_SUCCESSIVE 1
 
-/** The paper's measure on the segment that was detected, finite for vanishing points at infinity. */
+/** The paper's measure, evaluated on the detected segment; finite for vanishing points at infinity. */
 #define LUXFER_METRIC_SEGMENT 0
 
-/** As printed in the paper (Eq. 2), on the whole visible line. */
+/** The measure as printed in the paper (Eq. 2), evaluated on the whole visible line. */
 #define LUXFER_METRIC_VISIBLE_LINE 1
 
-/** The caller gave it. */
+/** Set by the caller. */
 #define LUXFER_FOCAL_GIVEN 0
 
-/** From vanishing points of orthogonal directions. */
+/** Estimated from vanishing points of orthogonal directions. */
 #define LUXFER_FOCAL_FROM_VANISHING_POINTS 1
 
-/** A guess, 0.85 of the image's width. */
+/** Assumed: 0.85 times the width of the photo. */
 #define LUXFER_FOCAL_ASSUMED 2
 
-/** The plane seen straight on, linear RGB. */
+/** The plane in frontal view, linear RGB. */
 #define LUXFER_RECTIFY_UNWARPED 0
 
 /** 1 where the photo shows the plane, else 0; 1 channel. */
@@ -1404,17 +1413,19 @@ luxfer_status luxfer_rectify_create(luxfer_context *context, luxfer_rectify **re
 luxfer_status luxfer_rectify_set_photo(luxfer_rectify *rectify, luxfer_image *photo);
 
 /**
- * Sets the mask of the plane to unwarp, 1 on it and 0 elsewhere; 1 channel, the photo's size. mask may be NULL: then only
- * lines and vanishing points are found. Any thread.
+ * Sets the mask of the plane to unwarp: 1 on it, 0 elsewhere; 1 channel, the photo's size. mask may be NULL: then the
+ * job finds only lines and vanishing points. Any thread.
  */
 luxfer_status luxfer_rectify_set_mask(luxfer_rectify *rectify,
                                       luxfer_image *mask);
 
 /**
- * Starts a job that finds lines, vanishing points and the camera, unless the same photo's are known from before, and
- * unwarps the plane if its mask is set. params may be NULL for the defaults. The caller releases *job. Any thread.
- * LUXFER_INVALID_OPERATION if the photo is missing or a job runs already. The job may end with LUXFER_DEGENERATE if there
- * are no lines or the plane is seen edge-on, LUXFER_INVALID_ARGUMENT if sizes differ or a setting is out of range.
+ * Starts a job that finds lines, vanishing points and the camera, unless they are known for this photo from an earlier
+ * job, and unwarps the plane if its mask is set. params may be NULL for the defaults. The caller releases *job. Any
+ * thread.
+ * LUXFER_INVALID_OPERATION if the photo is missing or a job runs already. The job may end with LUXFER_DEGENERATE if
+ * there are no lines or the plane is seen edge-on, LUXFER_INVALID_ARGUMENT if sizes differ or a setting is out of
+ * range.
  */
 luxfer_status luxfer_rectify_start(luxfer_rectify *rectify,
                                    const luxfer_rectify_params *params,
@@ -1429,9 +1440,9 @@ luxfer_status luxfer_rectify_get_image(luxfer_rectify *rectify,
                                        luxfer_image **image);
 
 /**
- * Unwarps another image of the photo's size, such as the confidence of the lights, as the plane was; outside the photo it
- * becomes 0. Returns when it is done, which takes some milliseconds for each megapixel. The caller releases *warped. Any
- * thread.
+ * Unwarps another image of the photo's size, such as the confidence of the lights, by the homography of the plane;
+ * pixels outside the photo become 0. Returns when its work is done, after a few milliseconds per megapixel. The caller
+ * releases *warped. Any thread.
  * LUXFER_NOT_READY before a job with a mask has succeeded; LUXFER_INVALID_ARGUMENT if the size differs.
  */
 luxfer_status luxfer_rectify_warp(luxfer_rectify *rectify,
@@ -1439,7 +1450,7 @@ luxfer_status luxfer_rectify_warp(luxfer_rectify *rectify,
                                   luxfer_image **warped);
 
 /**
- * Tells what was found and how sure it is. Any thread.
+ * Gets the results and their errors. Any thread.
  * LUXFER_NOT_READY before a job has succeeded.
  */
 luxfer_status luxfer_rectify_get_report(luxfer_rectify *rectify, luxfer_rectify_report *report);
@@ -1447,7 +1458,7 @@ luxfer_status luxfer_rectify_get_report(luxfer_rectify *rectify, luxfer_rectify_
 /** Adds a reference. Any thread. */
 luxfer_status luxfer_rectify_retain(luxfer_rectify *rectify);
 
-/** Gives a reference back; a job that runs goes on. Any thread. */
+/** Removes a reference; a running job continues. Any thread. */
 luxfer_status luxfer_rectify_release(luxfer_rectify *rectify);
 
 /* ====================================================================================================================

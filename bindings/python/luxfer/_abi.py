@@ -544,7 +544,7 @@ class luxfer_rectify_params(Structure):
 
 
 class luxfer_rectify_report(Structure):
-    """What the lines of a photo say about its camera, and how the plane was unwarped."""
+    """The camera found from the lines of a photo, and the unwarping of the plane."""
 
     _fields_ = [
         ("struct_size", c_uint32),

@@ -122,37 +122,38 @@ class LightKind(IntEnum):
 
 
 class Lines(IntEnum):
-    """How lines are found."""
+    """Detector of lines."""
 
     REGIONS = 0
-    """Regions of like gradient direction, with sub-pixel end points."""
+    """Segments from regions of similar gradient direction, with sub-pixel end points."""
     HOUGH = 1
-    """The paper's: gradient-restricted Hough transform of Canny edges."""
+    """The paper's method: gradient-restricted Hough transform of Canny edges."""
 
 
 class Search(IntEnum):
-    """How vanishing points are found."""
+    """Search for vanishing points."""
 
     MANHATTAN = 0
-    """Three orthogonal directions and the focal length at once, then each refined freely."""
+    """Searches three orthogonal directions and the focal length together, then refines each direction
+    freely."""
     SUCCESSIVE = 1
-    """The paper's: one group of lines after the other."""
+    """The paper's method: one group of lines after the other."""
 
 
 class Metric(IntEnum):
-    """How far a vanishing point is from a line, in Search.SUCCESSIVE."""
+    """Distance of a vanishing point from a line, for Search.SUCCESSIVE."""
 
     SEGMENT = 0
-    """The paper's measure on the segment that was detected, finite for vanishing points at infinity."""
+    """The paper's measure, evaluated on the detected segment; finite for vanishing points at infinity."""
     VISIBLE_LINE = 1
-    """As printed in the paper (Eq. 2), on the whole visible line."""
+    """The measure as printed in the paper (Eq. 2), evaluated on the whole visible line."""
 
 
 class RectifyImage(IntEnum):
     """An image of a rectification."""
 
     UNWARPED = 0
-    """The plane seen straight on, linear RGB."""
+    """The plane in frontal view, linear RGB."""
     VALID = 1
     """1 where the photo shows the plane, else 0; 1 channel."""
 
@@ -161,11 +162,11 @@ class FocalSource(IntEnum):
     """Where a focal length came from."""
 
     GIVEN = 0
-    """The caller gave it."""
+    """Set by the caller."""
     FROM_VANISHING_POINTS = 1
-    """From vanishing points of orthogonal directions."""
+    """Estimated from vanishing points of orthogonal directions."""
     ASSUMED = 2
-    """A guess, 0.85 of the image's width."""
+    """Assumed: 0.85 times the width of the photo."""
 
 
 class DepthKind(IntEnum):
@@ -985,36 +986,38 @@ class RectifyParams(TypedDict, total=False):
     metric: Metric | str | int
     """Metric; default Metric.SEGMENT."""
     hough_band: float
-    """Half-width in radians of the band around the gradient's direction that votes for a line, in [1e-4, pi/2];
-    default 0.0436, which is 2.5 degrees."""
+    """Half-width in radians of the band around the gradient's direction that votes for a line, in [1e-4, pi/2],
+    for Lines.HOUGH; default 0.0436, which is 2.5 degrees."""
     focal: float
-    """Focal length in pixels, > 0, or 0, the default: unknown."""
+    """Focal length in pixels, > 0; 0, the default: unknown."""
     principal: Sequence[float]
     """Principal point in pixels; NaN, the default: the image's centre."""
     plane_axes: Sequence[int]
-    """The two room axes that the plane spans, each 0, 1 or 2; -1, the default: found from the lines in it."""
+    """The two room axes that the plane spans, each 0, 1 or 2; -1, the default: estimated from the lines on the
+    plane."""
     max_side: int
-    """Longest side of the unwarped image in pixels, in [16, 16384]; default 2048. The photo's own density
-    decides below."""
+    """Largest side of the unwarped image in pixels, in [16, 16384]; default 2048. The image is smaller if the
+    resolution of the photo does not support this size."""
     max_magnification: float
-    """Largest magnification of the photo, > 0; default 16. What is further away is cut off."""
+    """Largest magnification of the photo, > 0; default 16. Parts of the plane that are too far away for it are
+    cut off."""
     seed: int
     """Seed of the search; default 1."""
 
 
 @dataclass(frozen=True)
 class RectifyReport:
-    """What the lines of a photo say about its camera, and how the plane was unwarped."""
+    """The camera found from the lines of a photo, and the unwarping of the plane."""
 
     segments: int
     """Number of line segments found."""
     vanishing_points: tuple[tuple[float, float, float], tuple[float, float, float], tuple[float, float, float]]
-    """Vanishing points of the room axes, homogeneous pixels of unit length; the third coordinate is 0 at
-    infinity."""
+    """Vanishing points of the room axes, in homogeneous pixel coordinates of unit length; the third coordinate
+    is 0 at infinity."""
     vanishing_errors: tuple[float, float, float]
-    """Standard deviation of their directions in camera space, in radians."""
+    """Standard deviations of their directions in camera space, in radians."""
     vanishing_support: tuple[int, int, int]
-    """Number of segments that agree with each; 0 = derived from the other two."""
+    """Number of segments that agree with each vanishing point; 0: derived from the other two."""
     focal_source: FocalSource
     """FocalSource."""
     focal: float
@@ -1024,29 +1027,29 @@ class RectifyReport:
     axes: tuple[tuple[float, float, float], tuple[float, float, float], tuple[float, float, float]]
     """Room axes as unit vectors in camera space."""
     is_unwarped: int
-    """1 if the plane has been unwarped, else 0, and what follows is 0."""
+    """1 if the plane has been unwarped; 0 if not: the fields from to_photo to aspect_confidence are then 0."""
     to_photo: tuple[float, ...]
-    """The map from unwarped pixels to photo pixels, row by row."""
+    """Homography from unwarped pixels to photo pixels, row by row."""
     corners: tuple[tuple[float, float], tuple[float, float], tuple[float, float], tuple[float, float]]
-    """Corners of the unwarped rectangle in the photo, x and y."""
+    """Corners of the unwarped rectangle in the photo, x and y in pixels."""
     corner_errors: tuple[float, float, float, float]
     """Expected error of each corner, in unwarped pixels."""
     pixel_size: float
-    """Size of an unwarped pixel as a share of the camera's distance from the plane."""
+    """Size of an unwarped pixel, divided by the camera's distance from the plane."""
     aspect_confidence: float
-    """Trust in the aspect ratio, in [0, 1]: low where the focal length had to be assumed."""
+    """Confidence of the aspect ratio, in [0, 1]: low if the focal length was assumed."""
     distortion: float
-    """How far outwards the lens moves what it shows in the corners of the photo, as a share of their distance
-    from its centre: below 0 for a barrel, as of wide angles. It is measured by how far straight lines are bent,
-    and not undone. NaN where the photo has too few lines to tell."""
+    """Lens distortion: the outward shift of the corners of the photo, as a share of their distance from its
+    centre; below 0 for barrel distortion, as of wide-angle lenses. It is estimated from the curvature of
+    straight edges, and not corrected. NaN if the photo has too few lines."""
     distortion_error: float
-    """Its standard deviation; NaN where it is."""
+    """Standard deviation of distortion; NaN if distortion is NaN."""
     squareness: tuple[float, float, float]
-    """For each axis how far the angle between the two others is from a right one, in radians, by the lines of
-    these two alone: walls that meet at other angles, pixels that are not square and a principal point elsewhere
-    show here. The axes are made orthogonal all the same. NaN where an axis has no lines."""
+    """For each axis, the deviation from 90 degrees, in radians, of the angle between the two other axes, each
+    estimated from its own lines alone. Oblique walls, pixels that are not square and a wrong principal point
+    show here; axes is orthogonal in any case. NaN if one of the two axes has no lines."""
     squareness_errors: tuple[float, float, float]
-    """Standard deviation of each; NaN where it is."""
+    """Standard deviations of squareness; NaN where squareness is NaN."""
 
 
 class FeaturesParams(TypedDict, total=False):
