@@ -1464,9 +1464,10 @@ luxfer_status luxfer_rectify_release(luxfer_rectify *rectify);
 /* ====================================================================================================================
  * Features
  *
- * What segmentation knows of each pixel of a photo: ten channels, L*, a*, b* (CIELAB, D65), depth, position x, y, z and
- * normal x, y, z. Depth comes from the caller, or from a network that the caller has as an ONNX file, or is laid out as a
- * room from the lines that luxfer_rectify has found and strokes on one of its planes, or is a neutral guess.
+ * Computes the features of each pixel of a photo, for segmentation: ten channels, L*, a*, b* (CIELAB, D65), depth,
+ * position x, y, z and normal x, y, z. The depth is a depth map of the caller, or that of a network in an ONNX file of
+ * the caller, or that of a box-shaped room fitted to the lines of a luxfer_rectify and to strokes on one of its
+ * planes, or a neutral guess.
  * ==================================================================================================================== */
 
 /** The features of a photo. See luxfer_features_create. */
@@ -1480,33 +1481,37 @@ typedef struct luxfer_features_params {
     float near_plane;
     /** Far plane of Eq. 1, in [1.001, 1e6] times near_plane; default 10. */
     float far_plane;
-    /** Half-width of the window the normals are fitted in, in pixels, in [0, 64]; default 0: from the photo's size. */
+    /**
+     * Half-width in pixels of the window in which normals are fitted, in [0, 64]; default 0: chosen by the photo's
+     * size.
+     */
     uint32_t normal_radius;
 } luxfer_features_params;
 
-/** What a depth map measures: a LUXFER_DEPTH_ value. */
+/** Quantity that a depth map measures: a LUXFER_DEPTH_ value. */
 typedef int32_t luxfer_depth_kind;
 
-/**
- * What the colours of a photo become before a network sees them: a LUXFER_NORMALISATION_ value. The file does not say it.
- */
+/** Normalisation of the photo's colours for a network, which its file does not state: a LUXFER_NORMALISATION_ value. */
 typedef int32_t luxfer_normalisation;
 
 /** An image of the features: a LUXFER_FEATURES_ value. */
 typedef int32_t luxfer_features_image;
 
-/** Where the depth came from: a LUXFER_DEPTH_FROM_ value. */
+/** Source of the depth: a LUXFER_DEPTH_FROM_ value. */
 typedef int32_t luxfer_depth_source;
 
-/** How good the features are. Set struct_size before the call. */
+/** Quality of the features. Set struct_size before the call. */
 typedef struct luxfer_features_report {
     /** sizeof(luxfer_features_report), set by the caller. */
     uint32_t struct_size;
     /** LUXFER_DEPTH_FROM_ value. */
     luxfer_depth_source depth_source;
-    /** Mean trust in the depth, in [0, 1]. */
+    /** Mean confidence of the depth, in [0, 1]. */
     double depth_confidence;
-    /** Pixels of the photo that were NaN, infinite or negative and have been replaced from their neighbours. */
+    /**
+     * Number of pixels of the photo that were NaN, infinite or negative and were replaced by values of their
+     * neighbours.
+     */
     uint64_t replaced_pixels;
 } luxfer_features_report;
 
@@ -1516,37 +1521,40 @@ typedef struct luxfer_features_report {
 /** Distance along the ray of each pixel. */
 #define LUXFER_DEPTH_ALONG_RAY 1
 
-/** The ten channels; luxfer_image_read takes them apart. */
+/** The ten channels; luxfer_image_read reads some of them. */
 #define LUXFER_FEATURES_CHANNELS 0
 
-/** Trust in the depth of each pixel, in [0, 1]; 1 channel. */
+/** Confidence of the depth of each pixel, in [0, 1]; 1 channel. */
 #define LUXFER_FEATURES_DEPTH_CONFIDENCE 1
 
 /**
- * The depth along z that a network has estimated, from near_plane to far_plane; 1 channel. It can be set as the depth map of a
- * further run, or of luxfer_transfer, without running the network again.
+ * The depth along z that a network has estimated, from near_plane to far_plane; 1 channel. Set it as the depth map of
+ * later jobs, or of a luxfer_transfer, to avoid running the network again.
  */
 #define LUXFER_FEATURES_NETWORK_DEPTH 2
 
-/** By the size of the network's input: LUXFER_NORMALISATION_IMAGENET for 256 x 256, else LUXFER_NORMALISATION_HALF. */
+/**
+ * Chosen by the size of the network's input: LUXFER_NORMALISATION_IMAGENET for 256 x 256, else
+ * LUXFER_NORMALISATION_HALF.
+ */
 #define LUXFER_NORMALISATION_BY_SIZE 0
 
-/** sRGB less (0.485, 0.456, 0.406), over (0.229, 0.224, 0.225): MiDaS 2.1, large and small. */
+/** (sRGB - (0.485, 0.456, 0.406)) / (0.229, 0.224, 0.225), for MiDaS 2.1, large and small. */
 #define LUXFER_NORMALISATION_IMAGENET 1
 
-/** sRGB less 0.5, over 0.5: DPT. */
+/** (sRGB - 0.5) / 0.5, for DPT. */
 #define LUXFER_NORMALISATION_HALF 2
 
-/** sRGB in [0, 1]. */
+/** No normalisation: sRGB in [0, 1]. */
 #define LUXFER_NORMALISATION_NONE 3
 
 /** The caller's depth map. */
 #define LUXFER_DEPTH_FROM_CALLER 0
 
-/** A room laid out from the lines of the photo, and strokes. */
+/** A box-shaped room fitted to the lines of the photo and to strokes. */
 #define LUXFER_DEPTH_FROM_LAYOUT 1
 
-/** A guess that knows nothing of the photo. */
+/** A neutral guess that does not depend on the photo. */
 #define LUXFER_DEPTH_FROM_NOTHING 2
 
 /** The caller's network. */
@@ -1561,43 +1569,43 @@ luxfer_status luxfer_features_params_init(luxfer_features_params *params,
 /** Creates the stage. The caller releases *features. Any thread. */
 luxfer_status luxfer_features_create(luxfer_context *context, luxfer_features **features);
 
-/** Sets the photo: linear RGB, 1 = display white. Strokes set for a photo of another size are dropped. Any thread. */
-luxfer_status luxfer_features_set_photo(luxfer_features *features,
-                                        luxfer_image *photo);
+/** Sets the photo: linear RGB, 1 = display white. Strokes for a photo of another size are removed. Any thread. */
+luxfer_status luxfer_features_set_photo(luxfer_features *features, luxfer_image *photo);
 
 /**
- * Sets a depth map of the photo's size, 1 channel, in any unit; what is not positive and finite is a hole. kind is a
- * LUXFER_DEPTH_ value. depth may be NULL: none. Any thread.
+ * Sets a depth map of the photo's size, 1 channel, in any unit; values that are not positive and finite are holes.
+ * kind is a LUXFER_DEPTH_ value. depth may be NULL: no depth map. Any thread.
  */
 luxfer_status luxfer_features_set_depth(luxfer_features *features,
                                         luxfer_image *depth,
                                         luxfer_depth_kind kind);
 
 /**
- * Sets a network that estimates depth where there is no depth map: an ONNX file; path is UTF-8. Its one input is a photo, a float
- * tensor [1, 3, rows, columns] of any size up to 4096; its first output is a map of relative inverse depth, as those of MiDaS
- * and DPT are. The map is normalised by its extremes: the nearest pixel is on near_plane, the farthest on far_plane.
- * normalisation is a LUXFER_NORMALISATION_ value. path may be NULL: none. The file is read now and not needed afterwards.
- * Any thread.
- * LUXFER_IO if the file cannot be read, LUXFER_FORMAT if it is damaged, LUXFER_UNSUPPORTED if it needs what the library does not
- * do, or if the library was built without the Cargo feature onnx.
+ * Sets a network in an ONNX file that estimates depth if there is no depth map; path is UTF-8. The network has one
+ * input, the photo as a float tensor [1, 3, rows, columns] of any size up to 4096; its first output is a map of
+ * relative inverse depth, as of MiDaS and DPT. The map is normalised by its extremes: the nearest pixel lies on
+ * near_plane, the farthest on far_plane. normalisation is a LUXFER_NORMALISATION_ value. path may be NULL: no network.
+ * The call reads the file, which is not needed afterwards. Any thread.
+ * LUXFER_IO if the file cannot be read, LUXFER_FORMAT if it is damaged, LUXFER_UNSUPPORTED if it needs an operator
+ * that the library does not support, or if the library was built without the Cargo feature onnx.
  */
 luxfer_status luxfer_features_set_network(luxfer_features *features,
                                           const char *path,
                                           luxfer_normalisation normalisation);
 
 /**
- * Takes the lines and the camera that a luxfer_rectify has found in the same photo, as they are now. rectify may be NULL:
- * none. Any thread.
- * LUXFER_NOT_READY if it has found none yet.
+ * Sets the lines and the camera from the latest result of a luxfer_rectify of this photo. rectify may be NULL: no
+ * lines. Any thread.
+ * LUXFER_NOT_READY if it has no result yet.
  */
 luxfer_status luxfer_features_set_view(luxfer_features *features,
                                        luxfer_rectify *rectify);
 
 /**
- * Adds a stroke on the photo as luxfer_segment_add_stroke does: positive is 1 on one plane of the room, such as the ceiling that
- * carries the lights, and 0 elsewhere. They are heard where the room is laid out from lines (luxfer_features_set_view): of its
- * boxes those are preferred that have all positive strokes on one face, whichever it is, and no other there. Any thread.
+ * Adds a stroke on the photo as luxfer_segment_add_stroke does: positive is 1 on one plane of the room, such as the
+ * ceiling that carries the lights, and 0 off this plane. Strokes affect only a room that is fitted to lines
+ * (luxfer_features_set_view): the fit prefers boxes that have all positive strokes on one face and all others off this
+ * face. Any thread.
  * LUXFER_INVALID_OPERATION before the photo is set.
  */
 luxfer_status luxfer_features_add_stroke(luxfer_features *features,
@@ -1607,7 +1615,7 @@ luxfer_status luxfer_features_add_stroke(luxfer_features *features,
                                          int32_t positive);
 
 /**
- * Adds the strokes of a drawing of the photo's size that concern the plane, as luxfer_segment_add_strokes_image does with
+ * Adds the strokes for the plane from a drawing of the photo's size, as luxfer_segment_add_strokes_image does with
  * LUXFER_PHASE_PLANE. Any thread.
  * LUXFER_INVALID_OPERATION before the photo is set; LUXFER_INVALID_ARGUMENT if the size differs.
  */
@@ -1615,20 +1623,19 @@ luxfer_status luxfer_features_add_strokes_image(luxfer_features *features,
                                                 luxfer_image *drawing);
 
 /**
- * Adds the strokes of a text in UTF-8 that concern the plane, as luxfer_segment_add_strokes_text does with LUXFER_PHASE_PLANE. Any
- * thread.
+ * Adds the strokes for the plane from a text in UTF-8, as luxfer_segment_add_strokes_text does with
+ * LUXFER_PHASE_PLANE. Any thread.
  * LUXFER_INVALID_OPERATION before the photo is set; LUXFER_FORMAT, naming the line, if the text is malformed.
  */
-luxfer_status luxfer_features_add_strokes_text(luxfer_features *features,
-                                               const char *description);
+luxfer_status luxfer_features_add_strokes_text(luxfer_features *features, const char *description);
 
 /** Removes all strokes. Any thread. */
 luxfer_status luxfer_features_clear_strokes(luxfer_features *features);
 
 /**
  * Starts a job that computes the features. params may be NULL for the defaults. The caller releases *job. Any thread.
- * LUXFER_INVALID_OPERATION if the photo is missing or a job runs already. The job may end with LUXFER_INVALID_ARGUMENT if
- * sizes differ or a setting is out of range, LUXFER_DEGENERATE if the depth map is all holes.
+ * LUXFER_INVALID_OPERATION if the photo is missing or a job runs already. The job may end with LUXFER_INVALID_ARGUMENT
+ * if sizes differ or a setting is out of range, LUXFER_DEGENERATE if the depth map is all holes.
  */
 luxfer_status luxfer_features_start(luxfer_features *features,
                                     const luxfer_features_params *params,
@@ -1636,14 +1643,14 @@ luxfer_status luxfer_features_start(luxfer_features *features,
 
 /**
  * Gets an image of the result; which is a LUXFER_FEATURES_ value. The caller releases *image. Any thread.
- * LUXFER_NOT_READY before a job has succeeded, and for LUXFER_FEATURES_NETWORK_DEPTH where no network was run.
+ * LUXFER_NOT_READY before a job has succeeded, and for LUXFER_FEATURES_NETWORK_DEPTH if the job has not run a network.
  */
 luxfer_status luxfer_features_get_image(luxfer_features *features,
                                         luxfer_features_image which,
                                         luxfer_image **image);
 
 /**
- * Tells how good the features are. Any thread.
+ * Gets the quality of the features. Any thread.
  * LUXFER_NOT_READY before a job has succeeded.
  */
 luxfer_status luxfer_features_get_report(luxfer_features *features,
@@ -1652,7 +1659,7 @@ luxfer_status luxfer_features_get_report(luxfer_features *features,
 /** Adds a reference. Any thread. */
 luxfer_status luxfer_features_retain(luxfer_features *features);
 
-/** Gives a reference back; a job that runs goes on. Any thread. */
+/** Removes a reference; a running job continues. Any thread. */
 luxfer_status luxfer_features_release(luxfer_features *features);
 
 /* ====================================================================================================================

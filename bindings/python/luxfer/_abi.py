@@ -584,7 +584,7 @@ class luxfer_features_params(Structure):
 
 
 class luxfer_features_report(Structure):
-    """How good the features are."""
+    """Quality of the features."""
 
     _fields_ = [
         ("struct_size", c_uint32),

@@ -170,7 +170,7 @@ class FocalSource(IntEnum):
 
 
 class DepthKind(IntEnum):
-    """What a depth map measures."""
+    """Quantity that a depth map measures."""
 
     ALONG_Z = 0
     """Distance along the viewing axis."""
@@ -179,39 +179,40 @@ class DepthKind(IntEnum):
 
 
 class Normalisation(IntEnum):
-    """What the colours of a photo become before a network sees them."""
+    """Normalisation of the photo's colours for a network, which its file does not state."""
 
     BY_SIZE = 0
-    """By the size of the network's input: Normalisation.IMAGENET for 256 x 256, else Normalisation.HALF."""
+    """Chosen by the size of the network's input: Normalisation.IMAGENET for 256 x 256, else
+    Normalisation.HALF."""
     IMAGENET = 1
-    """sRGB less (0.485, 0.456, 0.406), over (0.229, 0.224, 0.225): MiDaS 2.1, large and small."""
+    """(sRGB - (0.485, 0.456, 0.406)) / (0.229, 0.224, 0.225), for MiDaS 2.1, large and small."""
     HALF = 2
-    """sRGB less 0.5, over 0.5: DPT."""
+    """(sRGB - 0.5) / 0.5, for DPT."""
     NONE = 3
-    """sRGB in [0, 1]."""
+    """No normalisation: sRGB in [0, 1]."""
 
 
 class FeaturesImage(IntEnum):
     """An image of the features."""
 
     CHANNELS = 0
-    """The ten channels; luxfer_image_read takes them apart."""
+    """The ten channels; luxfer_image_read reads some of them."""
     DEPTH_CONFIDENCE = 1
-    """Trust in the depth of each pixel, in [0, 1]; 1 channel."""
+    """Confidence of the depth of each pixel, in [0, 1]; 1 channel."""
     NETWORK_DEPTH = 2
-    """The depth along z that a network has estimated, from near_plane to far_plane; 1 channel. It can be set as
-    the depth map of a further run, or of luxfer_transfer, without running the network again."""
+    """The depth along z that a network has estimated, from near_plane to far_plane; 1 channel. Set it as the
+    depth map of later jobs, or of a luxfer_transfer, to avoid running the network again."""
 
 
 class DepthSource(IntEnum):
-    """Where the depth came from."""
+    """Source of the depth."""
 
     CALLER = 0
     """The caller's depth map."""
     LAYOUT = 1
-    """A room laid out from the lines of the photo, and strokes."""
+    """A box-shaped room fitted to the lines of the photo and to strokes."""
     NOTHING = 2
-    """A guess that knows nothing of the photo."""
+    """A neutral guess that does not depend on the photo."""
     NETWORK = 3
     """The caller's network."""
 
@@ -1060,20 +1061,21 @@ class FeaturesParams(TypedDict, total=False):
     far_plane: float
     """Far plane of Eq. 1, in [1.001, 1e6] times near_plane; default 10."""
     normal_radius: int
-    """Half-width of the window the normals are fitted in, in pixels, in [0, 64]; default 0: from the photo's
-    size."""
+    """Half-width in pixels of the window in which normals are fitted, in [0, 64]; default 0: chosen by the
+    photo's size."""
 
 
 @dataclass(frozen=True)
 class FeaturesReport:
-    """How good the features are."""
+    """Quality of the features."""
 
     depth_source: DepthSource
     """DepthSource."""
     depth_confidence: float
-    """Mean trust in the depth, in [0, 1]."""
+    """Mean confidence of the depth, in [0, 1]."""
     replaced_pixels: int
-    """Pixels of the photo that were NaN, infinite or negative and have been replaced from their neighbours."""
+    """Number of pixels of the photo that were NaN, infinite or negative and were replaced by values of their
+    neighbours."""
 
 
 class SegmentParams(TypedDict, total=False):
