@@ -1665,8 +1665,8 @@ luxfer_status luxfer_features_release(luxfer_features *features);
 /* ====================================================================================================================
  * Segmentation
  *
- * From a few strokes on a photo to a mask with a confidence for each pixel. The transfer needs two: the plane that carries
- * the lights, then the lights within it. Strokes may be added after a result, and the stage started again.
+ * Computes a mask, with a confidence for each pixel, from a few strokes on a photo. The lighting transfer needs two
+ * masks: the plane that carries the lights, then the lights on it. You may add strokes after a result and start again.
  * ==================================================================================================================== */
 
 /** A segmentation by strokes. See luxfer_segment_create. */
@@ -1679,53 +1679,54 @@ typedef struct luxfer_segment_params {
     /** Samples drawn from the strokes of each class, in [1, 1000000]; default 1000. */
     uint32_t samples_per_class;
     /**
-     * Which channels of the features to use, bit i for channel i. 0, the default: of the ten of luxfer_features colour, colour
-     * and position, colour and normal, or all, whichever does best on strokes held out; of any other number all. For lights
-     * 7, colour only, is best: they share the plane's geometry.
+     * Channels of the features to use, bit i for channel i. 0, the default: for the ten channels of luxfer_features,
+     * the best of colour, colour and position, colour and normal, or all, as measured on held-out strokes; for another
+     * number of channels, all of them. For lights use 7, colour only, since lights and plane have one geometry.
      */
     uint32_t channels;
     /**
-     * Half-width in pixels, in [0, 1024], of the windows of an edge-aware refinement, which makes the mask follow the edges of
-     * the photo: the guided filter, with the first three channels of the features as its guide. 0, the default: none.
+     * Half-width in pixels, in [0, 1024], of the windows of an edge-aware refinement, which makes the mask follow the
+     * edges of the photo: a guided filter with the first three channels of the features as guide. 0, the default: no
+     * refinement.
      */
     uint32_t refine_radius;
-    /** Strength of the prior that keeps weights small, in [1e-9, 1e3]; default 1e-3. */
+    /** Strength of the prior (ridge regression) that keeps weights small, in [1e-9, 1e3]; default 1e-3. */
     double ridge;
     /** Seed of the samples; default 1. */
     uint64_t seed;
     /**
-     * Differences of those channels, in their own units (for colour those of CIELAB), below which neighbours are taken for one
-     * surface by the refinement, in [1e-3, 1e6]; default 8.
+     * Difference of these channels, in their units (CIELAB units for colour), below which the refinement treats
+     * neighbours as one surface, in [1e-3, 1e6]; default 8.
      */
     double refine_tolerance;
 } luxfer_segment_params;
 
-/** What strokes are about: a LUXFER_PHASE_ value. */
+/** The mask that strokes are for: a LUXFER_PHASE_ value. */
 typedef int32_t luxfer_phase;
 
 /** An image of a segmentation: a LUXFER_SEGMENT_ value. */
 typedef int32_t luxfer_segment_image;
 
-/** How good a segmentation is. Set struct_size before the call. */
+/** Quality of a segmentation. Set struct_size before the call. */
 typedef struct luxfer_segment_report {
     /** sizeof(luxfer_segment_report), set by the caller. */
     uint32_t struct_size;
-    /** The channels of the features that were used, bit i for channel i. */
+    /** Channels of the features that were used, bit i for channel i. */
     uint32_t channels;
-    /** Expected share of wrong pixels, in [0, 1], from strokes held out of the training. */
+    /** Expected share of wrong pixels, in [0, 1], estimated on strokes held out of the training. */
     double error;
-    /** Samples used of the negative class. */
+    /** Number of samples of the negative class. */
     uint64_t negative_samples;
-    /** Samples used of the positive class. */
+    /** Number of samples of the positive class. */
     uint64_t positive_samples;
-    /** Pixels that strokes of both classes cover; the later stroke counts. */
+    /** Number of pixels that strokes of both classes cover; the later stroke counts. */
     uint64_t contradictory_pixels;
 } luxfer_segment_report;
 
-/** The plane that carries the lights; its positive strokes lie on the plane, those of lights count as well. */
+/** The plane that carries the lights: positive strokes lie on the plane; strokes on lights count as positive too. */
 #define LUXFER_PHASE_PLANE 0
 
-/** The lights in the plane; its positive strokes lie on lights, the others on the plane beside them. */
+/** The lights on the plane: positive strokes lie on lights, negative strokes on the plane beside them. */
 #define LUXFER_PHASE_LIGHTS 1
 
 /** 1 where the confidence is above one half, else 0; 1 channel. */
@@ -1735,7 +1736,7 @@ typedef struct luxfer_segment_report {
 #define LUXFER_SEGMENT_CONFIDENCE 1
 
 /**
- * How far a pixel is from anything that strokes have shown, in [0, 1]: where it is high one more stroke helps; 1 channel.
+ * Difference of a pixel from all pixels under strokes, in [0, 1]: where it is high, another stroke helps; 1 channel.
  */
 #define LUXFER_SEGMENT_UNSEEN 2
 
@@ -1749,23 +1750,23 @@ luxfer_status luxfer_segment_params_init(luxfer_segment_params *params,
 luxfer_status luxfer_segment_create(luxfer_context *context, luxfer_segment **segment);
 
 /**
- * Sets what is known of each pixel: LUXFER_FEATURES_CHANNELS, or any image of 1 to 16 channels. Strokes set for another
- * size are dropped. Any thread.
+ * Sets the features of each pixel: LUXFER_FEATURES_CHANNELS, or any image of 1 to 16 channels. Strokes for another
+ * size are removed. Any thread.
  */
 luxfer_status luxfer_segment_set_features(luxfer_segment *segment,
                                           luxfer_image *features);
 
 /**
- * Sets where to look, 1, and where not, 0, such as the mask of the plane when lights are sought; 1 channel, the size of
- * the features. within may be NULL: everywhere. Any thread.
+ * Restricts the segmentation to the pixels where within is 1, such as the mask of the plane when you segment lights; 0
+ * elsewhere; 1 channel, the size of the features. within may be NULL: no restriction. Any thread.
  */
 luxfer_status luxfer_segment_set_within(luxfer_segment *segment,
                                         luxfer_image *within);
 
 /**
- * Adds a stroke along a polyline: points is an array of point_count pairs of float x, y in pixels (the top-left pixel's
- * centre is 0.5, 0.5), radius is in pixels, in [0.001, 4096], and positive is 1 for what is sought and 0 for what is not.
- * One point makes a dot. Any thread.
+ * Adds a stroke along a polyline: points is an array of point_count pairs of float x, y in pixels (the centre of the
+ * top-left pixel is 0.5, 0.5), radius is in pixels, in [0.001, 4096], and positive is 1 for the class that is sought,
+ * 0 for the other. One point makes a dot. Any thread.
  * LUXFER_INVALID_OPERATION before the features are set.
  */
 luxfer_status luxfer_segment_add_stroke(luxfer_segment *segment,
@@ -1775,9 +1776,9 @@ luxfer_status luxfer_segment_add_stroke(luxfer_segment *segment,
                                         int32_t positive);
 
 /**
- * Adds the strokes of a drawing of the features' size, those that concern phase (a LUXFER_PHASE_ value): green (0, 255, 0)
- * plane, red (255, 0, 0) not plane, yellow (255, 255, 0) light, blue (0, 0, 255) not light; other colours and transparent
- * pixels are unpainted. Load drawings with LUXFER_COLOUR_SRGB. Any thread.
+ * Adds the strokes for phase, a LUXFER_PHASE_ value, from a drawing of the features' size: green (0, 255, 0) is plane,
+ * red (255, 0, 0) not plane, yellow (255, 255, 0) light, blue (0, 0, 255) not light; other colours and transparent
+ * pixels are ignored. Load drawings with LUXFER_COLOUR_SRGB. Any thread.
  * LUXFER_INVALID_OPERATION before the features are set; LUXFER_INVALID_ARGUMENT if the size differs.
  */
 luxfer_status luxfer_segment_add_strokes_image(luxfer_segment *segment,
@@ -1785,9 +1786,9 @@ luxfer_status luxfer_segment_add_strokes_image(luxfer_segment *segment,
                                                luxfer_phase phase);
 
 /**
- * Adds the strokes that a text in UTF-8 describes, those that concern phase (a LUXFER_PHASE_ value). Each line is a class,
- * a radius and the points' x and y in pixels, as "light 3 310.5 30 320 31"; classes are plane, not-plane, light and
- * not-light; from # on a line is a comment. Any thread.
+ * Adds the strokes for phase, a LUXFER_PHASE_ value, from a text in UTF-8. Each line has a class, a radius, and x and
+ * y of the points in pixels, such as "light 3 310.5 30 320 31". The classes are plane, not-plane, light and not-light;
+ * # starts a comment. Any thread.
  * LUXFER_INVALID_OPERATION before the features are set; LUXFER_FORMAT, naming the line, if the text is malformed.
  */
 luxfer_status luxfer_segment_add_strokes_text(luxfer_segment *segment,
@@ -1799,9 +1800,9 @@ luxfer_status luxfer_segment_clear_strokes(luxfer_segment *segment);
 
 /**
  * Starts a job that segments. params may be NULL for the defaults. The caller releases *job. Any thread.
- * LUXFER_INVALID_OPERATION if the features are missing or a job runs already. The job may end with LUXFER_DEGENERATE if
- * there are no strokes of one class, LUXFER_INVALID_ARGUMENT if sizes differ, a feature is not finite or a setting is out
- * of range.
+ * LUXFER_INVALID_OPERATION if the features are missing or a job runs already. The job may end with LUXFER_DEGENERATE
+ * if one class has no strokes, LUXFER_INVALID_ARGUMENT if sizes differ, a feature is not finite or a setting is out of
+ * range.
  */
 luxfer_status luxfer_segment_start(luxfer_segment *segment,
                                    const luxfer_segment_params *params,
@@ -1816,7 +1817,7 @@ luxfer_status luxfer_segment_get_image(luxfer_segment *segment,
                                        luxfer_image **image);
 
 /**
- * Tells how good the segmentation is. Any thread.
+ * Gets the quality of the segmentation. Any thread.
  * LUXFER_NOT_READY before a job has succeeded.
  */
 luxfer_status luxfer_segment_get_report(luxfer_segment *segment, luxfer_segment_report *report);
@@ -1824,7 +1825,7 @@ luxfer_status luxfer_segment_get_report(luxfer_segment *segment, luxfer_segment_
 /** Adds a reference. Any thread. */
 luxfer_status luxfer_segment_retain(luxfer_segment *segment);
 
-/** Gives a reference back; a job that runs goes on. Any thread. */
+/** Removes a reference; a running job continues. Any thread. */
 luxfer_status luxfer_segment_release(luxfer_segment *segment);
 
 /* ====================================================================================================================

@@ -611,7 +611,7 @@ class luxfer_segment_params(Structure):
 
 
 class luxfer_segment_report(Structure):
-    """How good a segmentation is."""
+    """Quality of a segmentation."""
 
     _fields_ = [
         ("struct_size", c_uint32),

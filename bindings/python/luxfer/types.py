@@ -218,13 +218,13 @@ class DepthSource(IntEnum):
 
 
 class Phase(IntEnum):
-    """What strokes are about."""
+    """The mask that strokes are for."""
 
     PLANE = 0
-    """The plane that carries the lights; its positive strokes lie on the plane, those of lights count as
-    well."""
+    """The plane that carries the lights: positive strokes lie on the plane; strokes on lights count as positive
+    too."""
     LIGHTS = 1
-    """The lights in the plane; its positive strokes lie on lights, the others on the plane beside them."""
+    """The lights on the plane: positive strokes lie on lights, negative strokes on the plane beside them."""
 
 
 class SegmentImage(IntEnum):
@@ -235,8 +235,8 @@ class SegmentImage(IntEnum):
     CONFIDENCE = 1
     """Probability that a pixel is of the positive class, in [0, 1]; 1 channel."""
     UNSEEN = 2
-    """How far a pixel is from anything that strokes have shown, in [0, 1]: where it is high one more stroke
-    helps; 1 channel."""
+    """Difference of a pixel from all pixels under strokes, in [0, 1]: where it is high, another stroke helps; 1
+    channel."""
 
 
 class EmissionImage(IntEnum):
@@ -1084,36 +1084,37 @@ class SegmentParams(TypedDict, total=False):
     samples_per_class: int
     """Samples drawn from the strokes of each class, in [1, 1000000]; default 1000."""
     channels: int
-    """Which channels of the features to use, bit i for channel i. 0, the default: of the ten of luxfer_features
-    colour, colour and position, colour and normal, or all, whichever does best on strokes held out; of any
-    other number all. For lights 7, colour only, is best: they share the plane's geometry."""
+    """Channels of the features to use, bit i for channel i. 0, the default: for the ten channels of
+    luxfer_features, the best of colour, colour and position, colour and normal, or all, as measured on held-out
+    strokes; for another number of channels, all of them. For lights use 7, colour only, since lights and plane
+    have one geometry."""
     refine_radius: int
     """Half-width in pixels, in [0, 1024], of the windows of an edge-aware refinement, which makes the mask
-    follow the edges of the photo: the guided filter, with the first three channels of the features as its
-    guide. 0, the default: none."""
+    follow the edges of the photo: a guided filter with the first three channels of the features as guide. 0,
+    the default: no refinement."""
     ridge: float
-    """Strength of the prior that keeps weights small, in [1e-9, 1e3]; default 1e-3."""
+    """Strength of the prior (ridge regression) that keeps weights small, in [1e-9, 1e3]; default 1e-3."""
     seed: int
     """Seed of the samples; default 1."""
     refine_tolerance: float
-    """Differences of those channels, in their own units (for colour those of CIELAB), below which neighbours
-    are taken for one surface by the refinement, in [1e-3, 1e6]; default 8."""
+    """Difference of these channels, in their units (CIELAB units for colour), below which the refinement treats
+    neighbours as one surface, in [1e-3, 1e6]; default 8."""
 
 
 @dataclass(frozen=True)
 class SegmentReport:
-    """How good a segmentation is."""
+    """Quality of a segmentation."""
 
     channels: int
-    """The channels of the features that were used, bit i for channel i."""
+    """Channels of the features that were used, bit i for channel i."""
     error: float
-    """Expected share of wrong pixels, in [0, 1], from strokes held out of the training."""
+    """Expected share of wrong pixels, in [0, 1], estimated on strokes held out of the training."""
     negative_samples: int
-    """Samples used of the negative class."""
+    """Number of samples of the negative class."""
     positive_samples: int
-    """Samples used of the positive class."""
+    """Number of samples of the positive class."""
     contradictory_pixels: int
-    """Pixels that strokes of both classes cover; the later stroke counts."""
+    """Number of pixels that strokes of both classes cover; the later stroke counts."""
 
 
 class EmissionParams(TypedDict, total=False):
