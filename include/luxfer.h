@@ -1831,11 +1831,11 @@ luxfer_status luxfer_segment_release(luxfer_segment *segment);
 /* ====================================================================================================================
  * Emission
  *
- * From the unwarped lights of a photo to an emissive texture of any size that carries their pattern on, and the list of
- * its luminaires.
+ * Synthesises an emissive texture of any size that continues the light pattern of an unwarped photo, and lists its
+ * luminaires.
  * ==================================================================================================================== */
 
-/** An emissive texture in the making. See luxfer_emission_create. */
+/** A synthesis of an emissive texture. See luxfer_emission_create. */
 typedef struct luxfer_emission luxfer_emission;
 
 /** Settings of the emission. Fill them with luxfer_emission_params_init. */
@@ -1848,45 +1848,47 @@ typedef struct luxfer_emission_params {
     uint32_t height;
     /** Side of a patch in working pixels; 0, the default, chooses it from the spacing of the lights. */
     uint32_t block;
-    /** Unwarped pixels per texel, in [1e-3, 1e3]; default 1. */
+    /** Number of unwarped pixels per texel, in [1e-3, 1e3]; default 1. */
     double scale;
     /** Longest side of the exemplar during synthesis, in pixels, in [16, 2048]; default 256. */
     uint32_t working_side;
-    /** Weight of the metadata channels against colour, in [0, 1e3]; default 1; 0 is plain quilting. */
+    /** Weight of the metadata channels relative to colour, in [0, 1e3]; default 1; 0 is plain image quilting. */
     float metadata_weight;
     /** Seed of the synthesis; default 1. */
     uint64_t seed;
     /**
-     * Correlation of the lights with themselves from which they are taken for regular, in [0, 1]; default 0.6. At 0 any
-     * repetition is held to exactly, at 1 none is, and patches go anywhere.
+     * Minimum autocorrelation at which the lights count as regular, in [0, 1]; default 0.6. At 0 any repetition is
+     * continued exactly; at 1 no repetition is, and patches may lie anywhere.
      */
     float least_regularity;
-    /** 1, the default, shows every lamp as one piece; with 0 seams may cut lamps. */
+    /** 1, the default: every lamp stays in one piece; 0: seams may cut lamps. */
     uint32_t whole_lamps;
     /**
-     * Where the pattern begins, in texels right of and below the texture's corner, each in [-1e6, 1e6]; default 0. Lights without
-     * a lattice begin nowhere: of these it shifts lamps of a texture that is tileable, and must be 0 in others.
+     * Offset of the pattern from the texture's top-left corner, in texels to the right and down, each in [-1e6, 1e6];
+     * default 0. Lights without a lattice have no origin: for them it must be 0 unless the texture is tileable, where
+     * it shifts the lamps.
      */
     double offset[2];
     /**
-     * Channel value from which the photo is clipped, in [0, 1]; default 0.95. Lamps it shows so get the colour of their rims,
-     * as dark as the clipped channels allow. With 0 nothing is taken for clipped.
+     * Channel value from which on the photo counts as clipped, in [0, 1]; default 0.95. Clipped lamps get the colour
+     * of their rims, as dark as the clipped channels allow. 0: no lamp counts as clipped.
      */
     float clip_level;
-    /** With 1 every lamp shines evenly, in its mean colour; default 0: as in the photo. */
+    /** 1: every lamp has its mean colour everywhere; 0, the default: as in the photo. */
     uint32_t even_lamps;
     /**
-     * With 1 the texture may be repeated: what leaves it on one side comes in on the other, and a lattice is stretched, by less
-     * than half a period over the whole, to fit. Needs whole_lamps. Default 0.
+     * 1: the texture can be repeated without seams: lamps that leave it on one side continue on the opposite side, and
+     * a lattice is stretched to fit, by less than half a period over the whole texture. Needs whole_lamps. Default 0.
      */
     uint32_t tileable;
     /**
-     * With 1 a lattice lies evenly between the sides of the texture, shifted by offset from there: a lamp or the middle between
-     * two in its middle, so that the border cuts as few lamps as it can. Default 0.
+     * 1: a lattice is centred on the texture and then shifted by offset: its middle is a lamp or the middle between
+     * two lamps, so that the border cuts as few lamps as possible. Default 0.
      */
     uint32_t centred;
     /**
-     * Patches that are compared for each block, at most, where none is held to a lattice, in [1, 65536]; default 192.
+     * Maximum number of candidate patches that are compared for each block, without a lattice, in [1, 65536]; default
+     * 192.
      */
     uint32_t candidates;
     /** Must be 0. */
@@ -1896,70 +1898,73 @@ typedef struct luxfer_emission_params {
 /** An image of the emission: a LUXFER_EMISSION_ value. */
 typedef int32_t luxfer_emission_image;
 
-/** How good the texture is. Set struct_size before the call. */
+/** Quality of the texture. Set struct_size before the call. */
 typedef struct luxfer_emission_report {
     /** sizeof(luxfer_emission_report), set by the caller. */
     uint32_t struct_size;
     /** Number of luminaires; see luxfer_emission_get_luminaire. */
     uint32_t luminaires;
     /**
-     * The largest relative difference between texture and exemplar in the share that is lit, the area of whole lamps, and the
-     * distance from each to the nearest other. It weighs as much as exemplar_lamps. NaN of a plan, which is no texture yet.
+     * Largest relative difference between texture and exemplar in three statistics: the share of lit area, the area of
+     * whole lamps, and the distance from a lamp to its nearest neighbour. It is only as reliable as exemplar_lamps
+     * allows. NaN for a plan, which has no texture yet.
      */
     double error;
     /**
-     * How regular the lights are, in [0, 1]: correlation with themselves shifted by the lattice that was found, 0 without.
+     * Regularity of the lights, in [0, 1]: their autocorrelation at the periods of the lattice; 0 without a lattice.
      */
     double regularity;
     /**
-     * Number of lamps that the exemplars show whole. Fewer than six tell little about a design: what the border cuts off is a large
-     * part of what there is, and without a whole lamp the texture shows the cut ones.
+     * Number of whole lamps in the exemplars. Fewer than six describe a design poorly, because the border then cuts a
+     * large part of the lamps. Without a whole lamp the texture shows the cut ones.
      */
     uint32_t exemplar_lamps;
     /**
-     * By how much the exemplar's own statistics are off, as far as can be told: the root mean square of the same difference between
-     * parts of the texture as large as the exemplar, and the whole. An error of up to twice this says nothing against the texture.
-     * 0 where the texture shows nothing else than the exemplar does, of blended exemplars, and of a plan.
+     * Estimated sampling error of the exemplar's statistics: the root mean square of the difference, as defined for
+     * error, between the whole texture and parts of it that are as large as the exemplar. If error is at most twice
+     * this value, it does not indicate a bad texture. 0 if the texture shows only a part of the exemplar, for blended
+     * exemplars, and for a plan.
      */
     float sampling_error;
 } luxfer_emission_report;
 
-/** One lamp of the texture. Set struct_size before the call. */
+/** A lamp of the texture. Set struct_size before the call. */
 typedef struct luxfer_luminaire {
     /** sizeof(luxfer_luminaire), set by the caller. */
     uint32_t struct_size;
-    /** Number of corners of its outline. */
+    /** Number of corners of the outline. */
     uint32_t corners;
     /** Centre in texels, x and y. */
     double centre[2];
-    /** Lengths of the principal axes in texels, the long one first. */
+    /** Lengths of the principal axes in texels, the longer first. */
     double size[2];
     /** Angle of the long axis from x towards y, in radians, in (-pi/2, pi/2]. */
     double orientation;
-    /** Area in texels, of those at the edge what is light. */
+    /** Area in texels; texels at the edge count with the share that the lamp covers. */
     double area;
-    /** Share of the light of the whole texture, in [0, 1]. */
+    /** Share of the luminous flux of the whole texture, in [0, 1]. */
     double flux_share;
     /** Mean linear colour, relative to the photo's white. */
     float colour[3];
     /**
-     * Number of its kind, from 1, those with most lamps first: lamps of about the same size and shape. 0 if the border cuts it.
+     * Number of the lamp's kind, from 1: lamps of about equal size and shape are of one kind, and kinds are sorted by
+     * the number of their lamps, the largest first. 0 if the border cuts the lamp.
      */
     uint32_t kind;
 } luxfer_luminaire;
 
-/** The texture: linear RGB relative to the photo's white, 0 where there is no lamp. */
+/** The texture: linear RGB relative to the photo's white; 0 outside lamps. */
 #define LUXFER_EMISSION_TEXTURE 0
 
 /** 1 on lamps, else 0; 1 channel. */
 #define LUXFER_EMISSION_MASK 1
 
 /**
- * What synthesis started from, at working size: confidence, signed x and y distance to the nearest light; 3 channels.
+ * Metadata of the exemplar at working size: confidence, and signed x and y distance to the nearest light; 3 channels.
  */
 #define LUXFER_EMISSION_EXEMPLAR_METADATA 2
 
-/** The same of its result. */
+/** Metadata of the result, with these channels. */
 #define LUXFER_EMISSION_METADATA 3
 
 /**
@@ -1972,9 +1977,9 @@ luxfer_status luxfer_emission_params_init(luxfer_emission_params *params,
 luxfer_status luxfer_emission_create(luxfer_context *context, luxfer_emission **emission);
 
 /**
- * Sets the exemplar, three images of one size: the unwarped photo (linear RGB), the unwarped confidence of the lights (1
- * channel, in [0, 1]) and where both are valid (1 channel, 1 or 0). Further ones are added by luxfer_emission_add_style. Any
- * thread.
+ * Sets the exemplar, three images of one size: the unwarped photo (linear RGB), the unwarped confidence of the lights
+ * (1 channel, in [0, 1]) and the mask where both are valid (1 channel, 1 or 0). luxfer_emission_add_style adds more
+ * exemplars. Any thread.
  */
 luxfer_status luxfer_emission_set_exemplar(luxfer_emission *emission,
                                            luxfer_image *unwarped,
@@ -1982,18 +1987,19 @@ luxfer_status luxfer_emission_set_exemplar(luxfer_emission *emission,
                                            luxfer_image *valid);
 
 /**
- * Sets the photo from which full detail is recovered, and the map from unwarped to photo pixels, 9 doubles row by row
- * (luxfer_rectify_report.to_photo). photo may be NULL: the unwarped image is the finest there is. Any thread.
+ * Sets the photo from which full detail is recovered, and the homography from unwarped to photo pixels, 9 doubles row
+ * by row (luxfer_rectify_report.to_photo). photo may be NULL: the detail then comes from the unwarped image only. Any
+ * thread.
  */
 luxfer_status luxfer_emission_set_photo(luxfer_emission *emission,
                                         luxfer_image *photo,
                                         const double *to_photo);
 
 /**
- * Starts a job that makes the texture as a whole; luxfer_emission_start_plan does without its memory. params may be NULL for
- * the defaults. The caller releases *job. Any thread.
+ * Starts a job that makes the whole texture in memory; for very large textures use luxfer_emission_start_plan. params
+ * may be NULL for the defaults. The caller releases *job. Any thread.
  * LUXFER_INVALID_OPERATION if the exemplar is missing or a job runs already. The job may end with LUXFER_DEGENERATE if
- * there are no lights in the exemplar, LUXFER_INVALID_ARGUMENT if sizes differ or a setting is out of range.
+ * the exemplar has no lights, LUXFER_INVALID_ARGUMENT if sizes differ or a setting is out of range.
  */
 luxfer_status luxfer_emission_start(luxfer_emission *emission,
                                     const luxfer_emission_params *params,
@@ -2008,15 +2014,16 @@ luxfer_status luxfer_emission_get_image(luxfer_emission *emission,
                                         luxfer_image **image);
 
 /**
- * Tells how good the texture is, or what a plan consists of. Any thread.
+ * Gets the quality of the texture, or the contents of a plan. Any thread.
  * LUXFER_NOT_READY before a job has succeeded.
  */
 luxfer_status luxfer_emission_get_report(luxfer_emission *emission,
                                          luxfer_emission_report *report);
 
 /**
- * Describes a luminaire of the texture. Of a plan, which has no texel yet, it is as the exemplar shows it, cut where the texture
- * ends; lights that run through their exemplar are as the texture shows them. Any thread.
+ * Describes a luminaire of the texture. A plan has no texels yet, so its luminaires are described as the exemplar
+ * shows them, cut at the edges of the texture; only lights that cross their whole exemplar are described as in the
+ * texture. Any thread.
  * LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such luminaire.
  */
 luxfer_status luxfer_emission_get_luminaire(luxfer_emission *emission,
@@ -2024,12 +2031,13 @@ luxfer_status luxfer_emission_get_luminaire(luxfer_emission *emission,
                                             luxfer_luminaire *luminaire);
 
 /**
- * Tells a corner of a luminaire's outline, in texels. Any thread.
+ * Gets a corner of a luminaire's outline, in texels. Any thread.
  *
- * The outline lies where half of a texel would be light, finer than texels where the confidence of the lights is: within a quarter
- * of a texel, or of an unwarped pixel where that is larger; corners of the lamp within 0.71 of one. Of lamps up to two texels wide,
- * of a mask that is all or nothing and of lights of a plan that follow its patches it follows the sides of texels.
- * LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such luminaire or corner.
+ * The outline is where the lamp would cover half of a texel. If the confidence of the lights has values between 0 and
+ * 1, it is accurate to a quarter of a texel (or of an unwarped pixel, if that is larger), at corners of the lamp to
+ * 0.71. It follows the sides of texels for lamps up to two texels wide, for masks of only 0 and 1, and for lights of a
+ * plan that follow its patches. LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such
+ * luminaire or corner.
  */
 luxfer_status luxfer_emission_get_corner(luxfer_emission *emission,
                                          uint32_t index,
@@ -2040,7 +2048,7 @@ luxfer_status luxfer_emission_get_corner(luxfer_emission *emission,
 /** Adds a reference. Any thread. */
 luxfer_status luxfer_emission_retain(luxfer_emission *emission);
 
-/** Gives a reference back; a job that runs goes on. Any thread. */
+/** Removes a reference; a running job continues. Any thread. */
 luxfer_status luxfer_emission_release(luxfer_emission *emission);
 
 /* ====================================================================================================================

@@ -243,7 +243,7 @@ class luxfer_segment(Structure):
 
 
 class luxfer_emission(Structure):
-    """An emissive texture in the making. See luxfer_emission_create."""
+    """A synthesis of an emissive texture. See luxfer_emission_create."""
 
 
 class luxfer_render(Structure):
@@ -649,7 +649,7 @@ class luxfer_emission_params(Structure):
 
 
 class luxfer_emission_report(Structure):
-    """How good the texture is."""
+    """Quality of the texture."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -663,7 +663,7 @@ class luxfer_emission_report(Structure):
 
 
 class luxfer_luminaire(Structure):
-    """One lamp of the texture."""
+    """A lamp of the texture."""
 
     _fields_ = [
         ("struct_size", c_uint32),

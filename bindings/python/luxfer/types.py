@@ -243,14 +243,14 @@ class EmissionImage(IntEnum):
     """An image of the emission."""
 
     TEXTURE = 0
-    """The texture: linear RGB relative to the photo's white, 0 where there is no lamp."""
+    """The texture: linear RGB relative to the photo's white; 0 outside lamps."""
     MASK = 1
     """1 on lamps, else 0; 1 channel."""
     EXEMPLAR_METADATA = 2
-    """What synthesis started from, at working size: confidence, signed x and y distance to the nearest light; 3
+    """Metadata of the exemplar at working size: confidence, and signed x and y distance to the nearest light; 3
     channels."""
     METADATA = 3
-    """The same of its result."""
+    """Metadata of the result, with these channels."""
 
 
 class RenderImage(IntEnum):
@@ -1127,82 +1127,83 @@ class EmissionParams(TypedDict, total=False):
     block: int
     """Side of a patch in working pixels; 0, the default, chooses it from the spacing of the lights."""
     scale: float
-    """Unwarped pixels per texel, in [1e-3, 1e3]; default 1."""
+    """Number of unwarped pixels per texel, in [1e-3, 1e3]; default 1."""
     working_side: int
     """Longest side of the exemplar during synthesis, in pixels, in [16, 2048]; default 256."""
     metadata_weight: float
-    """Weight of the metadata channels against colour, in [0, 1e3]; default 1; 0 is plain quilting."""
+    """Weight of the metadata channels relative to colour, in [0, 1e3]; default 1; 0 is plain image quilting."""
     seed: int
     """Seed of the synthesis; default 1."""
     least_regularity: float
-    """Correlation of the lights with themselves from which they are taken for regular, in [0, 1]; default 0.6.
-    At 0 any repetition is held to exactly, at 1 none is, and patches go anywhere."""
+    """Minimum autocorrelation at which the lights count as regular, in [0, 1]; default 0.6. At 0 any repetition
+    is continued exactly; at 1 no repetition is, and patches may lie anywhere."""
     whole_lamps: int
-    """1, the default, shows every lamp as one piece; with 0 seams may cut lamps."""
+    """1, the default: every lamp stays in one piece; 0: seams may cut lamps."""
     offset: Sequence[float]
-    """Where the pattern begins, in texels right of and below the texture's corner, each in [-1e6, 1e6]; default
-    0. Lights without a lattice begin nowhere: of these it shifts lamps of a texture that is tileable, and must
-    be 0 in others."""
+    """Offset of the pattern from the texture's top-left corner, in texels to the right and down, each in [-1e6,
+    1e6]; default 0. Lights without a lattice have no origin: for them it must be 0 unless the texture is
+    tileable, where it shifts the lamps."""
     clip_level: float
-    """Channel value from which the photo is clipped, in [0, 1]; default 0.95. Lamps it shows so get the colour
-    of their rims, as dark as the clipped channels allow. With 0 nothing is taken for clipped."""
+    """Channel value from which on the photo counts as clipped, in [0, 1]; default 0.95. Clipped lamps get the
+    colour of their rims, as dark as the clipped channels allow. 0: no lamp counts as clipped."""
     even_lamps: int
-    """With 1 every lamp shines evenly, in its mean colour; default 0: as in the photo."""
+    """1: every lamp has its mean colour everywhere; 0, the default: as in the photo."""
     tileable: int
-    """With 1 the texture may be repeated: what leaves it on one side comes in on the other, and a lattice is
-    stretched, by less than half a period over the whole, to fit. Needs whole_lamps. Default 0."""
+    """1: the texture can be repeated without seams: lamps that leave it on one side continue on the opposite
+    side, and a lattice is stretched to fit, by less than half a period over the whole texture. Needs
+    whole_lamps. Default 0."""
     centred: int
-    """With 1 a lattice lies evenly between the sides of the texture, shifted by offset from there: a lamp or
-    the middle between two in its middle, so that the border cuts as few lamps as it can. Default 0."""
+    """1: a lattice is centred on the texture and then shifted by offset: its middle is a lamp or the middle
+    between two lamps, so that the border cuts as few lamps as possible. Default 0."""
     candidates: int
-    """Patches that are compared for each block, at most, where none is held to a lattice, in [1, 65536];
+    """Maximum number of candidate patches that are compared for each block, without a lattice, in [1, 65536];
     default 192."""
 
 
 @dataclass(frozen=True)
 class EmissionReport:
-    """How good the texture is."""
+    """Quality of the texture."""
 
     luminaires: int
     """Number of luminaires; see luxfer_emission_get_luminaire."""
     error: float
-    """The largest relative difference between texture and exemplar in the share that is lit, the area of whole
-    lamps, and the distance from each to the nearest other. It weighs as much as exemplar_lamps. NaN of a plan,
-    which is no texture yet."""
+    """Largest relative difference between texture and exemplar in three statistics: the share of lit area, the
+    area of whole lamps, and the distance from a lamp to its nearest neighbour. It is only as reliable as
+    exemplar_lamps allows. NaN for a plan, which has no texture yet."""
     regularity: float
-    """How regular the lights are, in [0, 1]: correlation with themselves shifted by the lattice that was found,
-    0 without."""
+    """Regularity of the lights, in [0, 1]: their autocorrelation at the periods of the lattice; 0 without a
+    lattice."""
     exemplar_lamps: int
-    """Number of lamps that the exemplars show whole. Fewer than six tell little about a design: what the border
-    cuts off is a large part of what there is, and without a whole lamp the texture shows the cut ones."""
+    """Number of whole lamps in the exemplars. Fewer than six describe a design poorly, because the border then
+    cuts a large part of the lamps. Without a whole lamp the texture shows the cut ones."""
     sampling_error: float
-    """By how much the exemplar's own statistics are off, as far as can be told: the root mean square of the
-    same difference between parts of the texture as large as the exemplar, and the whole. An error of up to
-    twice this says nothing against the texture. 0 where the texture shows nothing else than the exemplar does,
-    of blended exemplars, and of a plan."""
+    """Estimated sampling error of the exemplar's statistics: the root mean square of the difference, as defined
+    for error, between the whole texture and parts of it that are as large as the exemplar. If error is at most
+    twice this value, it does not indicate a bad texture. 0 if the texture shows only a part of the exemplar,
+    for blended exemplars, and for a plan."""
 
 
 @dataclass(frozen=True)
 class Luminaire:
-    """One lamp of the texture."""
+    """A lamp of the texture."""
 
     corners: int
-    """Number of corners of its outline."""
+    """Number of corners of the outline."""
     centre: tuple[float, float]
     """Centre in texels, x and y."""
     size: tuple[float, float]
-    """Lengths of the principal axes in texels, the long one first."""
+    """Lengths of the principal axes in texels, the longer first."""
     orientation: float
     """Angle of the long axis from x towards y, in radians, in (-pi/2, pi/2]."""
     area: float
-    """Area in texels, of those at the edge what is light."""
+    """Area in texels; texels at the edge count with the share that the lamp covers."""
     flux_share: float
-    """Share of the light of the whole texture, in [0, 1]."""
+    """Share of the luminous flux of the whole texture, in [0, 1]."""
     colour: tuple[float, float, float]
     """Mean linear colour, relative to the photo's white."""
     kind: int
-    """Number of its kind, from 1, those with most lamps first: lamps of about the same size and shape. 0 if the
-    border cuts it."""
+    """Number of the lamp's kind, from 1: lamps of about equal size and shape are of one kind, and kinds are
+    sorted by the number of their lamps, the largest first. 0 if the border cuts the lamp."""
 
 
 class RenderParams(TypedDict, total=False):
