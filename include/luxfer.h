@@ -3619,83 +3619,84 @@ luxfer_status luxfer_pattern_params_init(luxfer_pattern_params *params,
 /* ====================================================================================================================
  * Transfer
  *
- * The lighting transfer from end to end: from a photo, a few strokes and a scene to that scene lit as in the photo. It
- * runs the stages in order. Every result can be read as soon as its stage has ended, replaced by the caller's own, and the
- * run taken up again from any stage.
+ * The lighting transfer from end to end: lights a scene as in a photo, from the photo and a few strokes. It runs the
+ * stages in order. You can read every result as soon as its stage has ended, replace it by your own, and continue from
+ * any stage.
  * ==================================================================================================================== */
 
 /** A lighting transfer. See luxfer_transfer_create. */
 typedef struct luxfer_transfer luxfer_transfer;
 
-/** What part of the photo gives the colour to match: a LUXFER_TARGET_ value. */
+/** The part of the photo that gives the colour to match: a LUXFER_TARGET_ value. */
 typedef int32_t luxfer_target;
 
 /**
- * Settings of a transfer. Fill them with luxfer_transfer_params_init. The structs pointed to are read during the call.
+ * Settings of a transfer. Fill them with luxfer_transfer_params_init. The structs behind the pointers are read during
+ * the call.
  */
 typedef struct luxfer_transfer_params {
     /** sizeof(luxfer_transfer_params), set by luxfer_transfer_params_init. */
     uint32_t struct_size;
-    /** Longest side of the emissive texture in texels, in [1, 16384]; default 2048. */
+    /** Maximum side of the emissive texture in texels, in [1, 16384]; default 2048. */
     uint32_t max_texels;
     /**
-     * Distance of the photo's camera from the lit plane in metres, in [0.01, 1e4]; default 1.2. It sets the scale of the
-     * pattern.
+     * Distance of the photo's camera from the plane with the lights in metres, in [0.01, 1e4]; default 1.2. It sets
+     * the scale of the pattern.
      */
     double plane_distance;
-    /** Luminance that the photo's white stands for, in cd/m², in [1e-6, 1e9]; default 100. */
+    /** Luminance of the photo's white in cd/m², in [1e-6, 1e9]; default 100. */
     float white_luminance;
     /** LUXFER_TARGET_ value; default LUXFER_TARGET_SURFACE. */
     luxfer_target target;
-    /** Settings of the stages VIEW and UNWARP; NULL, the default, for their defaults. */
+    /** Settings of the stages VIEW and UNWARP; NULL, the default: their defaults. */
     const luxfer_rectify_params *rectify;
-    /** Settings of the stage FEATURES; NULL, the default, for their defaults. */
+    /** Settings of the stage FEATURES; NULL, the default: their defaults. */
     const luxfer_features_params *features;
-    /** Settings of the stage PLANE; NULL, the default, for their defaults. */
+    /** Settings of the stage PLANE; NULL, the default: their defaults. */
     const luxfer_segment_params *plane;
-    /** Settings of the stage LIGHTS; NULL, the default, for those of luxfer_segment with channels = 7, colour only. */
+    /** Settings of the stage LIGHTS; NULL, the default: the defaults with channels = 7, colour only. */
     const luxfer_segment_params *lights;
     /**
-     * Settings of the stage EMISSION, whose width, height, scale and offset the transfer sets; NULL, the default, for their
-     * defaults.
+     * Settings of the stage EMISSION; NULL, the default: their defaults. The transfer sets width, height, scale and
+     * offset itself.
      */
     const luxfer_emission_params *emission;
-    /** Settings of the stage RELIGHT; NULL, the default, for their defaults. */
+    /** Settings of the stage RELIGHT; NULL, the default: their defaults. */
     const luxfer_relight_params *relight;
-    /** Settings of the stage RENDER; NULL, the default, for their defaults. */
+    /** Settings of the stage RENDER; NULL, the default: their defaults. */
     const luxfer_render_params *render;
-    /** How the lights lie on the surface; NULL, the default, for the defaults. */
+    /** Layout of the lights on the surface; NULL, the default: the defaults. */
     const luxfer_pattern_params *pattern;
 } luxfer_transfer_params;
 
-/** A stage of the transfer: a LUXFER_STAGE_ value, in the order they run. */
+/** A stage of the transfer: a LUXFER_STAGE_ value. The values are in the order in which the stages run. */
 typedef int32_t luxfer_stage;
 
-/** Lines, vanishing points and the photo's camera. */
+/** Finds lines, vanishing points and the photo's camera. */
 #define LUXFER_STAGE_VIEW 0
 
-/** Ten channels for each pixel. */
+/** Computes the ten channels of the features. */
 #define LUXFER_STAGE_FEATURES 1
 
-/** The mask of the plane that carries the lights. */
+/** Segments the plane that carries the lights. */
 #define LUXFER_STAGE_PLANE 2
 
-/** The mask of the lights in it. */
+/** Segments the lights on the plane. */
 #define LUXFER_STAGE_LIGHTS 3
 
-/** The plane seen straight on. */
+/** Unwarps the plane to a frontal view. */
 #define LUXFER_STAGE_UNWARP 4
 
-/** The emissive texture, laid onto the scene's surface. */
+/** Synthesises the emissive texture and maps it onto the scene's surface. */
 #define LUXFER_STAGE_EMISSION 5
 
-/** Its colour and intensity. */
+/** Solves for the colour and intensity of the emission. */
 #define LUXFER_STAGE_RELIGHT 6
 
-/** The picture. */
+/** Renders the picture. */
 #define LUXFER_STAGE_RENDER 7
 
-/** The plane that carries the lights, without them and their halo. */
+/** The plane that carries the lights, without the lights and their halo. */
 #define LUXFER_TARGET_SURFACE 0
 
 /** The whole photo. */
@@ -3710,52 +3711,52 @@ luxfer_status luxfer_transfer_params_init(luxfer_transfer_params *params,
 /** Creates a transfer. The caller releases *transfer. Any thread. */
 luxfer_status luxfer_transfer_create(luxfer_context *context, luxfer_transfer **transfer);
 
-/** Sets the photo: linear RGB, 1 = display white. Strokes set for a photo of another size are dropped. Any thread. */
-luxfer_status luxfer_transfer_set_photo(luxfer_transfer *transfer,
-                                        luxfer_image *photo);
+/** Sets the photo: linear RGB, 1 = display white. Strokes for a photo of another size are removed. Any thread. */
+luxfer_status luxfer_transfer_set_photo(luxfer_transfer *transfer, luxfer_image *photo);
 
-/** Sets a depth map of the photo, as luxfer_features_set_depth. depth may be NULL: none. Any thread. */
+/** Sets a depth map of the photo, as luxfer_features_set_depth. depth may be NULL: no depth map. Any thread. */
 luxfer_status luxfer_transfer_set_depth(luxfer_transfer *transfer,
                                         luxfer_image *depth,
                                         luxfer_depth_kind kind);
 
 /**
- * Sets the scene to light, and the name (UTF-8) of the object or material of its surface that receives the lights. The
- * scene itself is never changed; each start takes it as it is then. Of all the triangles of that name the plane is taken that
- * faces most of the room: its parts, as between the beams of a ceiling, share one pattern that goes on from part to part. What
- * lies in other planes is left as it is; another transfer lights it, with a pattern of its own. Any thread.
+ * Sets the scene to light, and the name (UTF-8) of the object or material whose surface receives the lights. The
+ * transfer never changes the scene; each job uses the scene as it is when the job starts. Among the triangles of that
+ * name it takes the plane that faces most of the room. The parts of this plane, for example between the beams of a
+ * ceiling, share one pattern that continues from part to part. Triangles in other planes stay unchanged; light them by
+ * another transfer with its own pattern. Any thread.
  */
 luxfer_status luxfer_transfer_set_scene(luxfer_transfer *transfer,
                                         luxfer_scene *scene,
                                         const char *surface);
 
 /**
- * Sets the triangles of the scene, mesh and triangle of each, that receive the lights instead of those of a name; of these too
- * the plane is taken that faces most of the room. They replace those set before, and luxfer_transfer_set_scene takes them away;
- * triangles may be NULL if count is 0: none, the name counts again. Any thread.
- * A run ends with LUXFER_INVALID_ARGUMENT if the scene does not have them.
+ * Sets the triangles of the scene that receive the lights, mesh index and triangle index of each, instead of the named
+ * surface. Among them, too, the transfer takes the plane that faces most of the room. They replace earlier triangles,
+ * and luxfer_transfer_set_scene removes them. triangles may be NULL if count is 0: the name counts again. Any thread.
+ * A job ends with LUXFER_INVALID_ARGUMENT if the scene does not have these triangles.
  */
 luxfer_status luxfer_transfer_set_triangles(luxfer_transfer *transfer,
                                             const uint32_t *triangles,
                                             size_t count);
 
 /**
- * Sets an emissive texture, linear RGB relative to the photo's white, that the stage EMISSION stretches over the surface
- * as it is instead of making one from the photo. texture may be NULL, the default: one is made. Any thread.
+ * Sets an emissive texture, linear RGB relative to the photo's white, that the stage EMISSION stretches over the
+ * surface instead of making one from the photo. texture may be NULL, the default: make one. Any thread.
  */
 luxfer_status luxfer_transfer_set_texture(luxfer_transfer *transfer,
                                           luxfer_image *texture);
 
 /**
- * Sets the camera of the picture. camera may be NULL, the default: the scene's first, or one chosen in a corner
- * of the room if it has none. Any thread.
+ * Sets the camera of the picture. camera may be NULL, the default: the first camera of the scene, or a camera in a
+ * corner of the room if the scene has none. Any thread.
  */
 luxfer_status luxfer_transfer_set_camera(luxfer_transfer *transfer,
                                          const luxfer_camera_params *camera);
 
 /**
- * Adds a stroke on the photo that concerns phase, a LUXFER_PHASE_ value; otherwise as luxfer_segment_add_stroke. Strokes on
- * lights are examples of the plane as well. Any thread.
+ * Adds a stroke on the photo for phase, a LUXFER_PHASE_ value; otherwise as luxfer_segment_add_stroke. Strokes on
+ * lights count as strokes on the plane too. Any thread.
  * LUXFER_INVALID_OPERATION before the photo is set.
  */
 luxfer_status luxfer_transfer_add_stroke(luxfer_transfer *transfer,
@@ -3779,9 +3780,9 @@ luxfer_status luxfer_transfer_add_strokes_image(luxfer_transfer *transfer,
 luxfer_status luxfer_transfer_add_strokes_text(luxfer_transfer *transfer, const char *description);
 
 /**
- * Sets rectangles of the surface that lamps keep away from, as behind ducts and sprinklers: u0, v0, u1 and v1 of each in
- * metres from the surface's corner along its axes (luxfer_surface), with u0 <= u1 and v0 <= v1. They replace those set
- * before; zones may be NULL if count is 0. Any thread.
+ * Sets rectangles of the surface without lamps, for example behind ducts and sprinklers: u0, v0, u1 and v1 of each in
+ * metres from the surface's corner along its axes (luxfer_surface), with u0 <= u1 and v0 <= v1. They replace earlier
+ * rectangles; zones may be NULL if count is 0. Any thread.
  */
 luxfer_status luxfer_transfer_set_zones(luxfer_transfer *transfer,
                                         const double *zones,
@@ -3791,43 +3792,43 @@ luxfer_status luxfer_transfer_set_zones(luxfer_transfer *transfer,
 luxfer_status luxfer_transfer_clear_strokes(luxfer_transfer *transfer);
 
 /**
- * Puts the lines and the camera that a luxfer_rectify has found, and the plane if it has unwarped one, in the place of the
- * results of the stages VIEW and UNWARP. Any thread.
- * LUXFER_NOT_READY if it has found none yet.
+ * Replaces the result of the stage VIEW by the lines and the camera of a luxfer_rectify and, if it has unwarped a
+ * plane, the result of the stage UNWARP by that plane. Any thread.
+ * LUXFER_NOT_READY if it has no result yet.
  */
 luxfer_status luxfer_transfer_use_rectify(luxfer_transfer *transfer,
                                           luxfer_rectify *rectify);
 
 /**
- * Puts the result of a luxfer_features in the place of that of the stage FEATURES. Any thread.
- * LUXFER_NOT_READY if it has none yet.
+ * Replaces the result of the stage FEATURES by that of a luxfer_features. Any thread.
+ * LUXFER_NOT_READY if it has no result yet.
  */
 luxfer_status luxfer_transfer_use_features(luxfer_transfer *transfer, luxfer_features *features);
 
 /**
- * Puts the result of a luxfer_segment in the place of that of the stage PLANE or LIGHTS, as phase, a LUXFER_PHASE_ value,
- * says. Any thread.
- * LUXFER_NOT_READY if it has none yet.
+ * Replaces the result of the stage PLANE or LIGHTS by that of a luxfer_segment; phase, a LUXFER_PHASE_ value, chooses
+ * the stage. Any thread.
+ * LUXFER_NOT_READY if it has no result yet.
  */
 luxfer_status luxfer_transfer_use_segment(luxfer_transfer *transfer,
                                           luxfer_phase phase,
                                           luxfer_segment *segment);
 
 /**
- * Puts a mask of the photo's size, such as one drawn by hand, in the place of the result of the stage PLANE or LIGHTS, as
- * phase, a LUXFER_PHASE_ value, says; 1 channel, taken as a confidence in [0, 1]. Any thread.
+ * Replaces the result of the stage PLANE or LIGHTS by a mask of the photo's size, for example one drawn by hand;
+ * phase, a LUXFER_PHASE_ value, chooses the stage. The mask has 1 channel, used as a confidence in [0, 1]. Any thread.
  */
 luxfer_status luxfer_transfer_use_mask(luxfer_transfer *transfer,
                                        luxfer_phase phase,
                                        luxfer_image *mask);
 
 /**
- * Starts a job that runs the stages first to last, LUXFER_STAGE_ values, both included; those before must have results.
- * params may be NULL for the defaults. The caller releases *job. Any thread.
- * LUXFER_INVALID_OPERATION if a job runs already, or an input or the result of an earlier stage is missing;
- * LUXFER_INVALID_ARGUMENT for a setting of one of the stages that is out of range. The job may end as the jobs of its
- * stages may, the message naming the stage, and ends at once if the scene has no such surface; the results of the stages
- * before stay.
+ * Starts a job that runs the stages from first to last, LUXFER_STAGE_ values, both included; the stages before first
+ * must have results. params may be NULL for the defaults. The caller releases *job. Any thread.
+ * LUXFER_INVALID_OPERATION if a job runs already, or if an input or the result of an earlier stage is missing;
+ * LUXFER_INVALID_ARGUMENT if a setting of a stage is out of range. The job may end with the statuses of its stages'
+ * jobs; the message names the stage. It ends at once if the scene does not have the surface. The results of finished
+ * stages stay.
  */
 luxfer_status luxfer_transfer_start(luxfer_transfer *transfer,
                                     luxfer_stage first,
@@ -3838,7 +3839,7 @@ luxfer_status luxfer_transfer_start(luxfer_transfer *transfer,
 /** Adds a reference. Any thread. */
 luxfer_status luxfer_transfer_retain(luxfer_transfer *transfer);
 
-/** Gives a reference back; a job that runs goes on. Any thread. */
+/** Removes a reference; a running job continues. Any thread. */
 luxfer_status luxfer_transfer_release(luxfer_transfer *transfer);
 
 /* ====================================================================================================================

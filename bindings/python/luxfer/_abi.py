@@ -1027,7 +1027,7 @@ class luxfer_pattern_params(Structure):
 
 
 class luxfer_transfer_params(Structure):
-    """Settings of a transfer. The structs pointed to are read during the call."""
+    """Settings of a transfer. The structs behind the pointers are read during the call."""
 
     _fields_ = [
         ("struct_size", c_uint32),

@@ -399,10 +399,10 @@ class PatternScale(IntEnum):
 
 
 class Target(IntEnum):
-    """What part of the photo gives the colour to match."""
+    """The part of the photo that gives the colour to match."""
 
     SURFACE = 0
-    """The plane that carries the lights, without them and their halo."""
+    """The plane that carries the lights, without the lights and their halo."""
     WHOLE_IMAGE = 1
     """The whole photo."""
 
@@ -411,21 +411,21 @@ class Stage(IntEnum):
     """A stage of the transfer."""
 
     VIEW = 0
-    """Lines, vanishing points and the photo's camera."""
+    """Finds lines, vanishing points and the photo's camera."""
     FEATURES = 1
-    """Ten channels for each pixel."""
+    """Computes the ten channels of the features."""
     PLANE = 2
-    """The mask of the plane that carries the lights."""
+    """Segments the plane that carries the lights."""
     LIGHTS = 3
-    """The mask of the lights in it."""
+    """Segments the lights on the plane."""
     UNWARP = 4
-    """The plane seen straight on."""
+    """Unwarps the plane to a frontal view."""
     EMISSION = 5
-    """The emissive texture, laid onto the scene's surface."""
+    """Synthesises the emissive texture and maps it onto the scene's surface."""
     RELIGHT = 6
-    """Its colour and intensity."""
+    """Solves for the colour and intensity of the emission."""
     RENDER = 7
-    """The picture."""
+    """Renders the picture."""
 
 
 class TransferImage(IntEnum):
@@ -1641,35 +1641,34 @@ class PatternParams(TypedDict, total=False):
 
 
 class TransferParams(TypedDict, total=False):
-    """Settings of a transfer. The structs pointed to are read during the call."""
+    """Settings of a transfer. The structs behind the pointers are read during the call."""
 
     max_texels: int
-    """Longest side of the emissive texture in texels, in [1, 16384]; default 2048."""
+    """Maximum side of the emissive texture in texels, in [1, 16384]; default 2048."""
     plane_distance: float
-    """Distance of the photo's camera from the lit plane in metres, in [0.01, 1e4]; default 1.2. It sets the
-    scale of the pattern."""
+    """Distance of the photo's camera from the plane with the lights in metres, in [0.01, 1e4]; default 1.2. It
+    sets the scale of the pattern."""
     white_luminance: float
-    """Luminance that the photo's white stands for, in cd/m², in [1e-6, 1e9]; default 100."""
+    """Luminance of the photo's white in cd/m², in [1e-6, 1e9]; default 100."""
     target: Target | str | int
     """Target; default Target.SURFACE."""
     rectify: RectifyParams
-    """Settings of the stages VIEW and UNWARP; None, the default, for their defaults."""
+    """Settings of the stages VIEW and UNWARP; None, the default: their defaults."""
     features: FeaturesParams
-    """Settings of the stage FEATURES; None, the default, for their defaults."""
+    """Settings of the stage FEATURES; None, the default: their defaults."""
     plane: SegmentParams
-    """Settings of the stage PLANE; None, the default, for their defaults."""
+    """Settings of the stage PLANE; None, the default: their defaults."""
     lights: SegmentParams
-    """Settings of the stage LIGHTS; None, the default, for those of luxfer_segment with channels = 7, colour
-    only."""
+    """Settings of the stage LIGHTS; None, the default: the defaults with channels = 7, colour only."""
     emission: EmissionParams
-    """Settings of the stage EMISSION, whose width, height, scale and offset the transfer sets; None, the
-    default, for their defaults."""
+    """Settings of the stage EMISSION; None, the default: their defaults. The transfer sets width, height, scale
+    and offset itself."""
     relight: RelightParams
-    """Settings of the stage RELIGHT; None, the default, for their defaults."""
+    """Settings of the stage RELIGHT; None, the default: their defaults."""
     render: RenderParams
-    """Settings of the stage RENDER; None, the default, for their defaults."""
+    """Settings of the stage RENDER; None, the default: their defaults."""
     pattern: PatternParams
-    """How the lights lie on the surface; None, the default, for the defaults."""
+    """Layout of the lights on the surface; None, the default: the defaults."""
 
 
 @dataclass(frozen=True)
