@@ -34,7 +34,21 @@
 //! - Woop, Benthin and Wald 2013: Watertight ray/triangle intersection. Burley 2020: Practical hash-based Owen
 //!   scrambling.
 
-#![warn(unsafe_op_in_unsafe_fn)]
+// Nothing that ends or talks past the host.
+#![cfg_attr(
+    not(test),
+    warn(
+        clippy::dbg_macro,
+        clippy::exit,
+        clippy::get_unwrap,
+        clippy::panic,
+        clippy::print_stderr,
+        clippy::print_stdout,
+        clippy::todo,
+        clippy::unimplemented,
+        clippy::unwrap_used
+    )
+)]
 
 pub mod error;
 pub mod exec;
