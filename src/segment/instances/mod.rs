@@ -92,7 +92,7 @@ fn segmentation(search: &Search, painted: &[u32], similar: &Similar, paint: &Own
     let (width, height) = (photo.width, photo.height);
     let mut confidence = Image::new(width, height, 1)?;
     for &node in painted.iter().chain(&similar.found) {
-        soft::add(node, tree, regions, photo, &mut confidence)?;
+        soft::add(node, search, &mut confidence)?;
     }
     let mut unseen = Image::new(width, height, 1)?;
     for &node in &similar.doubtful {

@@ -136,7 +136,7 @@ impl Regions {
             return;
         }
         let (bright, dark) = if photo.levels[i] > photo.levels[j] { (a, b) } else { (b, a) };
-        let gradient = f64::from(photo.gradient[i].max(photo.gradient[j]));
+        let gradient = 0.5 * f64::from(photo.gradient[i] + photo.gradient[j]);
         self.contour_gradient[bright] += gradient;
         self.contour_gradient[dark] -= gradient;
         self.contour_length[bright] += 1.0;
