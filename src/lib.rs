@@ -15,7 +15,8 @@
 //! checks these arrows.
 //!
 //! Every stage has the same face: `Params` with defaults, ranges and units; an input; an output that carries its own error
-//! estimate; and a function that runs it with a [`job::Job`], which takes progress and gives cancel requests. All parallel
+//! estimate, from which stages on the photo compute [`warning`]s; and a function that runs it with a [`job::Job`], which takes
+//! progress and gives cancel requests. All parallel
 //! work goes through [`exec`], in units that do not depend on the number of threads: equal input gives equal bits.
 //!
 //! Units: metres, radians, right-handed, Y up. Colours are scene-linear Rec.709 RGB whose luminance is in cd/m² where light
@@ -44,6 +45,7 @@ mod reserve;
 pub mod rng;
 pub mod scene;
 mod simd;
+pub mod warning;
 
 pub mod emission;
 pub mod features;

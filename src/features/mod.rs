@@ -37,6 +37,7 @@ mod search;
 mod strokes;
 #[cfg(test)]
 mod tests;
+mod warnings;
 
 pub use frustum::Frustum;
 pub use layout::Layout;

@@ -30,6 +30,7 @@ mod solve;
 mod steps;
 mod target;
 mod transport;
+mod warnings;
 
 pub use estimate::BATCHES;
 pub use groups::{Colour, GroupParams, GroupSolution, MAX_LEVELS, Outcome, solve_groups};
@@ -155,6 +156,8 @@ pub struct Solution {
     /// Half-widths of the 95 % confidence intervals of `scale`.
     pub half_width: DVec3,
     pub reach: [Reach; 3],
+    /// On which side of the target each channel had to be.
+    pub sense: [Sense; 3],
     /// Mean radiance of the target under the emission at scale 1, in cd/m².
     pub response: DVec3,
     /// Mean radiance of the target under all other light, in cd/m².
