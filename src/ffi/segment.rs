@@ -10,13 +10,11 @@ use super::image::{Pixels, luxfer_image};
 use super::job::luxfer_job;
 use super::params::{self, Report, Versioned};
 use super::pointer::{Out, bytes, text};
-use super::stage::{Stage as Runner, need};
+use super::stage::{Stage, need};
 use super::status::luxfer_status;
 use crate::error::{Error, Result};
 use crate::image::Image;
 use crate::segment::{self, Segmentation, Stroke, StrokeSet, strokes};
-use crate::transfer::Stage;
-use crate::warning::Warning;
 use glam::DVec2;
 use std::ffi::{c_char, c_void};
 use std::sync::Arc;
@@ -134,12 +132,12 @@ unsafe impl Versioned for luxfer_segment_report {
 #[derive(Clone, Default)]
 pub(super) struct Inputs {
     features: Option<Arc<Pixels>>,
-    within: Option<Arc<Pixels>>,
-    strokes: Vec<Stroke>,
+    pub(super) within: Option<Arc<Pixels>>,
+    pub(super) strokes: Vec<Stroke>,
 }
 
 impl Handle for luxfer_segment {
-    type Object = Runner<Inputs, Segmentation>;
+    type Object = Stage<Inputs, Segmentation>;
     const TAG: u64 = tag(b"lux.segm");
     const NAME: &'static str = "luxfer_segment";
 }
@@ -180,16 +178,6 @@ impl Inputs {
     }
 }
 
-impl Inputs {
-    /// Warnings about a mask that was made from these inputs, and the stage of the transfer that makes such a mask.
-    pub(super) fn warnings(&self, made: &Segmentation) -> (Stage, Vec<Warning>) {
-        let (within, strokes) = (self.within.as_ref(), self.strokes.iter());
-        let lit = within.and_then(|within| segment::almost_all_lit(&made.mask, within.image()));
-        let list = made.warnings().into_iter().chain(made.missed(strokes)).chain(lit).collect();
-        (if within.is_some() { Stage::Lights } else { Stage::Plane }, list)
-    }
-}
-
 /// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_segment_params_init(params: *mut luxfer_segment_params, size: usize) -> luxfer_status {
@@ -203,7 +191,7 @@ pub unsafe extern "C" fn luxfer_segment_create(
     segment: *mut *mut luxfer_segment,
 ) -> luxfer_status {
     enter(context, |object| {
-        Out::new(segment, "segment")?.set(handle::give(Runner::new(object.context(), Inputs::default())));
+        Out::new(segment, "segment")?.set(handle::give(Stage::new(object.context(), Inputs::default())));
         Ok(())
     })
 }

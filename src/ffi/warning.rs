@@ -18,6 +18,7 @@ use super::segment::luxfer_segment;
 use super::status::luxfer_status;
 use super::transfer::{luxfer_stage, luxfer_transfer};
 use crate::error::Result;
+use crate::segment;
 use crate::transfer::Stage;
 use crate::warning::Warning;
 use std::ffi::c_char;
@@ -191,7 +192,10 @@ pub unsafe extern "C" fn luxfer_segment_get_warnings(
 ) -> luxfer_status {
     enter(segment, |stage| {
         let out = Out::new(warnings, "warnings")?;
-        let (phase, list) = stage.inputs().warnings(&*stage.output()?);
+        let (made, inputs) = (stage.output()?, stage.inputs());
+        let lit = inputs.within.as_ref().and_then(|within| segment::almost_all_lit(&made.mask, within.image()));
+        let list = made.warnings().into_iter().chain(made.missed(inputs.strokes.iter())).chain(lit).collect();
+        let phase = if inputs.within.is_some() { Stage::Lights } else { Stage::Plane };
         out.set(give(stage.context(), of(phase, list)));
         Ok(())
     })
