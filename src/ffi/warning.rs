@@ -42,7 +42,8 @@ pub const LUXFER_WARNING_NOT_SQUARE: luxfer_warning_code = 4;
 /// The room was laid out from its lines with little trust, and there is no depth map; the severity is that trust, below the
 /// limit.
 pub const LUXFER_WARNING_LAYOUT_UNCERTAIN: luxfer_warning_code = 5;
-/// Much of a mask is unlike every stroke; the severity is its share. The place is the pixel where one more stroke helps most.
+/// Much of a mask is unlike every stroke, or regions are left out that resemble the painted lamps in part; the severity is
+/// their share of the mask and these regions. The place is the pixel where one more stroke helps most.
 pub const LUXFER_WARNING_UNSEEN: luxfer_warning_code = 6;
 /// Strokes of both classes cover the same pixels; the severity is their number per sample.
 pub const LUXFER_WARNING_CONTRADICTORY_STROKES: luxfer_warning_code = 7;
@@ -63,7 +64,7 @@ pub const LUXFER_WARNING_MAGNIFIED: luxfer_warning_code = 13;
 pub const LUXFER_WARNING_PLANE_NEAR_HORIZON: luxfer_warning_code = 14;
 /// The texture differs from the photo in its statistics; the severity is the error of luxfer_emission_report.
 pub const LUXFER_WARNING_PATTERN_UNCERTAIN: luxfer_warning_code = 15;
-/// The photo shows too few whole lamps to tell a pattern; the severity is their number, below the limit.
+/// The photo shows too few whole lamps for a pattern; the severity is their number, below the limit.
 pub const LUXFER_WARNING_FEW_LAMPS: luxfer_warning_code = 16;
 /// The lamps lie on no lattice that could be found; the severity is the error of luxfer_emission_report.
 pub const LUXFER_WARNING_NO_LATTICE: luxfer_warning_code = 17;

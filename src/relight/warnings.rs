@@ -1,6 +1,6 @@
 //! Reasons to doubt a solved colour and intensity.
 
-use super::{Reach, Sense, Solution};
+use super::{Sense, Solution, TargetStatus};
 use crate::warning::{Code, Warning};
 
 const CHANNELS: [&str; 3] = ["red", "green", "blue"];
@@ -12,10 +12,10 @@ impl Solution {
     }
 
     fn unreachable(&self) -> Option<Warning> {
-        let missed: Vec<usize> = (0..3).filter(|&c| self.reach[c] != Reach::Met).collect();
+        let missed: Vec<usize> = (0..3).filter(|&c| self.status[c] != TargetStatus::Met).collect();
         let message = || {
             let reasons: Vec<String> =
-                missed.iter().map(|&c| format!("{}, {}", CHANNELS[c], explain(self.reach[c]))).collect();
+                missed.iter().map(|&c| format!("{}, {}", CHANNELS[c], explain(self.status[c]))).collect();
             format!("channels do not meet the target: {}", reasons.join("; "))
         };
         let advice = "dim the other lights of the scene, make its surfaces less dark or less saturated, or raise \
@@ -32,12 +32,12 @@ impl Solution {
     }
 }
 
-fn explain(reach: Reach) -> &'static str {
-    match reach {
-        Reach::Met => "met",
-        Reach::TooBright => "which other lights alone make too bright",
-        Reach::TooDim => "which the lamps at their limits leave too dim",
-        Reach::Dark => "of which no light reaches the target",
+fn explain(status: TargetStatus) -> &'static str {
+    match status {
+        TargetStatus::Met => "met",
+        TargetStatus::TooBright => "which other lights alone make too bright",
+        TargetStatus::TooDim => "which the lamps at their limits leave too dim",
+        TargetStatus::Dark => "of which no light reaches the target",
     }
 }
 

@@ -41,6 +41,16 @@ impl Segmentation {
         self.samples != [0, 0]
     }
 
+    /// Whether it consists of lamps, whose `unseen` regions lie outside the mask.
+    fn is_of_lamps(&self) -> bool {
+        self.is_learnt() && self.model.is_none()
+    }
+
+    /// How unlike every stroke a pixel is that belongs to the mask, or may belong to it.
+    fn doubt(&self, pixel: usize) -> f32 {
+        if self.is_of_lamps() || self.mask.data[pixel] > 0.5 { self.unseen.data[pixel] } else { 0.0 }
+    }
+
     fn is_empty(&self) -> Option<Warning> {
         let count = self.mask.data.iter().filter(|m| **m > 0.5).count();
         Warning::below(
@@ -53,10 +63,16 @@ impl Segmentation {
     }
 
     fn is_unseen(&self) -> Option<Warning> {
-        let masked = || self.mask.data.iter().zip(&self.unseen.data).filter(|(mask, _)| **mask > 0.5);
-        let count = masked().filter(|(_, unseen)| **unseen > UNSEEN).count();
-        let share = count as f64 / masked().count().max(1) as f64;
-        let message = || format!("{} of the mask is unlike every stroke", percent(share));
+        let pixels = || 0..self.mask.data.len();
+        let doubtful = pixels().filter(|&p| self.doubt(p) > UNSEEN).count();
+        let all = pixels().filter(|&p| self.mask.data[p] > 0.5 || self.doubt(p) > UNSEEN).count();
+        let share = doubtful as f64 / all.max(1) as f64;
+        let message = || match self.is_of_lamps() {
+            true => {
+                format!("{} of what may be lamps is left out: it resembles the painted lamps in part", percent(share))
+            }
+            false => format!("{} of the mask is unlike every stroke", percent(share)),
+        };
         let advice = "paint one more stroke at this place, of the class that it belongs to";
         Warning::above(Code::Unseen, share, MAX_UNSEEN, message, advice).map(|warning| warning.at(self.next_stroke()))
     }
@@ -129,18 +145,16 @@ impl Segmentation {
         raised.flatten().map(|warning| warning.at(place))
     }
 
-    /// The pixel of the mask where one more stroke helps most: the strangest one of the strangest neighbourhood.
+    /// The pixel where one more stroke helps most: the most doubtful one of the most doubtful neighbourhood.
     fn next_stroke(&self) -> Option<DVec2> {
         let (width, height) = (self.mask.width, self.mask.height);
         let side = width.max(height).div_ceil(CELLS).max(1);
         let (columns, rows) = (width.div_ceil(side), height.div_ceil(side));
-        let strangeness = |p: usize| if self.mask.data[p] > 0.5 { self.unseen.data[p] } else { 0.0 };
-
         // Sum over cells, then over the neighbours of each.
         let mut cells = vec![0.0f64; columns * rows];
         for y in 0..height {
             for x in 0..width {
-                cells[y / side * columns + x / side] += f64::from(strangeness(y * width + x));
+                cells[y / side * columns + x / side] += f64::from(self.doubt(y * width + x));
             }
         }
         let around = |cell: usize| {
@@ -157,7 +171,7 @@ impl Segmentation {
         let (left, top) = (cell % columns * side, cell / columns * side);
         let pixels =
             (top..(top + side).min(height)).flat_map(|y| (left..(left + side).min(width)).map(move |x| y * width + x));
-        let strangest = pixels.max_by(|&p, &q| strangeness(p).total_cmp(&strangeness(q)))?;
+        let strangest = pixels.max_by(|&p, &q| self.doubt(p).total_cmp(&self.doubt(q)))?;
         Some(self.centre_of(strangest))
     }
 

@@ -113,3 +113,18 @@ fn lights_over_most_of_the_plane_raise_a_warning() {
     assert_eq!(almost_all_lit(&Image::from_fn(9, 9, |_, _| [1.0]).unwrap(), &plane), None);
     assert_eq!(almost_all_lit(&lights(45), &Image::new(WIDTH, HEIGHT, 1).unwrap()), None);
 }
+
+#[test]
+fn regions_that_may_be_lamps_raise_a_warning_with_a_place_on_one() {
+    let square = |x: usize, y: usize, left: usize| (left..left + 10).contains(&x) && (20..30).contains(&y);
+    let mask = Image::from_fn(WIDTH, HEIGHT, |x, y| [f32::from(square(x, y, 20) || square(x, y, 60))]).unwrap();
+    let lamps =
+        |unseen: Image| Segmentation { unseen, samples: [10, 10], ..Segmentation::from_confidence(&mask).unwrap() };
+    assert_eq!(codes(lamps(Image::new(WIDTH, HEIGHT, 1).unwrap()).warnings()), []);
+    let third = Image::from_fn(WIDTH, HEIGHT, |x, y| [f32::from(square(x, y, 100))]).unwrap();
+    let warnings = lamps(third).warnings();
+    assert_eq!(codes(warnings.clone()), [Code::Unseen]);
+    assert!((warnings[0].severity - 1.0 / 3.0).abs() < 1e-9);
+    let place = warnings[0].place.unwrap();
+    assert!(square(place.x as usize, place.y as usize, 100), "{place}");
+}
