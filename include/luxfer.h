@@ -4022,6 +4022,196 @@ luxfer_status luxfer_transfer_save_fixtures(luxfer_transfer *transfer,
                                             const char *path);
 
 /* ====================================================================================================================
+ * Warnings
+ *
+ * Reasons to doubt the result of a job that has succeeded. A warning names the defect, its figure and limit, the place in the
+ * photo, and the remedy. Each stage that reads the photo has a list, and a transfer has the lists of all its stages. A list is a
+ * copy, which stays as it is when the stage is started again. An empty list does not prove a result right.
+ * ==================================================================================================================== */
+
+/** A list of warnings. See luxfer_transfer_get_warnings. */
+typedef struct luxfer_warnings luxfer_warnings;
+
+/** The code of a warning: a LUXFER_WARNING_ value. Values are never changed or reused; new ones may be added. */
+typedef int32_t luxfer_warning_code;
+
+/** A reason to doubt a result. Set struct_size before the call. */
+typedef struct luxfer_warning {
+    /** sizeof(luxfer_warning), set by the caller. */
+    uint32_t struct_size;
+    /** LUXFER_WARNING_ value. */
+    luxfer_warning_code code;
+    /**
+     * The stage whose result is in doubt, a LUXFER_STAGE_ value. Of a luxfer_segment it is LIGHTS with a mask to look within,
+     * PLANE without.
+     */
+    luxfer_stage stage;
+    /** 1 if the warning has a place in the photo, else 0. */
+    uint32_t has_place;
+    /** The figure that raised it; each code has its own. */
+    double severity;
+    /** The limit that the figure has passed. */
+    double limit;
+    /** The place in the photo, x and y in pixels; 0 without one. */
+    double place[2];
+} luxfer_warning;
+
+/**
+ * The vanishing points do not determine the focal length, which was assumed; the severity is its relative standard deviation.
+ */
+#define LUXFER_WARNING_FOCAL_ASSUMED 1
+
+/** The directions of the room axes are uncertain; the severity is the largest standard deviation in radians. */
+#define LUXFER_WARNING_VIEW_UNCERTAIN 2
+
+/** The lens bends straight lines; the severity is the distortion of luxfer_rectify_report without its sign. */
+#define LUXFER_WARNING_LENS_DISTORTION 3
+
+/**
+ * The walls do not meet at right angles, or the pixels are not square; the severity is the largest deviation in radians.
+ */
+#define LUXFER_WARNING_NOT_SQUARE 4
+
+/**
+ * The room was laid out from its lines with little trust, and there is no depth map; the severity is that trust, below the
+ * limit.
+ */
+#define LUXFER_WARNING_LAYOUT_UNCERTAIN 5
+
+/**
+ * Much of a mask is unlike every stroke; the severity is its share. The place is the pixel where one more stroke helps most.
+ */
+#define LUXFER_WARNING_UNSEEN 6
+
+/** Strokes of both classes cover the same pixels; the severity is their number per sample. */
+#define LUXFER_WARNING_CONTRADICTORY_STROKES 7
+
+/** Strokes lie outside the photo; the severity is the number of these pixels per sample. */
+#define LUXFER_WARNING_OFF_IMAGE_STROKES 8
+
+/** A mask is uncertain; the severity is the expected share of wrong pixels. */
+#define LUXFER_WARNING_UNCERTAIN_MASK 9
+
+/** A mask has no pixel; the severity is 0, below the limit. */
+#define LUXFER_WARNING_EMPTY_MASK 10
+
+/**
+ * A mask of a transfer contradicts its strokes; the severity is the share of their pixels. The place is one of them.
+ */
+#define LUXFER_WARNING_MISSED_STROKES 11
+
+/** Lights cover much of their plane; the severity is its share. */
+#define LUXFER_WARNING_ALMOST_ALL_LIT 12
+
+/** Much of the unwarped plane is magnified; the severity is its share. The place is the one that is magnified most. */
+#define LUXFER_WARNING_MAGNIFIED 13
+
+/**
+ * The camera sees the plane nearly edge-on; the severity is the sine of the angle for half of the plane, below the limit. The
+ * place is the flattest.
+ */
+#define LUXFER_WARNING_PLANE_NEAR_HORIZON 14
+
+/** The texture differs from the photo in its statistics; the severity is the error of luxfer_emission_report. */
+#define LUXFER_WARNING_PATTERN_UNCERTAIN 15
+
+/** The photo shows too few whole lamps to tell a pattern; the severity is their number, below the limit. */
+#define LUXFER_WARNING_FEW_LAMPS 16
+
+/** The lamps lie on no lattice that could be found; the severity is the error of luxfer_emission_report. */
+#define LUXFER_WARNING_NO_LATTICE 17
+
+/** Colour channels do not meet their target; the severity is their number. */
+#define LUXFER_WARNING_UNREACHABLE 18
+
+/** The photo clips the target, which is a lower bound; the severity is the number of these channels. */
+#define LUXFER_WARNING_TARGET_CLIPPED 19
+
+/**
+ * Gets the warnings of all stages that have a result, in their order. The caller releases *warnings. Any thread.
+ * LUXFER_NOT_READY before the first stage has ended.
+ */
+luxfer_status luxfer_transfer_get_warnings(luxfer_transfer *transfer,
+                                           luxfer_warnings **warnings);
+
+/**
+ * Gets the warnings about the camera, and about the plane if it has been unwarped. The caller releases *warnings. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded.
+ */
+luxfer_status luxfer_rectify_get_warnings(luxfer_rectify *rectify,
+                                          luxfer_warnings **warnings);
+
+/**
+ * Gets the warnings about the features. The caller releases *warnings. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded.
+ */
+luxfer_status luxfer_features_get_warnings(luxfer_features *features, luxfer_warnings **warnings);
+
+/**
+ * Gets the warnings about the mask. It is compared with the strokes, and with the mask to look within, as they are now. The
+ * caller releases *warnings. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded.
+ */
+luxfer_status luxfer_segment_get_warnings(luxfer_segment *segment,
+                                          luxfer_warnings **warnings);
+
+/**
+ * Gets the warnings about the texture; a plan has none. The caller releases *warnings. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded.
+ */
+luxfer_status luxfer_emission_get_warnings(luxfer_emission *emission, luxfer_warnings **warnings);
+
+/**
+ * Gets the warnings about the solution. The caller releases *warnings. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded.
+ */
+luxfer_status luxfer_relight_get_warnings(luxfer_relight *relight, luxfer_warnings **warnings);
+
+/** Counts the warnings of a list. Any thread. */
+luxfer_status luxfer_warnings_count(luxfer_warnings *warnings, uint32_t *count);
+
+/**
+ * Gets the code, the stage, the figures and the place of a warning. Any thread.
+ * LUXFER_NOT_FOUND if there is no such warning.
+ */
+luxfer_status luxfer_warnings_get(luxfer_warnings *warnings,
+                                  uint32_t index,
+                                  luxfer_warning *warning);
+
+/**
+ * Copies the defect, in English and with its figure, into capacity bytes with a zero at its end, cut if need be; *needed
+ * receives the capacity for all of it, unless NULL. Any thread.
+ * LUXFER_NOT_FOUND if there is no such warning.
+ */
+luxfer_status luxfer_warnings_get_message(luxfer_warnings *warnings,
+                                          uint32_t index,
+                                          char *buffer,
+                                          size_t capacity,
+                                          size_t *needed);
+
+/**
+ * Copies the remedy, as luxfer_warnings_get_message does the defect. Any thread.
+ * LUXFER_NOT_FOUND if there is no such warning.
+ */
+luxfer_status luxfer_warnings_get_advice(luxfer_warnings *warnings,
+                                         uint32_t index,
+                                         char *buffer,
+                                         size_t capacity,
+                                         size_t *needed);
+
+/** Adds a reference. Any thread. */
+luxfer_status luxfer_warnings_retain(luxfer_warnings *warnings);
+
+/** Gives a reference back. Any thread. */
+luxfer_status luxfer_warnings_release(luxfer_warnings *warnings);
+
+/**
+ * The name of a warning's code, such as "LUXFER_WARNING_UNSEEN"; "LUXFER_WARNING_UNKNOWN" for another number. The string
+ * is static: never free it. Any thread.
+ */
+const char *luxfer_warning_name(luxfer_warning_code code);
+
+/* ====================================================================================================================
  * Planning
  *
  * Chooses settings for a given error or a given time before anything is rendered: of relighting and rendering, or of a

@@ -51,6 +51,7 @@ const GROUPS: &[&str] = &[
     "pattern",
     "transfer",
     "transfer_results",
+    "warning",
     "plan",
     "guides",
     "stylize_params",
@@ -397,6 +398,7 @@ layouts! {
     luxfer_pattern_params: struct_size scale length texel_size rotation offset margin;
     luxfer_transfer_report: struct_size fixtures seconds view_error depth_confidence plane_error lights_error
         unwarp_error emission_error relight_error render_error texel_size target reserved;
+    luxfer_warning: struct_size code stage has_place severity limit place;
     luxfer_plan_params: struct_size time_budget_ms target_error reserved;
     luxfer_plan_report: struct_size relights seconds error relight_seconds relight_error render_seconds render_error;
     luxfer_sheet_params: struct_size even_light paper_width paper_height dpi margin contrast;

@@ -52,6 +52,7 @@ pub mod statistics;
 mod sweep;
 #[cfg(test)]
 mod tests;
+mod warnings;
 mod window;
 
 pub use blend::Style;

@@ -72,6 +72,7 @@ mod stylize_results;
 mod transfer;
 mod transfer_results;
 mod version;
+mod warning;
 
 pub use context::*;
 pub use demo::*;
@@ -123,3 +124,4 @@ pub use stylize_results::*;
 pub use transfer::*;
 pub use transfer_results::*;
 pub use version::*;
+pub use warning::*;

@@ -164,8 +164,8 @@ unsafe impl Versioned for luxfer_segment_report {
 #[derive(Clone, Default)]
 pub(super) struct Inputs {
     features: Option<Arc<Pixels>>,
-    within: Option<Arc<Pixels>>,
-    strokes: Vec<Stroke>,
+    pub(super) within: Option<Arc<Pixels>>,
+    pub(super) strokes: Vec<Stroke>,
 }
 
 impl Handle for luxfer_segment {

@@ -44,9 +44,11 @@ pub mod strokes;
 mod table;
 #[cfg(test)]
 mod tests;
+mod warnings;
 
 pub use distance::dilate;
 pub use strokes::{Stroke, StrokeSet};
+pub use warnings::almost_all_lit;
 
 use crate::error::{Error, Result, check_range};
 use crate::exec;

@@ -469,6 +469,57 @@ class TransferScene(IntEnum):
     """As TransferScene.LIT, with white light of equal luminance."""
 
 
+class WarningCode(IntEnum):
+    """The code of a warning."""
+
+    FOCAL_ASSUMED = 1
+    """The vanishing points do not determine the focal length, which was assumed; the severity is its relative
+    standard deviation."""
+    VIEW_UNCERTAIN = 2
+    """The directions of the room axes are uncertain; the severity is the largest standard deviation in
+    radians."""
+    LENS_DISTORTION = 3
+    """The lens bends straight lines; the severity is the distortion of RectifyReport without its sign."""
+    NOT_SQUARE = 4
+    """The walls do not meet at right angles, or the pixels are not square; the severity is the largest
+    deviation in radians."""
+    LAYOUT_UNCERTAIN = 5
+    """The room was laid out from its lines with little trust, and there is no depth map; the severity is that
+    trust, below the limit."""
+    UNSEEN = 6
+    """Much of a mask is unlike every stroke; the severity is its share. The place is the pixel where one more
+    stroke helps most."""
+    CONTRADICTORY_STROKES = 7
+    """Strokes of both classes cover the same pixels; the severity is their number per sample."""
+    OFF_IMAGE_STROKES = 8
+    """Strokes lie outside the photo; the severity is the number of these pixels per sample."""
+    UNCERTAIN_MASK = 9
+    """A mask is uncertain; the severity is the expected share of wrong pixels."""
+    EMPTY_MASK = 10
+    """A mask has no pixel; the severity is 0, below the limit."""
+    MISSED_STROKES = 11
+    """A mask of a transfer contradicts its strokes; the severity is the share of their pixels. The place is one
+    of them."""
+    ALMOST_ALL_LIT = 12
+    """Lights cover much of their plane; the severity is its share."""
+    MAGNIFIED = 13
+    """Much of the unwarped plane is magnified; the severity is its share. The place is the one that is
+    magnified most."""
+    PLANE_NEAR_HORIZON = 14
+    """The camera sees the plane nearly edge-on; the severity is the sine of the angle for half of the plane,
+    below the limit. The place is the flattest."""
+    PATTERN_UNCERTAIN = 15
+    """The texture differs from the photo in its statistics; the severity is the error of EmissionReport."""
+    FEW_LAMPS = 16
+    """The photo shows too few whole lamps to tell a pattern; the severity is their number, below the limit."""
+    NO_LATTICE = 17
+    """The lamps lie on no lattice that could be found; the severity is the error of EmissionReport."""
+    UNREACHABLE = 18
+    """Colour channels do not meet their target; the severity is their number."""
+    TARGET_CLIPPED = 19
+    """The photo clips the target, which is a lower bound; the severity is the number of these channels."""
+
+
 class GuidesImage(IntEnum):
     """An image of guides."""
 
@@ -1727,6 +1778,25 @@ class Fixture:
     """Correlated colour temperature in kelvin; 0 for a lamp that is off."""
     duv: float
     """Distance from the blackbody in the CIE 1960 diagram."""
+
+
+@dataclass(frozen=True)
+class Warning:
+    """A reason to doubt a result."""
+
+    code: WarningCode
+    """WarningCode."""
+    stage: Stage
+    """The stage whose result is in doubt, Stage. Of a luxfer_segment it is LIGHTS with a mask to look within,
+    PLANE without."""
+    has_place: int
+    """1 if the warning has a place in the photo, else 0."""
+    severity: float
+    """The figure that raised it; each code has its own."""
+    limit: float
+    """The limit that the figure has passed."""
+    place: tuple[float, float]
+    """The place in the photo, x and y in pixels; 0 without one."""
 
 
 class PlanParams(TypedDict, total=False):
