@@ -1672,6 +1672,9 @@ luxfer_status luxfer_features_release(luxfer_features *features);
 /** A segmentation by strokes. See luxfer_segment_create. */
 typedef struct luxfer_segment luxfer_segment;
 
+/** What is segmented: a LUXFER_SUBJECT_ value. */
+typedef int32_t luxfer_subject;
+
 /** Settings of a segmentation. Fill them with luxfer_segment_params_init. */
 typedef struct luxfer_segment_params {
     /** sizeof(luxfer_segment_params), set by luxfer_segment_params_init. */
@@ -1699,6 +1702,13 @@ typedef struct luxfer_segment_params {
      * neighbours as one surface, in [1e-3, 1e6]; default 8.
      */
     double refine_tolerance;
+    /**
+     * What the positive strokes lie on: a LUXFER_SUBJECT_ value; default LUXFER_SUBJECT_AUTO. Of lamps the settings above do not
+     * matter.
+     */
+    luxfer_subject subject;
+    /** Must be 0. */
+    uint32_t reserved;
 } luxfer_segment_params;
 
 /** The mask that strokes are for: a LUXFER_PHASE_ value. */
@@ -1739,6 +1749,19 @@ typedef struct luxfer_segment_report {
  * Difference of a pixel from all pixels under strokes, in [0, 1]: where it is high, another stroke helps; 1 channel.
  */
 #define LUXFER_SEGMENT_UNSEEN 2
+
+/** Lamps where luxfer_segment_set_within gave a mask and the features are those of luxfer_features; else a surface. */
+#define LUXFER_SUBJECT_AUTO 0
+
+/** A surface, such as the plane that carries the lamps: each pixel is judged by its features. */
+#define LUXFER_SUBJECT_SURFACE 1
+
+/**
+ * Lamps: compact regions with a sharp contour, brighter than their surroundings. Each positive stroke marks one or more; regions
+ * without a stroke that look like them and lie in the mask of luxfer_segment_set_within are found as well. Negative strokes are
+ * not needed. The first three channels of the features must be CIELAB.
+ */
+#define LUXFER_SUBJECT_LAMPS 2
 
 /**
  * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
@@ -4079,7 +4102,8 @@ typedef struct luxfer_warning {
 #define LUXFER_WARNING_LAYOUT_UNCERTAIN 5
 
 /**
- * Much of a mask is unlike every stroke; the severity is its share. The place is the pixel where one more stroke helps most.
+ * Much of a mask is unlike every stroke, or regions are left out that resemble the painted lamps in part; the severity is
+ * their share of the mask and these regions. The place is the pixel where one more stroke helps most.
  */
 #define LUXFER_WARNING_UNSEEN 6
 
@@ -4115,7 +4139,7 @@ typedef struct luxfer_warning {
 /** The texture differs from the photo in its statistics; the severity is the error of luxfer_emission_report. */
 #define LUXFER_WARNING_PATTERN_UNCERTAIN 15
 
-/** The photo shows too few whole lamps to tell a pattern; the severity is their number, below the limit. */
+/** The photo shows too few whole lamps for a pattern; the severity is their number, below the limit. */
 #define LUXFER_WARNING_FEW_LAMPS 16
 
 /** The lamps lie on no lattice that could be found; the severity is the error of luxfer_emission_report. */

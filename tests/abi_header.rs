@@ -354,7 +354,7 @@ layouts! {
     luxfer_luminaire_params: struct_size reserved flux position axis c0 colour;
     luxfer_features_params: struct_size near_plane far_plane normal_radius;
     luxfer_features_report: struct_size depth_source depth_confidence replaced_pixels;
-    luxfer_segment_params: struct_size samples_per_class channels refine_radius ridge seed refine_tolerance;
+    luxfer_segment_params: struct_size samples_per_class channels refine_radius ridge seed refine_tolerance subject reserved;
     luxfer_segment_report: struct_size channels error negative_samples positive_samples contradictory_pixels;
     luxfer_rectify_params: struct_size detector search metric hough_band focal principal plane_axes max_side reserved
         max_magnification seed;

@@ -88,6 +88,9 @@ LUXFER_PHASE_LIGHTS = 1
 LUXFER_SEGMENT_MASK = 0
 LUXFER_SEGMENT_CONFIDENCE = 1
 LUXFER_SEGMENT_UNSEEN = 2
+LUXFER_SUBJECT_AUTO = 0
+LUXFER_SUBJECT_SURFACE = 1
+LUXFER_SUBJECT_LAMPS = 2
 LUXFER_EMISSION_TEXTURE = 0
 LUXFER_EMISSION_MASK = 1
 LUXFER_EMISSION_EXEMPLAR_METADATA = 2
@@ -630,7 +633,10 @@ class luxfer_segment_params(Structure):
         ("ridge", c_double),
         ("seed", c_uint64),
         ("refine_tolerance", c_double),
+        ("subject", c_int32),
+        ("reserved", c_uint32),
     ]
+    enumerations: dict[str, type] = {"subject": types.Subject}
 
 
 class luxfer_segment_report(Structure):

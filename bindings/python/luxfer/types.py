@@ -217,6 +217,21 @@ class DepthSource(IntEnum):
     """The caller's network."""
 
 
+class Subject(IntEnum):
+    """What is segmented."""
+
+    AUTO = 0
+    """Lamps where luxfer_segment_set_within gave a mask and the features are those of luxfer_features; else a
+    surface."""
+    SURFACE = 1
+    """A surface, such as the plane that carries the lamps: each pixel is judged by its features."""
+    LAMPS = 2
+    """Lamps: compact regions with a sharp contour, brighter than their surroundings. Each positive stroke marks
+    one or more; regions without a stroke that look like them and lie in the mask of luxfer_segment_set_within
+    are found as well. Negative strokes are not needed. The first three channels of the features must be
+    CIELAB."""
+
+
 class Phase(IntEnum):
     """The mask that strokes are for."""
 
@@ -487,8 +502,9 @@ class WarningCode(IntEnum):
     """The room was laid out from its lines with little trust, and there is no depth map; the severity is that
     trust, below the limit."""
     UNSEEN = 6
-    """Much of a mask is unlike every stroke; the severity is its share. The place is the pixel where one more
-    stroke helps most."""
+    """Much of a mask is unlike every stroke, or regions are left out that resemble the painted lamps in part;
+    the severity is their share of the mask and these regions. The place is the pixel where one more stroke
+    helps most."""
     CONTRADICTORY_STROKES = 7
     """Strokes of both classes cover the same pixels; the severity is their number per sample."""
     OFF_IMAGE_STROKES = 8
@@ -511,7 +527,7 @@ class WarningCode(IntEnum):
     PATTERN_UNCERTAIN = 15
     """The texture differs from the photo in its statistics; the severity is the error of EmissionReport."""
     FEW_LAMPS = 16
-    """The photo shows too few whole lamps to tell a pattern; the severity is their number, below the limit."""
+    """The photo shows too few whole lamps for a pattern; the severity is their number, below the limit."""
     NO_LATTICE = 17
     """The lamps lie on no lattice that could be found; the severity is the error of EmissionReport."""
     UNREACHABLE = 18
@@ -1150,6 +1166,9 @@ class SegmentParams(TypedDict, total=False):
     refine_tolerance: float
     """Difference of these channels, in their units (CIELAB units for colour), below which the refinement treats
     neighbours as one surface, in [1e-3, 1e6]; default 8."""
+    subject: Subject | str | int
+    """What the positive strokes lie on: Subject; default Subject.AUTO. Of lamps the settings above do not
+    matter."""
 
 
 @dataclass(frozen=True)
