@@ -84,7 +84,7 @@ pub struct luxfer_segment_params {
 // SAFETY: plain numbers.
 unsafe impl Versioned for luxfer_segment_params {
     const NAME: &'static str = "luxfer_segment_params";
-    const SIZES: &'static [usize] = &[40, 48];
+    const SIZES: &'static [usize] = &[48];
     fn defaults() -> Self {
         let defaults = segment::Params::default();
         Self {

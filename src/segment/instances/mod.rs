@@ -38,6 +38,9 @@ const STROKE_EDGE: f64 = 0.1;
 /// How far below the strokes' brightness contours are looked for, as a share of it. [judged on 28 photos]
 const DEPTH: f32 = 0.4;
 
+/// Contrast to its ring, in L*, below which a region is noise on a surface. [judged on 44 photos]
+const MIN_CONTRAST: f64 = 3.0;
+
 /// Expected share of wrong pixels of a lamp with a stroke, and of one without. [judged on 28 photos]
 const ERRORS: [f64; 2] = [0.03, 0.1];
 
@@ -69,7 +72,16 @@ pub fn run(input: &Input, job: Job) -> Result<Segmentation> {
     paint.negative.iter().for_each(|&p| negatives[tree.node_of[p as usize] as usize] += 1.0);
     tree.accumulate(&mut negatives);
 
-    let painted = painted::find(&tree, &regions, &Paint { width, positive: &paint.positive, negatives: &negatives })?;
+    let mut painted =
+        painted::find(&tree, &regions, &Paint { width, positive: &paint.positive, negatives: &negatives })?;
+    let nobody = try_vec(width * height, false)?;
+    let mut is_brighter = try_vec(painted.len(), false)?;
+    for (is_brighter, &node) in is_brighter.iter_mut().zip(&painted) {
+        let ring = surroundings::around(node, &tree, &photo, None, &nobody)?;
+        *is_brighter = ring.is_some_and(|ring| ring.contrast >= MIN_CONTRAST);
+    }
+    let mut brighter = is_brighter.into_iter();
+    painted.retain(|_| brighter.next().unwrap_or(false));
     let plane = input.within;
     let search = Search { tree: &tree, regions: &regions, photo: &photo, plane, negatives: &negatives };
     let similar = search.run(&painted, job.part(0.8, 0.95))?;
