@@ -1,9 +1,9 @@
 //! What an exemplar shows, for those who set the size of its pattern by its lamps.
 
+use super::agreement::statistics;
 use super::exemplar::Exemplar;
-use super::period::{self, Continuation};
-use super::plan::working_side;
-use super::{Input, Params, check_input, statistics};
+use super::lattice::{self, continuation::Continuation};
+use super::params::{Input, Params, working_side};
 use crate::error::Result;
 use crate::job::Job;
 use glam::DVec2;
@@ -21,7 +21,7 @@ pub struct Measure {
 }
 
 /// An exemplar that has been read: its lamps, and how they go on.
-pub(super) struct Reading {
+pub struct Reading {
     pub exemplar: Exemplar,
     pub continuation: Continuation,
     pub regularity: f64,
@@ -43,10 +43,10 @@ impl Reading {
 /// Measures an exemplar. Errors as of [`super::run`].
 pub fn measure(input: &Input, params: &Params, job: Job) -> Result<Measure> {
     params.check()?;
-    check_input(input)?;
+    input.check()?;
     let side = working_side(input, params);
     let exemplar = Exemplar::new(input, side, job.part(0.0, 0.5))?;
-    let (continuation, regularity) = period::find(&exemplar, params.least_regularity, job.part(0.5, 1.0))?;
+    let (continuation, regularity) = lattice::find(&exemplar, params.least_regularity, job.part(0.5, 1.0))?;
     let spacing = match continuation {
         Continuation::Lattice([a, b]) => a.length().min(b.length()),
         _ => {

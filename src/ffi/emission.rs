@@ -242,7 +242,7 @@ pub(super) struct Made {
 
 /// A plan, its lamps, and what it was made from.
 pub(super) struct Planned {
-    pub plan: emission::Plan,
+    pub plan: emission::Composition,
     pub lamps: LampList,
     pub inputs: Inputs,
 }
