@@ -3,9 +3,12 @@
 //! ```text
 //! unwarped photo + light + valid ─▶ exemplar ─▶ lattice ─▶ quilt ─▶ lamps ─▶ compose ─▶ agreement
 //! ```
-//! 1. [`exemplar`]: the usable part of the photo, its lights (connected components) and their roles, and a reduced size to work at.
-//! 2. [`lattice`]: the lattice the lamps lie on, from the autocorrelation of the mask, and its sites that the border cuts.
-//! 3. [`quilt`]: metadata (confidence, signed x and y distance to the nearest light), and quilting over colour and metadata with
+//! 1. [`exemplar`]: the usable part of the photo, its lights (connected components) and their roles, and a reduced
+//! size to work at.
+//! 2. [`lattice`]: the lattice the lamps lie on, from the autocorrelation of the mask, and its sites that the border
+//! cuts.
+//! 3. [`quilt`]: metadata (confidence, signed x and y distance to the nearest light), and quilting over colour and
+//! metadata with
 //!    minimum-error seams, held to the lattice, the light in balance.
 //! 4. [`lamps`]: every lamp that patches show becomes one piece again; no seam cuts it. Outlines, kinds, colours.
 //! 5. [`compose`]: the composition of positions, and full detail from the photo; the lamps as a list.
@@ -13,11 +16,12 @@
 //!
 //! A texture that fits inside the exemplar is a part of it, copied.
 //!
-//! Beyond the paper: the lattice, and lamps as pieces; image quilting alone lets regular patterns drift and cuts lamps; the
-//! colour of lamps that the photo shows clipped ([`lamps::rim_colour`]); lamps kept off where they have no place
-//! ([`compose::placement`]); textures of any size, in tiles of a [`Composition`]; and several exemplars in one ([`compose::draw`]).
-//! Not modelled: lamps that are a mixture of two exemplars', a pattern that bends from one plane into another, and nets of crossing
-//! lines in textures that repeat, whose edges may be off by the stretch of a few cells.
+//! Beyond the paper: the lattice, and lamps as pieces; image quilting alone lets regular patterns drift and cuts
+//! lamps; the colour of lamps that the photo shows clipped ([`lamps::rim_colour`]); lamps kept off where they have no
+//! place ([`compose::placement`]); textures of any size, in tiles of a [`Composition`]; and several exemplars in one
+//! ([`compose::draw`]). Not modelled: lamps that are a mixture of two exemplars', a pattern that bends from one plane
+//! into another, and nets of crossing lines in textures that repeat, whose edges may be off by the stretch of a few
+//! cells.
 
 mod agreement;
 mod compose;
@@ -28,6 +32,7 @@ mod measure;
 mod output;
 mod params;
 mod quilt;
+mod reading;
 #[cfg(test)]
 mod tests;
 
@@ -41,7 +46,8 @@ pub use lamps::luminaire::Luminaire;
 pub use lattice::continuation::Continuation;
 pub use measure::{Measure, measure};
 pub use output::Emission;
-pub use params::{Input, Params};
+pub use params::{Input, Law, Params};
+pub use reading::Choice;
 
 use crate::error::{Error, Result};
 use crate::image::Image;
@@ -81,6 +87,7 @@ pub fn given(texture: &Image, job: Job) -> Result<Emission> {
         luminaires,
         continuation: Continuation::Copy,
         regularity: 0.0,
+        choice: Choice::only(Continuation::Copy),
         statistics: [statistics; 2],
         error: 0.0,
         sampling_error: 0.0,
@@ -88,15 +95,16 @@ pub fn given(texture: &Image, job: Job) -> Result<Emission> {
     })
 }
 
-/// Makes an emissive texture of `params.width` × `params.height` texels that continues the lights of the unwarped photo.
+/// Makes an emissive texture of `params.width` × `params.height` texels that continues the lights of the unwarped
+/// photo.
 ///
 /// Errors: a parameter out of range, images of different size; no valid pixel; no light (`Degenerate`).
 pub fn run(input: &Input, params: &Params, job: Job) -> Result<Emission> {
     blend(input, &[], params, job)
 }
 
-/// The same with lights of further exemplars where their weights say so. What it tells beside the texture, its lamps and its
-/// statistics is of the first. Errors: as for [`run`]; weights that are not in `[0, 1]`, or add up to more.
+/// The same with lights of further exemplars where their weights say so. What it tells beside the texture, its lamps
+/// and its statistics is of the first. Errors: as for [`run`]; weights that are not in `[0, 1]`, or add up to more.
 pub fn blend(input: &Input, styles: &[Style], params: &Params, job: Job) -> Result<Emission> {
     make(Composition::new(input, styles, params, job.part(0.0, 0.85))?, input, styles, params, job)
 }
@@ -126,12 +134,15 @@ fn make(mut composition: Composition, input: &Input, styles: &[Style], params: &
             Continuation::Tile(_) => [Some(f64::INFINITY); 2],
             other => other.periods(),
         };
-        let own = layer.exemplar.statistics(input.unwarped, periods);
+        // A texture that shows the photo as it is shows its far part too.
+        let weighed = !matches!(layer.continuation, Continuation::Tile(_) | Continuation::Copy);
+        let own = layer.exemplar.statistics(input.unwarped, periods, weighed && layer.is_clean());
         (own.scaled(1.0 / layer.scale), composition.weights.mean(k))
     });
     let expected = Statistics::mixed(parts);
     let exemplar_lamps = composition.exemplar_lamps();
-    let Layer { exemplar, continuation, regularity, metadata, patch_map, .. } = composition.layers.swap_remove(0);
+    let Layer { exemplar, continuation, regularity, choice, metadata, patch_map, .. } =
+        composition.layers.swap_remove(0);
     let periods = if styles.is_empty() { continuation.periods() } else { [None; 2] };
     let statistics = [expected, statistics_of(&texture, &components, periods.map(|p| p.map(|p| p / params.scale)))];
     let error = statistics[1].difference(&statistics[0]);
@@ -153,6 +164,7 @@ fn make(mut composition: Composition, input: &Input, styles: &[Style], params: &
         luminaires,
         continuation,
         regularity,
+        choice,
         statistics,
         error,
         sampling_error,
@@ -166,7 +178,7 @@ fn statistics_of(texture: &Image, components: &Components, periods: [Option<f64>
     let inside = |c: &Component| c.min.iter().all(|&low| low > 0) && c.max[0] + 1 < width && c.max[1] + 1 < height;
     let whole: Vec<bool> = components.list.iter().map(inside).collect();
     let colour = |i: usize| Some(Vec3::from_slice(&texture.data[3 * i..]));
-    Statistics::of(&Pattern { width, height, components, whole: &whole, periods, colour })
+    Statistics::of(&Pattern { width, height, components, whole: &whole, periods, to_photo: None, colour })
 }
 
 /// The exemplar's metadata as the patch_map shows them; where it shows nothing, nothing is near.

@@ -5,6 +5,7 @@ use crate::geometry::Homography;
 use crate::image::Image;
 use glam::DVec2;
 
+/// The exemplar as it comes from unwarping.
 #[derive(Clone, Copy)]
 pub struct Input<'a> {
     /// Unwarped photo, linear RGB.
@@ -18,6 +19,24 @@ pub struct Input<'a> {
     pub photo: Option<(&'a Image, Homography)>,
 }
 
+/// How the lights of an exemplar go on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Law {
+    /// The law that predicts the lamps of the photo best; the one of the correlation, unless another is clearly
+    /// better.
+    Best,
+    /// The law that the correlation tells, by `least_regularity`.
+    Correlation,
+    /// The best lattice, or row, of all that are proposed.
+    Lattice,
+    Row,
+    /// The exemplar repeats as a whole.
+    Whole,
+    /// Patches go anywhere.
+    Free,
+}
+
+/// The settings of a texture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Params {
     /// Size of the texture in texels, each in `[1, 65536]`.
@@ -33,25 +52,35 @@ pub struct Params {
     pub working_side: usize,
     /// Weight of the metadata channels against colour, in `[0, 1e3]`; 0 is plain quilting.
     pub metadata_weight: f32,
-    /// Where the pattern begins, in texels right of and below the texture's corner, each in `[-1e6, 1e6]`. Lights without a
-    /// lattice begin nowhere: of these it shifts lamps of a texture that is tileable, and must be 0 in others.
+    /// Where the pattern begins, in texels right of and below the texture's corner, each in `[-1e6, 1e6]`. Lights
+    /// without a lattice begin nowhere: of these it shifts lamps of a texture that is tileable, and must be 0 in
+    /// others.
     pub offset: DVec2,
-    /// Correlation of the lights with themselves from which they are taken for regular, in `[0, 1]`: at 0 any repetition is
-    /// held to exactly, at 1 none is, and patches go anywhere.
+    /// Correlation of the lights with themselves from which they are taken for regular, in `[0, 1]`: at 0 any
+    /// repetition is held to exactly, at 1 none is, and patches go anywhere.
     pub least_regularity: f32,
+    /// How the lights go on.
+    pub law: Law,
+    /// Magnification up to which the exemplar is used, against its sharpest pixel and in length: beyond it the photo
+    /// counts as not shown. In `[1, 1e6]`, or 0 for all of it.
+    pub max_magnification: f64,
     /// Shows every lamp as one piece; without, seams may cut lamps, as in the paper.
     pub whole_lamps: bool,
     /// Every lamp shines evenly, in its mean colour.
     pub even_lamps: bool,
-    /// The texture may be repeated: what leaves it on one side comes in on the other. Lattices are stretched, by less than half
-    /// a period over the whole, so that a whole number of periods fits. Needs `whole_lamps`; lights that run out of the
-    /// exemplar are no lamps, and meet at the border on a lattice only.
+    /// Lamps of a kind have one size and an outline that is exact at any resolution, and lie at the sites of their
+    /// lattice. Needs the photo and `whole_lamps`; without, each lamp is shown with the outline of the mask.
+    pub clean_lamps: bool,
+    /// The texture may be repeated: what leaves it on one side comes in on the other. Lattices are stretched, by less
+    /// than half a period over the whole, so that a whole number of periods fits. Needs `whole_lamps`; lights that run
+    /// out of the exemplar are no lamps, and meet at the border on a lattice only.
     pub tileable: bool,
-    /// A lattice lies evenly between the sides of the texture, shifted by the offset from there: a lamp or the middle between two
-    /// in its middle, so that the border cuts as few lamps as it can.
+    /// A lattice lies evenly between the sides of the texture, shifted by the offset from there: a lamp or the middle
+    /// between two in its middle, so that the border cuts as few lamps as it can.
     pub centred: bool,
-    /// Channel value from which the photo is clipped, in `[0, 1]`; lamps there get the colour of their rims. 0: nothing is. Below
-    /// the largest 8-bit values, at which a photo itself is clipped: unwarped pixels are means of clipped and other ones.
+    /// Channel value from which the photo is clipped, in `[0, 1]`; lamps there get the colour of their rims. 0:
+    /// nothing is. Below the largest 8-bit values, at which a photo itself is clipped: unwarped pixels are means of
+    /// clipped and other ones.
     pub clip_level: f32,
     pub seed: u64,
 }
@@ -68,8 +97,11 @@ impl Default for Params {
             metadata_weight: 1.0,
             offset: DVec2::ZERO,
             least_regularity: 0.6,
+            law: Law::Best,
+            max_magnification: 0.0,
             whole_lamps: true,
             even_lamps: false,
+            clean_lamps: true,
             tileable: false,
             centred: false,
             clip_level: 0.95,
@@ -91,6 +123,9 @@ impl Params {
         check_range("emission.offset.x", self.offset.x, -1e6, 1e6)?;
         check_range("emission.offset.y", self.offset.y, -1e6, 1e6)?;
         check_range("emission.least_regularity", self.least_regularity, 0.0, 1.0)?;
+        if self.max_magnification != 0.0 {
+            check_range("emission.max_magnification", self.max_magnification, 1.0, 1e6)?;
+        }
         check_range("emission.clip_level", self.clip_level, 0.0, 1.0)?;
         if self.tileable && !self.whole_lamps {
             return Err(Error::argument("emission.tileable is set; it needs emission.whole_lamps"));

@@ -1,9 +1,10 @@
 //! Emission
 //!
-//! From the unwarped lights of a photo to an emissive texture of any size that carries their pattern on, and the list of
-//! its luminaires.
+//! From the unwarped lights of a photo to an emissive texture of any size that carries their pattern on, and the list
+//! of its luminaires.
 
 use super::context::{Context, luxfer_context};
+use super::emission_law;
 use super::geometry::numbers;
 use super::guard::{enter, guard};
 use super::handle::{self, Handle, Owned, tag};
@@ -14,7 +15,7 @@ use super::pointer::Out;
 use super::scene::missing;
 use super::stage::{Stage, need};
 use super::status::luxfer_status;
-use crate::emission::{self, Emission, LampList, Luminaire, Style};
+use crate::emission::{self, Choice, Continuation, Emission, LampList, Luminaire, Style};
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::Homography;
 use crate::image::Image;
@@ -38,6 +39,23 @@ pub const LUXFER_EMISSION_EXEMPLAR_METADATA: luxfer_emission_image = 2;
 /// The same of its result.
 pub const LUXFER_EMISSION_METADATA: luxfer_emission_image = 3;
 
+/// How the lights of an exemplar go on: a LUXFER_LAW_ value.
+pub type luxfer_emission_law = i32;
+/// The law that predicts the lamps of the photo best: that of their correlation, unless another is clearly better.
+pub const LUXFER_LAW_BEST: luxfer_emission_law = 0;
+/// The law that the correlation of the lights tells, by least_regularity.
+pub const LUXFER_LAW_CORRELATION: luxfer_emission_law = 1;
+/// A lattice of two periods.
+pub const LUXFER_LAW_LATTICE: luxfer_emission_law = 2;
+/// A row of one period; the extent of the exemplar serves as the other.
+pub const LUXFER_LAW_ROW: luxfer_emission_law = 3;
+/// The exemplar repeats as a whole.
+pub const LUXFER_LAW_WHOLE: luxfer_emission_law = 4;
+/// Patches go anywhere.
+pub const LUXFER_LAW_FREE: luxfer_emission_law = 5;
+/// Of results only: the texture is a part of the exemplar, or was given.
+pub const LUXFER_LAW_COPY: luxfer_emission_law = 6;
+
 /// Settings of the emission. Fill them with luxfer_emission_params_init.
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -58,39 +76,49 @@ pub struct luxfer_emission_params {
     pub metadata_weight: f32,
     /// Seed of the synthesis; default 1.
     pub seed: u64,
-    /// Correlation of the lights with themselves from which they are taken for regular, in [0, 1]; default 0.6. At 0 any
-    /// repetition is held to exactly, at 1 none is, and patches go anywhere.
+    /// Correlation of the lights with themselves from which they are taken for regular, in [0, 1]; default 0.6. At 0
+    /// any repetition is held to exactly, at 1 none is, and patches go anywhere.
     pub least_regularity: f32,
     /// 1, the default, shows every lamp as one piece; with 0 seams may cut lamps.
     pub whole_lamps: u32,
-    /// Where the pattern begins, in texels right of and below the texture's corner, each in [-1e6, 1e6]; default 0. Lights without
-    /// a lattice begin nowhere: of these it shifts lamps of a texture that is tileable, and must be 0 in others.
+    /// Where the pattern begins, in texels right of and below the texture's corner, each in [-1e6, 1e6]; default 0.
+    /// Lights without a lattice begin nowhere: of these it shifts lamps of a texture that is tileable, and must be 0
+    /// in others.
     pub offset: [f64; 2],
-    /// Channel value from which the photo is clipped, in [0, 1]; default 0.95. Lamps it shows so get the colour of their rims,
-    /// as dark as the clipped channels allow. With 0 nothing is taken for clipped.
+    /// Channel value from which the photo is clipped, in [0, 1]; default 0.95. Lamps it shows so get the colour of
+    /// their rims, as dark as the clipped channels allow. With 0 nothing is taken for clipped.
     pub clip_level: f32,
     /// With 1 every lamp shines evenly, in its mean colour; default 0: as in the photo.
     pub even_lamps: u32,
-    /// With 1 the texture may be repeated: what leaves it on one side comes in on the other, and a lattice is stretched, by less
-    /// than half a period over the whole, to fit. Needs whole_lamps. Default 0.
+    /// With 1 the texture may be repeated: what leaves it on one side comes in on the other, and a lattice is
+    /// stretched, by less than half a period over the whole, to fit. Needs whole_lamps. Default 0.
     pub tileable: u32,
-    /// With 1 a lattice lies evenly between the sides of the texture, shifted by offset from there: a lamp or the middle between
-    /// two in its middle, so that the border cuts as few lamps as it can. Default 0.
+    /// With 1 a lattice lies evenly between the sides of the texture, shifted by offset from there: a lamp or the
+    /// middle between two in its middle, so that the border cuts as few lamps as it can. Default 0.
     pub centred: u32,
     /// Patches that are compared for each block, at most, where none is held to a lattice, in [1, 65536]; default 192.
     pub candidates: u32,
     /// Must be 0.
     pub reserved: u32,
+    /// How the lights go on: a LUXFER_LAW_ value other than LUXFER_LAW_COPY; default LUXFER_LAW_BEST.
+    pub law: luxfer_emission_law,
+    /// With 1, the default, lamps of a kind have one size and an outline that is exact at any resolution, and lie at
+    /// the sites of their lattice. Needs the photo and whole_lamps. With 0 each lamp is shown with the outline of the
+    /// mask.
+    pub clean_lamps: u32,
+    /// Magnification of the photo up to which the exemplar is used, against its sharpest pixel and in length, in [1,
+    /// 1e6]: what is magnified more counts as not shown. Default 0: all of it is used.
+    pub max_magnification: f64,
 }
 
 // SAFETY: plain numbers.
 unsafe impl Versioned for luxfer_emission_params {
     const NAME: &'static str = "luxfer_emission_params";
-    const SIZES: &'static [usize] = &[88];
+    const SIZES: &'static [usize] = &[88, 104];
     fn defaults() -> Self {
         let d = emission::Params::default();
         Self {
-            struct_size: 88,
+            struct_size: 104,
             width: d.width as u32,
             height: d.height as u32,
             block: d.block as u32,
@@ -107,6 +135,9 @@ unsafe impl Versioned for luxfer_emission_params {
             centred: u32::from(d.centred),
             candidates: d.candidates as u32,
             reserved: 0,
+            law: LUXFER_LAW_BEST,
+            clean_lamps: u32::from(d.clean_lamps),
+            max_magnification: d.max_magnification,
         }
     }
 }
@@ -131,6 +162,9 @@ impl luxfer_emission_params {
             centred: params::flag(self.centred, "centred")?,
             clip_level: self.clip_level,
             candidates: self.candidates as usize,
+            law: emission_law::law(self.law)?,
+            clean_lamps: params::flag(self.clean_lamps, "clean_lamps")?,
+            max_magnification: self.max_magnification,
             seed: self.seed,
         })
     }
@@ -144,26 +178,49 @@ pub struct luxfer_emission_report {
     pub struct_size: u32,
     /// Number of luminaires; see luxfer_emission_get_luminaire.
     pub luminaires: u32,
-    /// The largest relative difference between texture and exemplar in the share that is lit, the area of whole lamps, and the
-    /// distance from each to the nearest other. It weighs as much as exemplar_lamps. NaN of a plan, which is no texture yet.
+    /// The largest relative difference between texture and exemplar in the share that is lit, the area of whole lamps,
+    /// and the distance from each to the nearest other. It weighs as much as exemplar_lamps. NaN of a plan, which is
+    /// no texture yet.
     pub error: f64,
-    /// How regular the lights are, in [0, 1]: correlation with themselves shifted by the lattice that was found, 0 without.
+    /// How regular the lights are, in [0, 1]: correlation with themselves shifted by the lattice that was found, 0
+    /// without.
     pub regularity: f64,
-    /// Number of lamps that the exemplars show whole. Fewer than six tell little about a design: what the border cuts off is a large
-    /// part of what there is, and without a whole lamp the texture shows the cut ones.
+    /// Number of lamps that the exemplars show whole. Fewer than six tell little about a design: what the border cuts
+    /// off is a large part of what there is, and without a whole lamp the texture shows the cut ones.
     pub exemplar_lamps: u32,
-    /// By how much the exemplar's own statistics are off, as far as can be told: the root mean square of the same difference between
-    /// parts of the texture as large as the exemplar, and the whole. An error of up to twice this says nothing against the texture.
-    /// 0 where the texture shows nothing else than the exemplar does, of blended exemplars, and of a plan.
+    /// By how much the exemplar's own statistics are off, as far as can be told: the root mean square of the same
+    /// difference between parts of the texture as large as the exemplar, and the whole. An error of up to twice this
+    /// says nothing against the texture. 0 where the texture shows nothing else than the exemplar does, of blended
+    /// exemplars, and of a plan.
     pub sampling_error: f32,
+    /// How the lights go on, and the law that would have been next best: LUXFER_LAW_ values.
+    pub law: luxfer_emission_law,
+    pub runner_up: luxfer_emission_law,
+    /// How well the law predicts the lamps of the photo from each other, in [0, 1], each weighed by its photo pixels;
+    /// NaN where too few of the lights are whole lamps to tell.
+    pub law_score: f64,
+    /// By how much that exceeds the score of the runner-up; below 0 where the law was kept though another scores
+    /// slightly better.
+    pub margin: f64,
 }
 
 // SAFETY: plain numbers.
 unsafe impl Versioned for luxfer_emission_report {
     const NAME: &'static str = "luxfer_emission_report";
-    const SIZES: &'static [usize] = &[32];
+    const SIZES: &'static [usize] = &[32, 56];
     fn defaults() -> Self {
-        Self { struct_size: 32, luminaires: 0, error: 0.0, regularity: 0.0, exemplar_lamps: 0, sampling_error: 0.0 }
+        Self {
+            struct_size: 56,
+            luminaires: 0,
+            error: 0.0,
+            regularity: 0.0,
+            exemplar_lamps: 0,
+            sampling_error: 0.0,
+            law: LUXFER_LAW_COPY,
+            runner_up: LUXFER_LAW_COPY,
+            law_score: f64::NAN,
+            margin: f64::NAN,
+        }
     }
 }
 
@@ -187,7 +244,8 @@ pub struct luxfer_luminaire {
     pub flux_share: f64,
     /// Mean linear colour, relative to the photo's white.
     pub colour: [f32; 3],
-    /// Number of its kind, from 1, those with most lamps first: lamps of about the same size and shape. 0 if the border cuts it.
+    /// Number of its kind, from 1, those with most lamps first: lamps of about the same size and shape. 0 if the
+    /// border cuts it.
     pub kind: u32,
 }
 
@@ -326,7 +384,8 @@ impl Handle for luxfer_emission {
     const NAME: &'static str = "luxfer_emission";
 }
 
-/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+/// Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is
+/// wrong.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_params_init(
     params: *mut luxfer_emission_params,
@@ -347,9 +406,9 @@ pub unsafe extern "C" fn luxfer_emission_create(
     })
 }
 
-/// Sets the exemplar, three images of one size: the unwarped photo (linear RGB), the unwarped confidence of the lights (1
-/// channel, in [0, 1]) and where both are valid (1 channel, 1 or 0). Further ones are added by luxfer_emission_add_style. Any
-/// thread.
+/// Sets the exemplar, three images of one size: the unwarped photo (linear RGB), the unwarped confidence of the lights
+/// (1 channel, in [0, 1]) and where both are valid (1 channel, 1 or 0). Further ones are added by
+/// luxfer_emission_add_style. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_set_exemplar(
     emission: *mut luxfer_emission,
@@ -383,10 +442,10 @@ pub unsafe extern "C" fn luxfer_emission_set_photo(
     })
 }
 
-/// Starts a job that makes the texture as a whole; luxfer_emission_start_plan does without its memory. params may be NULL for
-/// the defaults. The caller releases *job. Any thread.
-/// LUXFER_INVALID_OPERATION if the exemplar is missing or a job runs already. The job may end with LUXFER_DEGENERATE if
-/// there are no lights in the exemplar, LUXFER_INVALID_ARGUMENT if sizes differ or a setting is out of range.
+/// Starts a job that makes the texture as a whole; luxfer_emission_start_plan does without its memory. params may be
+/// NULL for the defaults. The caller releases *job. Any thread.
+/// LUXFER_INVALID_OPERATION if the exemplar is missing or a job runs already. The job may end with LUXFER_DEGENERATE
+/// if there are no lights in the exemplar, LUXFER_INVALID_ARGUMENT if sizes differ or a setting is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_start(
     emission: *mut luxfer_emission,
@@ -441,7 +500,16 @@ pub unsafe extern "C" fn luxfer_emission_get_report(
             (_, Some(texture)) => (texture.error, texture.sampling_error, texture.regularity, texture.exemplar_lamps),
             _ => (f64::NAN, 0.0, 0.0, 0),
         };
+        let (law, choice) = match (&made.plan, &made.texture) {
+            (Some(planned), _) => planned.plan.law(),
+            (_, Some(texture)) => (texture.continuation, texture.choice),
+            _ => (Continuation::Copy, Choice::only(Continuation::Copy)),
+        };
         out.set(luxfer_emission_report {
+            law: emission_law::number(law),
+            runner_up: emission_law::number(choice.runner_up),
+            law_score: choice.score,
+            margin: choice.margin(),
             luminaires: count(made.luminaires()),
             error,
             regularity,
@@ -453,8 +521,8 @@ pub unsafe extern "C" fn luxfer_emission_get_report(
     })
 }
 
-/// Describes a luminaire of the texture. Of a plan, which has no texel yet, it is as the exemplar shows it, cut where the texture
-/// ends; lights that run through their exemplar are as the texture shows them. Any thread.
+/// Describes a luminaire of the texture. Of a plan, which has no texel yet, it is as the exemplar shows it, cut where
+/// the texture ends; lights that run through their exemplar are as the texture shows them. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such luminaire.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_get_luminaire(
@@ -483,10 +551,11 @@ pub unsafe extern "C" fn luxfer_emission_get_luminaire(
 
 /// Tells a corner of a luminaire's outline, in texels. Any thread.
 ///
-/// The outline lies where half of a texel would be light, finer than texels where the confidence of the lights is: within a quarter
-/// of a texel, or of an unwarped pixel where that is larger; corners of the lamp within 0.71 of one. Of lamps up to two texels wide,
-/// of a mask that is all or nothing and of lights of a plan that follow its patches it follows the sides of texels.
-/// LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such luminaire or corner.
+/// The outline lies where half of a texel would be light, finer than texels where the confidence of the lights is:
+/// within a quarter of a texel, or of an unwarped pixel where that is larger; corners of the lamp within 0.71 of one.
+/// Of lamps up to two texels wide, of a mask that is all or nothing and of lights of a plan that follow its patches it
+/// follows the sides of texels. LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such
+/// luminaire or corner.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_get_corner(
     emission: *mut luxfer_emission,

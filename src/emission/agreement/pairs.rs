@@ -15,11 +15,11 @@ pub struct Points<'a> {
     pub size: DVec2,
 }
 
-/// Share of the pairs of near points that one pattern has at other distances than another: 0 where both have the same share at
-/// each, 1 where they have no distance in common. `None` where one has no two points near each other.
+/// Share of the pairs of near points that one pattern has at other distances than another: 0 where both have the same
+/// share at each, 1 where they have no distance in common. `None` where one has no two points near each other.
 ///
-/// Pairs are counted by what part of the window shows them (translation correction, Ohser 1983), and spread over distances by a
-/// kernel (Stoyan and Stoyan 1994), whose width the first pattern sets.
+/// Pairs are counted by what part of the window shows them (translation correction, Ohser 1983), and spread over
+/// distances by a kernel (Stoyan and Stoyan 1994), whose width the first pattern sets.
 pub fn distance(of: &Points, from: &Points) -> Option<f64> {
     let nearest = nearest_distances(of.at);
     let spacing = nearest.iter().sum::<f64>() / nearest.len() as f64;

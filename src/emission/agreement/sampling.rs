@@ -1,7 +1,8 @@
 //! How far the statistics of an exemplar may be from those of its ceiling, of which it shows a part with few lamps.
 //!
-//! The texture stands in for that ceiling (parametric bootstrap; Efron 1979): parts of it with the extent of the exemplar, its missing
-//! corners included, are measured as the exemplar was. What they differ from the whole no synthesis could know.
+//! The texture stands in for that ceiling (parametric bootstrap; Efron 1979): parts of it with the extent of the
+//! exemplar, its missing corners included, are measured as the exemplar was. What they differ from the whole no
+//! synthesis could know.
 
 use super::statistics::{Pattern, Statistics};
 use crate::emission::exemplar::{Exemplar, components, roles};
@@ -14,8 +15,8 @@ use glam::DVec2;
 /// Parts that are measured.
 const PARTS: usize = 6;
 
-/// Root mean square over parts of the texture of their largest relative difference from `whole`, its own statistics; `None` where it
-/// has no room for several. A texel is `scale` unwarped pixels; `periods` are in those.
+/// Root mean square over parts of the texture of their largest relative difference from `whole`, its own statistics;
+/// `None` where it has no room for several. A texel is `scale` unwarped pixels; `periods` are in those.
 pub fn error(
     exemplar: &Exemplar,
     (texture, mask): (&Image, &Image),
@@ -47,7 +48,8 @@ pub fn error(
         let roles = roles::classify(&components, &shown, width, height);
         let pieces: Vec<bool> = roles.iter().map(|role| role.is_piece()).collect();
         let colour = |i: usize| shown[i].then(|| glam::Vec3::from_slice(&texture.data[3 * at(i)..]));
-        let pattern = Pattern { width, height, components: &components, whole: &pieces, periods, colour };
+        let pattern =
+            Pattern { width, height, components: &components, whole: &pieces, periods, to_photo: None, colour };
         Ok(Statistics::of(&pattern).difference(whole))
     })?;
     let squares = parts.into_iter().map(|part| part.map(|off| off * off)).sum::<Result<f64>>()?;

@@ -1,11 +1,14 @@
 //! What two light patterns have in common: the statistics by which a texture is held against its exemplar.
 //!
-//! A border cuts a pattern anywhere, so plain counts in a window differ by what happens to lie on its rim, and more so the
-//! fewer lamps there are. Every mean here is therefore weighed. Along an axis with a known period the weights are those of
-//! as many whole periods as the window holds, averaged over all their places in it: wherever they are cut, each part of
-//! the period weighs the same. Along others they are a Hann window, which fades to nothing at the border (Harris 1978).
+//! A border cuts a pattern anywhere, so plain counts in a window differ by what happens to lie on its rim, and more so
+//! the fewer lamps there are. Every mean here is therefore weighed. Along an axis with a known period the weights are
+//! those of as many whole periods as the window holds, averaged over all their places in it: wherever they are cut,
+//! each part of the period weighs the same. Along others they are a Hann window, which fades to nothing at the border
+//! (Harris 1978).
 
 use crate::emission::exemplar::components::Components;
+use crate::emission::exemplar::foreshortening::LocalMap;
+use crate::geometry::Homography;
 use crate::image::colour::luminance;
 use glam::{DMat2, DVec2, Vec3};
 use std::f64::consts::{PI, TAU};
@@ -34,13 +37,16 @@ pub struct Pattern<'a, C> {
     pub whole: &'a [bool],
     /// Period along x and y, if there is one; infinite where the pattern as a whole is the period.
     pub periods: [Option<f64>; 2],
+    /// Where a photo shows the pattern: the map into it. Each part then weighs as many pixels of the photo as show it.
+    pub to_photo: Option<Homography>,
     /// Linear colour of a pixel; nothing where the pattern is not shown.
     pub colour: C,
 }
 
 impl Statistics {
     pub fn of<C: Fn(usize) -> Option<Vec3>>(pattern: &Pattern<C>) -> Self {
-        let Pattern { width, height, components, whole, periods, colour } = pattern;
+        let Pattern { width, height, components, whole, periods, to_photo, colour } = pattern;
+        let density = |x: f64, y: f64| to_photo.map_or(1.0, |h| LocalMap::density(&h, DVec2::new(x, y)));
         let columns: Vec<f64> = (0..*width).map(|x| weight(x as f64 + 0.5, *width, periods[0])).collect();
 
         // Of pixels.
@@ -49,6 +55,7 @@ impl Statistics {
             let row = weight(y as f64 + 0.5, *height, periods[1]);
             for (x, column) in columns.iter().enumerate() {
                 let Some(colour) = colour(y * width + x) else { continue };
+                let row = row * density(x as f64 + 0.5, y as f64 + 0.5);
                 all += row * column;
                 if components.labels[y * width + x] != 0 {
                     lit += row * column;
@@ -60,7 +67,8 @@ impl Statistics {
         // Of lamps.
         let lamps: Vec<(DVec2, f64)> =
             components.list.iter().zip(*whole).filter(|(_, w)| **w).map(|(c, _)| (c.centre, c.area as f64)).collect();
-        let place = |at: DVec2| weight(at.x, *width, periods[0]) * weight(at.y, *height, periods[1]);
+        let place =
+            |at: DVec2| weight(at.x, *width, periods[0]) * weight(at.y, *height, periods[1]) * density(at.x, at.y);
         let mean = |of: &dyn Fn(usize) -> bool, value: &dyn Fn(usize) -> f64| {
             let counted = || (0..lamps.len()).filter(|i| of(*i));
             let weights: f64 = counted().map(|i| place(lamps[i].0)).sum();
@@ -82,8 +90,8 @@ impl Statistics {
         }
     }
 
-    /// Of a mixture of patterns with the given weights. How far apart lamps of different patterns are it does not tell: where
-    /// there are several, the spacing is 0.
+    /// Of a mixture of patterns with the given weights. How far apart lamps of different patterns are it does not
+    /// tell: where there are several, the spacing is 0.
     pub fn mixed(parts: impl Iterator<Item = (Self, f64)>) -> Self {
         let parts: Vec<(Self, f64)> = parts.collect();
         if let [(only, _)] = parts[..] {
@@ -106,8 +114,8 @@ impl Statistics {
         Self { area: self.area * scale * scale, spacing: self.spacing * scale, ..self }
     }
 
-    /// The largest relative difference from another pattern, of lamps only in what both have. Luminance is left out: a texture is
-    /// relative, and what it is worth is solved for.
+    /// The largest relative difference from another pattern, of lamps only in what both have. Luminance is left out: a
+    /// texture is relative, and what it is worth is solved for.
     pub fn difference(&self, other: &Self) -> f64 {
         let pairs = [(self.lit, other.lit), (self.area, other.area), (self.spacing, other.spacing)];
         pairs.iter().filter(|(a, b)| *a > 0.0 && *b > 0.0).map(|(a, b)| (a / b - 1.0).abs()).fold(0.0, f64::max)
@@ -187,7 +195,15 @@ mod tests {
             .map(|c| c.min.iter().all(|&v| v > 0) && c.max[0] + 1 < width && c.max[1] + 1 < height)
             .collect();
         let colour = |i: usize| Some(if lit(i) { Vec3::splat(2.0) } else { Vec3::ZERO });
-        Statistics::of(&Pattern { width, height, components: &components, whole: &whole, periods, colour })
+        Statistics::of(&Pattern {
+            width,
+            height,
+            components: &components,
+            whole: &whole,
+            periods,
+            to_photo: None,
+            colour,
+        })
     }
 
     #[test]

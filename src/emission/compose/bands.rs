@@ -31,11 +31,17 @@ impl Bands {
 
 /// The texels `[x0, y0, x1, y1)` a lamp may touch.
 fn texels(layer: &Layer, instance: &Instance, width: usize, height: usize) -> Option<[usize; 4]> {
-    let lamp = &layer.exemplar.components.list[instance.component];
     let shift = layer.rounded(instance.shift);
     let point = |p: [usize; 2]| DVec2::new(p[0] as f64, p[1] as f64);
-    let low = ((point(lamp.min) + shift) / layer.scale).floor() - 1.0;
-    let high = ((point(lamp.max) + 1.0 + shift) / layer.scale).ceil() + 1.0;
+    let (first, last) = match layer.designs.of(instance.component) {
+        Some((design, fitted)) => (fitted.centre - design.half_box(), fitted.centre + design.half_box()),
+        None => {
+            let lamp = &layer.exemplar.components.list[instance.component];
+            (point(lamp.min), point(lamp.max) + 1.0)
+        }
+    };
+    let low = ((first + shift) / layer.scale).floor() - 1.0;
+    let high = ((last + shift) / layer.scale).ceil() + 1.0;
     let low = low.max(DVec2::ZERO);
     let high = high.min(point([width, height]));
     (low.x < high.x && low.y < high.y).then(|| [low.x as usize, low.y as usize, high.x as usize, high.y as usize])

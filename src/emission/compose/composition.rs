@@ -1,8 +1,8 @@
 //! The composition of a texture: which lamp and which patch goes where, and no texel yet.
 //!
-//! A composition holds positions only. Any tile of the texture is rendered from it alone, so a texture of any size needs the memory
-//! of a tile; and since a texel depends on nothing but its place, the bits are the same whatever the tiles, their order and
-//! the number of threads.
+//! A composition holds positions only. Any tile of the texture is rendered from it alone, so a texture of any size
+//! needs the memory of a tile; and since a texel depends on nothing but its place, the bits are the same whatever the
+//! tiles, their order and the number of threads.
 
 use super::bands::Bands;
 use super::draw;
@@ -13,8 +13,9 @@ use super::tile::Tile;
 use super::weights::{Style, Weights};
 use crate::emission::exemplar::components::Components;
 use crate::emission::lamps::{crumbs, instance, luminaires};
-use crate::emission::measure::Reading;
+use crate::emission::lattice::continuation::Continuation;
 use crate::emission::params::{Input, Params};
+use crate::emission::reading::{Choice, Reading};
 use crate::error::{Error, Result};
 use crate::image::Image;
 use crate::job::Job;
@@ -85,6 +86,12 @@ impl Composition {
         self.layers.first().map_or(0.0, |layer| layer.regularity)
     }
 
+    /// How the lights of the first exemplar go on, and what that was chosen by.
+    pub fn law(&self) -> (Continuation, Choice) {
+        let first = self.layers.first().map(|layer| (layer.continuation, layer.choice));
+        first.unwrap_or((Continuation::Copy, Choice::only(Continuation::Copy)))
+    }
+
     /// The number of lamps that the exemplars show whole.
     pub fn exemplar_lamps(&self) -> usize {
         self.layers.iter().map(|layer| layer.exemplar.lamps().count()).sum()
@@ -92,7 +99,8 @@ impl Composition {
 
     /// Renders a tile of the texture, and its mask, from the exemplars that the composition was made of.
     ///
-    /// Errors: `InvalidArgument` for a tile that is empty or reaches beyond the texture, or exemplars of another number or size.
+    /// Errors: `InvalidArgument` for a tile that is empty or reaches beyond the texture, or exemplars of another
+    /// number or size.
     pub fn tile(&self, input: &Input, styles: &[Style], tile: Tile, job: Job) -> Result<(Image, Image)> {
         self.check(tile)?;
         // A crumb, and whatever joins a piece to something larger, lies within its reach of the tile.

@@ -1,13 +1,15 @@
 //! Several exemplars in one texture: the blend of styles that the paper leaves to the future (§8).
 //!
-//! A lamp halfway between two designs is a lamp of neither. So lamps are drawn: each exemplar's pattern is planned over all of
-//! the texture, and each of its lamps is kept with the probability that the exemplar's weight has at the lamp's centre. Lamps
-//! of different exemplars that would overlap share one draw, so that exactly one of them is kept; every other is kept by a draw
-//! of its own. The mean light per area then blends linearly. Where most lamps overlap several others, neighbours share a draw
-//! too, and the styles change from patch to patch; of two that meet there the later exemplar's gives way. Lights that are no
-//! lamps, since they run out of their exemplar, are dimmed by the weight instead.
+//! A lamp halfway between two designs is a lamp of neither. So lamps are drawn: each exemplar's pattern is planned
+//! over all of the texture, and each of its lamps is kept with the probability that the exemplar's weight has at the
+//! lamp's centre. Lamps of different exemplars that would overlap share one draw, so that exactly one of them is kept;
+//! every other is kept by a draw of its own. The mean light per area then blends linearly. Where most lamps overlap
+//! several others, neighbours share a draw too, and the styles change from patch to patch; of two that meet there the
+//! later exemplar's gives way. Lights that are no lamps, since they run out of their exemplar, are dimmed by the
+//! weight instead.
 //!
-//! Lattices of different exemplars keep their own period and phase; [`crate::emission::Params::centred`] has them meet in the middle.
+//! Lattices of different exemplars keep their own period and phase; [`crate::emission::Params::centred`] has them meet
+//! in the middle.
 
 use super::layer::Layer;
 use super::weights::Weights;
@@ -106,7 +108,8 @@ fn boxed(layer: &Layer, instance: &Instance) -> Lamp {
     Lamp { low, high: (point(lamp.max) + 1.0 + instance.shift) / layer.scale, draw: 0.0 }
 }
 
-/// Lamps by the square their centre lies in; squares are as long as the longest lamp, so what overlaps is in one next to it.
+/// Lamps by the square their centre lies in; squares are as long as the longest lamp, so what overlaps is in one next
+/// to it.
 struct Near {
     cells: HashMap<[i64; 2], Vec<(usize, usize, DVec2)>>,
     side: f64,

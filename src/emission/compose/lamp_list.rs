@@ -1,9 +1,9 @@
 //! The lamps of a composition, one by one: what a texture consists of that is never there as a whole.
 //!
-//! Every lamp of a texture is a shifted one of an exemplar, so a list needs their outlines once, and for each lamp its place.
-//! Where texels are not unwarped pixels a lamp is what it is in the exemplar; a texture shows it to the texel. Lights that are no
-//! lamps follow the patches, as those do that run through their exemplar, and without [`crate::emission::Params::whole_lamps`] all: these are
-//! listed as the texture shows them.
+//! Every lamp of a texture is a shifted one of an exemplar, so a list needs their outlines once, and for each lamp its
+//! place. Where texels are not unwarped pixels a lamp is what it is in the exemplar; a texture shows it to the texel.
+//! Lights that are no lamps follow the patches, as those do that run through their exemplar, and without
+//! [`crate::emission::Params::whole_lamps`] all: these are listed as the texture shows them.
 
 use super::composition::{Composition, exemplars};
 use super::layer::Layer;
@@ -45,6 +45,11 @@ impl LampList {
             let Layer { exemplar, .. } = layer;
             let coverage = |pixel: usize| exemplar.coverage(input.light, pixel);
             let mut shapes = luminaires::find(&input.unwarped.to_rgb()?, &exemplar.components, &coverage, job)?;
+            for (shape, (design, fitted)) in
+                shapes.iter_mut().enumerate().filter_map(|(k, s)| Some((s, layer.designs.of(k)?)))
+            {
+                design.describe(fitted.centre, shape);
+            }
             shapes.iter_mut().zip(colours).for_each(|(shape, colour)| shape.colour = colour);
             list.shapes.push(shapes);
         }

@@ -2,25 +2,30 @@
 
 use super::window::{self, Window};
 use crate::emission::exemplar::Exemplar;
+use crate::emission::exemplar::evidence::Evidence;
 use crate::emission::exemplar::roles::Role;
+use crate::emission::lamps::design::Designs;
 use crate::emission::lamps::instance::Instance;
 use crate::emission::lamps::instances::{self, Rules};
+use crate::emission::lamps::luminaire::Luminaire;
 use crate::emission::lamps::rim_colour::RimColours;
-use crate::emission::lamps::stretched;
+use crate::emission::lamps::{lattice_fill, luminaires, sharpest, stretched};
 use crate::emission::lattice::continuation::Continuation;
-use crate::emission::lattice::{self, border_sites, centring, extent};
-use crate::emission::measure::Reading;
+use crate::emission::lattice::{border_sites, centring, extent};
 use crate::emission::params::{Input, Params, working_side};
 use crate::emission::quilt;
 use crate::emission::quilt::guide::Guide;
 use crate::emission::quilt::metadata;
 use crate::emission::quilt::patch_map::PatchMap;
+use crate::emission::reading::sites::Sites;
+use crate::emission::reading::{Choice, Reading};
 use crate::error::{Error, Result};
 use crate::image::Image;
 use crate::job::Job;
 use glam::{DVec2, Vec3};
 
-/// Share of the smallest lamp's area below which a piece of light is a crumb of an edge that resampling broke off. [judged on 5 photos]
+/// Share of the smallest lamp's area below which a piece of light is a crumb of an edge that resampling broke off.
+/// [judged on 5 photos]
 const CRUMB: f64 = 0.02;
 /// Sides of a patch in working pixels, at least. [bench emission:knobs]
 const MIN_BLOCK: f64 = 16.0;
@@ -32,6 +37,7 @@ pub struct Layer {
     pub exemplar: Exemplar,
     pub continuation: Continuation,
     pub regularity: f64,
+    pub choice: Choice,
     /// Metadata of the exemplar, at working size.
     pub metadata: Image,
     pub patch_map: PatchMap,
@@ -41,6 +47,8 @@ pub struct Layer {
     pub has_pieces: bool,
     /// Where the photo is clipped, the colours of the lamps it shows.
     pub rim_colours: Option<RimColours>,
+    /// The designs of its lamps; none where lamps are shown as the photo has them.
+    pub designs: Designs,
     /// The mean colour of each component, where lamps shine evenly.
     pub even: Option<Vec<Vec3>>,
     /// Unwarped pixels per texel.
@@ -64,19 +72,27 @@ struct Setting<'a> {
 
 impl Layer {
     pub fn new(reading: Option<Reading>, input: &Input, params: &Params, job: Job) -> Result<Self> {
-        let (mut exemplar, read) = match reading.filter(|r| r.serves(input, params)) {
-            Some(reading) => (reading.exemplar, Some((reading.continuation, reading.regularity))),
-            None => (Exemplar::new(input, working_side(input, params), job.part(0.0, 0.15))?, None),
+        // A texture that fits into the exemplar is a part of it; else find how the pattern goes on.
+        let reading = reading.filter(|r| r.serves(input, params));
+        let (exemplar, read) = match reading {
+            Some(Reading { exemplar, continuation, regularity, choice, .. }) => {
+                (exemplar, Some((continuation, regularity, choice)))
+            }
+            None => {
+                let side = working_side(input, params);
+                (Exemplar::new(input, side, params.max_magnification, job.part(0.0, 0.15))?, None)
+            }
         };
-
-        // Find how the pattern goes on.
         let stays = params.tileable || params.centred;
         let window = if stays { None } else { Window::find(&exemplar, params)? };
         let inside = window.as_ref().filter(|w| w.is_shown).map(|w| w.corner);
-        let (found, regularity) = match (inside, read) {
-            (Some(_), _) => (Continuation::Copy, 0.0),
-            (None, Some(read)) => read,
-            (None, None) => lattice::find(&exemplar, params.least_regularity, job.part(0.15, 0.25))?,
+        let (mut exemplar, (found, regularity, choice)) = match (inside, read) {
+            (Some(_), _) => (exemplar, (Continuation::Copy, 0.0, Choice::only(Continuation::Copy))),
+            (None, Some(read)) => (exemplar, read),
+            (None, None) => {
+                let reading = Reading::of(exemplar, input, params, job.part(0.15, 0.25))?;
+                (reading.exemplar, (reading.continuation, reading.regularity, reading.choice))
+            }
         };
         if let Continuation::Lattice(basis) = found {
             border_sites::exclude(&mut exemplar, basis)?;
@@ -94,8 +110,12 @@ impl Layer {
         };
         let has_pieces = inside.is_none() && params.whole_lamps;
         let by_patches = !has_pieces || exemplar.roles.contains(&Role::Through);
+        let designs = match has_pieces && params.clean_lamps && input.photo.is_some() {
+            true => Designs::find(&exemplar, &outlines(&exemplar, input, job.part(0.9, 0.92))?),
+            false => Designs::default(),
+        };
         let instances = match has_pieces {
-            true => setting.place_lamps(&exemplar, &patch_map, by_patches, job.part(0.9, 1.0))?,
+            true => setting.place_lamps(&exemplar, &designs, &patch_map, by_patches, job.part(0.92, 1.0))?,
             false => Vec::new(),
         };
         let patch_map = match setting.stretch().filter(|_| by_patches) {
@@ -110,14 +130,21 @@ impl Layer {
             exemplar,
             continuation,
             regularity,
+            choice,
             metadata,
             patch_map,
             instances,
             has_pieces,
             rim_colours,
+            designs,
             even: None,
             scale,
         })
+    }
+
+    /// Whether its lamps are shown by their designs.
+    pub fn is_clean(&self) -> bool {
+        !self.designs.kinds.is_empty()
     }
 
     /// Whether a component follows the patches pixel by pixel.
@@ -204,10 +231,30 @@ impl<'a> Setting<'a> {
         })
     }
 
+    /// Lamps on a lattice, each at its site, where designs tell what lamps look like.
+    fn at_sites(&self, exemplar: &Exemplar, designs: &Designs, shown: Vec<Instance>) -> Vec<Instance> {
+        let &Self { params, continuation, offset, .. } = self;
+        let ends = match continuation {
+            Continuation::Row([along, _]) => extent::repeat_of_row(exemplar, along).is_some(),
+            _ => false,
+        };
+        if designs.kinds.is_empty() || ends {
+            return shown;
+        }
+        match Sites::new(exemplar, &Evidence::of(exemplar, Role::is_whole), continuation) {
+            Some(sites) => {
+                let area = (offset, params.size());
+                lattice_fill::place(exemplar, designs, &sites, continuation, shown, area, params.seed)
+            }
+            None => shown,
+        }
+    }
+
     /// The lamps that move as pieces.
     fn place_lamps(
         &self,
         exemplar: &Exemplar,
+        designs: &Designs,
         patch_map: &PatchMap,
         by_patches: bool,
         job: Job,
@@ -220,8 +267,10 @@ impl<'a> Setting<'a> {
         let instances = match continuation {
             Continuation::Lattice(_) | Continuation::Row(_) if stretched.is_some() => stretched.unwrap_or_default(),
             Continuation::Tile(basis) => instances::repeat(exemplar, basis, offset, params.size(), params.tileable),
-            _ => instances::resolve(exemplar, patch_map, rules, params.seed, job)?,
+            _ => self.at_sites(exemplar, designs, instances::resolve(exemplar, patch_map, rules, params.seed, job)?),
         };
+        let mut instances = instances;
+        sharpest::show_designed(exemplar, designs, &mut instances, params.seed);
         match continuation {
             Continuation::Free => shifted(instances, by_patches, params),
             _ => Ok(instances),
@@ -229,7 +278,14 @@ impl<'a> Setting<'a> {
     }
 }
 
-/// Lamps of free patches, shifted by the offset. They begin nowhere; only where they repeat there is something to shift.
+/// The outlines of the components of an exemplar, in unwarped pixels.
+fn outlines(exemplar: &Exemplar, input: &Input, job: Job) -> Result<Vec<Luminaire>> {
+    let coverage = |pixel: usize| exemplar.coverage(input.light, pixel);
+    luminaires::find(&input.unwarped.to_rgb()?, &exemplar.components, &coverage, job)
+}
+
+/// Lamps of free patches, shifted by the offset. They begin nowhere; only where they repeat there is something to
+/// shift.
 fn shifted(mut lamps: Vec<Instance>, by_patches: bool, params: &Params) -> Result<Vec<Instance>> {
     if params.offset == DVec2::ZERO {
         return Ok(lamps);
@@ -249,8 +305,8 @@ fn shifted(mut lamps: Vec<Instance>, by_patches: bool, params: &Params) -> Resul
     Ok(lamps)
 }
 
-/// A patch that holds more than one lamp and its neighbours: one and a half times the longer period; without one, a quarter
-/// of the exemplar.
+/// A patch that holds more than one lamp and its neighbours: one and a half times the longer period; without one, a
+/// quarter of the exemplar.
 fn default_block(exemplar: &Exemplar, continuation: Continuation) -> usize {
     let working = &exemplar.working;
     let quarter = working.width.min(working.height) as f64 / 4.0;

@@ -1,7 +1,8 @@
-//! Lights that follow the patches, of a texture that is never there as a whole: those that run through are as long as it is.
+//! Lights that follow the patches, of a texture that is never there as a whole: those that run through are as long as
+//! it is.
 //!
-//! The texture is swept from top to bottom in bands. Of every connected light sums are kept, and its first and last texel in each
-//! row; so its outline is that of what lies between these, to the texel.
+//! The texture is swept from top to bottom in bands. Of every connected light sums are kept, and its first and last
+//! texel in each row; so its outline is that of what lies between these, to the texel.
 
 use super::composition::Composition;
 use super::render::Lights;
@@ -24,7 +25,8 @@ const BESIDE: usize = 2;
 /// No light.
 const NONE: u32 = u32::MAX;
 
-/// Every light of a composition that follows the patches, in the order of their first texel. Their shares of flux are 0.
+/// Every light of a composition that follows the patches, in the order of their first texel. Their shares of flux are
+/// 0.
 pub fn find(composition: &Composition, input: &Input, styles: &[Style], job: Job) -> Result<Vec<Luminaire>> {
     if !composition.layers.iter().any(|layer| layer.follows_patches()) {
         return Ok(Vec::new());
@@ -118,7 +120,8 @@ struct Span {
 struct Light {
     /// Number of its texels.
     texels: f64,
-    /// Sums over what of texels is light: area, centres from that of the first, and their products; and over its texels: colours.
+    /// Sums over what of texels is light: area, centres from that of the first, and their products; and over its
+    /// texels: colours.
     area: f64,
     origin: DVec2,
     centres: DVec2,

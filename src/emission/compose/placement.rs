@@ -1,4 +1,5 @@
-//! Where a texture may show light: surfaces are seldom whole rectangles, and ducts and sprinklers are in the way of lamps.
+//! Where a texture may show light: surfaces are seldom whole rectangles, and ducts and sprinklers are in the way of
+//! lamps.
 
 use crate::emission::lamps::luminaire::Luminaire;
 use crate::emission::lamps::{crumbs, luminaires};
@@ -18,7 +19,8 @@ pub enum Placement {
 }
 
 impl Emission {
-    /// Takes out light that has no place; `ground` has one entry for each texel. The statistics stay those of the pattern.
+    /// Takes out light that has no place; `ground` has one entry for each texel. The statistics stay those of the
+    /// pattern.
     ///
     /// Errors: `Degenerate` if no lamp is left.
     pub fn restrict(&mut self, ground: &[Placement], job: Job) -> Result<()> {

@@ -1,8 +1,10 @@
-//! Full detail: every lamp and every patch is copied again from the finest source there is ("Lighting Style Transfer", §6, Fig. 12h).
+//! Full detail: every lamp and every patch is copied again from the finest source there is ("Lighting Style Transfer",
+//! §6, Fig. 12h).
 //!
-//! A texel looks up its shift, undoes it, and arrives in the unwarped image; from there the homography leads into the photo,
-//! where the area the texel covers is averaged. What is light is decided in the unwarped image: where it is magnified, by its
-//! confidence between pixels, so that outlines are no staircases; where it is reduced, by share of area.
+//! A texel looks up its shift, undoes it, and arrives in the unwarped image; from there the homography leads into the
+//! photo, where the area the texel covers is averaged. What is light is decided in the unwarped image: where it is
+//! magnified, by its confidence between pixels, so that outlines are no staircases; where it is reduced, by share of
+//! area.
 
 use super::bands::Bands;
 use super::source::{Source, Texel};
@@ -99,7 +101,10 @@ impl Row<'_> {
                 let Instance { component, shift } = source.layer.instances[i as usize];
                 let columns = x0.max(self.first)..x1.min(self.first + self.coverage.len());
                 let is_shown = |label: u32| label == component as u32 + 1;
-                columns.for_each(|x| self.add(x, source.texel(x, self.y, shift, is_shown)));
+                columns.for_each(|x| {
+                    let designed = source.designed_texel(x, self.y, shift, component);
+                    self.add(x, designed.unwrap_or_else(|| source.texel(x, self.y, shift, is_shown)));
+                });
             }
         }
     }

@@ -1,13 +1,13 @@
 //! The photo beneath a texel: the mean of what it shows of a small square of the unwarped image.
 //!
-//! The homography makes the square a quadrangle. Points about a pixel of the photo apart along each of its sides are averaged,
-//! each between pixels by cubics (Catmull and Rom 1974), so that detail is neither lost where the photo is magnified nor missed
-//! where it is reduced.
+//! The homography makes the square a quadrangle. Points about a pixel of the photo apart along each of its sides are
+//! averaged, each between pixels by cubics (Catmull and Rom 1974), so that detail is neither lost where the photo is
+//! magnified nor missed where it is reduced.
 //!
-//! The elliptical weighted average (Heckbert 1989, 3.5), usual for this, takes a fifth to a half of the time, yet is less exact: its
-//! Gaussian, as wide as it is published, weighs what other texels show too, and as narrow as a texel it has not its shape. Only
-//! where tens of texels share a pixel along one side, and nothing is left to recover, its blur is nearer to the truth. Both are
-//! held against that by `cargo bench --bench emission -- recovery`.
+//! The elliptical weighted average (Heckbert 1989, 3.5), usual for this, takes a fifth to a half of the time, yet is
+//! less exact: its Gaussian, as wide as it is published, weighs what other texels show too, and as narrow as a texel
+//! it has not its shape. Only where tens of texels share a pixel along one side, and nothing is left to recover, its
+//! blur is nearer to the truth. Both are held against that by `cargo bench --bench emission -- recovery`.
 
 use crate::geometry::Homography;
 use crate::image::Image;
@@ -16,8 +16,8 @@ use glam::{DVec2, Vec3};
 /// Most points along each side: of texels next to the horizon.
 const MAX_POINTS: f64 = 32.0;
 
-/// Mean colour of a photo over the square of a side around a point of the unwarped image, of what of it the photo shows; nothing
-/// where it shows none or is not finite.
+/// Mean colour of a photo over the square of a side around a point of the unwarped image, of what of it the photo
+/// shows; nothing where it shows none or is not finite.
 pub fn mean(photo: &Image, to_photo: &Homography, middle: DVec2, side: f64) -> Option<Vec3> {
     let at = |step: DVec2| to_photo.apply(middle + step * side);
     // A length that is none has no points: the horizon.
@@ -34,8 +34,8 @@ pub fn mean(photo: &Image, to_photo: &Homography, middle: DVec2, side: f64) -> O
     Some(sum / shown).filter(|colour| colour.is_finite())
 }
 
-/// Colour at a point of the photo, its border extended; nothing off the photo. Not beyond the four pixels around it: next to a
-/// bright lamp cubics go below nothing.
+/// Colour at a point of the photo, its border extended; nothing off the photo. Not beyond the four pixels around it:
+/// next to a bright lamp cubics go below nothing.
 fn cubic(photo: &Image, p: DVec2) -> Option<Vec3> {
     let size = DVec2::new(photo.width as f64, photo.height as f64);
     if !(p.cmpge(DVec2::ZERO).all() && p.cmple(size).all()) {

@@ -8,8 +8,8 @@ use crate::error::Result;
 use crate::job::Job;
 use glam::{DVec2, DVec3, Vec3, Vec4};
 
-/// Least and most samples along each side of a texel that is larger than an unwarped pixel. Fewer would not tell where half of it is
-/// light to an eighth of its side. [rounding]
+/// Least and most samples along each side of a texel that is larger than an unwarped pixel. Fewer would not tell where
+/// half of it is light to an eighth of its side. [rounding]
 const MIN_SAMPLES: f64 = 4.0;
 const MAX_SAMPLES: f64 = 16.0;
 
@@ -32,11 +32,17 @@ pub fn mean_colours(layer: &Layer, input: &Input, job: Job) -> Result<Vec<Vec3>>
     Ok(sums.iter().zip(&exemplar.components.list).map(|(sum, lamp)| (*sum / lamp.area as f64).as_vec3()).collect())
 }
 
+/// Width in photo pixels of the rim that blur darkens, and the share of a lamp that is looked at, at least. [judged on
+/// 20 photos]
+const RIM: f64 = 1.5;
+const MIN_INNER: f64 = 0.5;
+
 /// What a texel shows of some lights.
 #[derive(Clone, Copy)]
 pub struct Texel {
     pub colour: Vec3,
-    /// Share of its samples that are light, and mean confidence that they are: the same but for the finer steps of this.
+    /// Share of its samples that are light, and mean confidence that they are: the same but for the finer steps of
+    /// this.
     pub share: f32,
     pub coverage: f32,
 }
@@ -85,6 +91,29 @@ impl Source<'_> {
         Texel { colour: colour / samples, share: inside as f32 / samples, coverage: coverage / samples }
     }
 
+    /// What a texel shows of a lamp that has a design.
+    pub fn designed_texel(&self, x: usize, y: usize, shift: DVec2, component: usize) -> Option<Texel> {
+        let (design, fitted) = self.layer.designs.of(component)?;
+        let scale = self.layer.scale;
+        let at = (DVec2::new(x as f64, y as f64) + 0.5) * scale - self.layer.rounded(shift) - fitted.centre;
+        let share = design.coverage(at, scale) as f32;
+        if share <= 0.0 {
+            return Some(Texel { colour: Vec3::ZERO, share: 0.0, coverage: 0.0 });
+        }
+        // Look where the lamp of the photo, larger by its bloom, shows the same part, but not at its blurred rim.
+        let axes = [design.axis, design.axis.perp()];
+        let inner = (fitted.size - RIM * 2.0 * fitted.photo_pixel).max(fitted.size * MIN_INNER) / design.size;
+        let half = design.size / 2.0;
+        let local = DVec2::new(at.dot(axes[0]), at.dot(axes[1])).clamp(-half, half) * inner;
+        let p = fitted.centre + axes[0] * local.x + axes[1] * local.y;
+        let label = component as u32 + 1;
+        let colour = match &self.layer.even {
+            Some(means) => means[component],
+            None => self.colour(p, scale, &self.taps(p, true), Some(label), &|l| l == label),
+        };
+        Some(Texel { colour: colour * share, share, coverage: share })
+    }
+
     /// The light at a point, from the finest source there is.
     fn colour(
         &self,
@@ -124,7 +153,8 @@ impl Source<'_> {
         label != 0 && is_shown(label)
     }
 
-    /// How much an unwarped pixel is. Beside a lamp confidence fades away; where it is none of a lamp's, it is nobody's.
+    /// How much an unwarped pixel is. Beside a lamp confidence fades away; where it is none of a lamp's, it is
+    /// nobody's.
     fn light(&self, pixel: usize, is_shown: &impl Fn(u32) -> bool) -> f32 {
         let label = self.label(pixel);
         if label != 0 && !is_shown(label) { 0.0 } else { self.layer.exemplar.coverage(self.input.light, pixel) }

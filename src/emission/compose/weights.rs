@@ -14,7 +14,8 @@ pub struct Style<'a> {
     pub input: Input<'a>,
     /// Its unwarped pixels per texel, in `[1e-3, 1e3]`.
     pub scale: f64,
-    /// Its weight in `[0, 1]`, one channel, stretched over the texture. What all further exemplars leave of 1 is the first's.
+    /// Its weight in `[0, 1]`, one channel, stretched over the texture. What all further exemplars leave of 1 is the
+    /// first's.
     pub weights: &'a Image,
 }
 
@@ -22,7 +23,8 @@ pub struct Style<'a> {
 pub struct Weights(Vec<Image>);
 
 impl Weights {
-    /// Errors: maps of different size or of several channels, values outside of [0, 1], weights that exceed 1 together.
+    /// Errors: maps of different size or of several channels, values outside of [0, 1], weights that exceed 1
+    /// together.
     pub fn new(styles: &[Style]) -> Result<Self> {
         let Some(map) = styles.first().map(|s| s.weights) else { return Ok(Self(Vec::new())) };
         let mut rest = Image::new(map.width, map.height, 1)?;

@@ -14,8 +14,8 @@ pub struct Window {
 }
 
 impl Window {
-    /// Of the parts that are shown everywhere that whose share of light is nearest to the exemplar's, less the offset; nothing
-    /// where there is none.
+    /// Of the parts that are shown everywhere that whose share of light is nearest to the exemplar's, less the offset;
+    /// nothing where there is none.
     pub fn find(exemplar: &Exemplar, params: &Params) -> Result<Option<Self>> {
         let side = |n: usize| (n as f64 * params.scale - 1e-9).ceil().max(1.0);
         let (w, h) = (side(params.width), side(params.height));

@@ -2,6 +2,9 @@
 
 pub mod area_sums;
 pub mod components;
+pub mod evidence;
+pub mod foreshortening;
+pub mod fragments;
 pub mod roles;
 pub mod working;
 
@@ -12,14 +15,15 @@ use crate::geometry::Homography;
 use crate::image::{Image, try_collect, try_vec};
 use crate::job::Job;
 use components::{Component, Components};
-use glam::DVec2;
+use foreshortening::{LocalMap, MagnificationLimit};
 use roles::Role;
 use working::{Sources, Working};
 
 /// Confidence from which a pixel is light. [convention]
 pub const LIT: f32 = 0.5;
 
-/// Pixels of the photo that a lamp covers at least, unless no light covers more: a disc three pixels across. [judged on 5 photos]
+/// Pixels of the photo that a lamp covers at least, unless no light covers more: a disc three pixels across. [judged
+/// on 5 photos]
 const MIN_LAMP: f64 = 9.0;
 
 /// What the photo shows of the lit plane.
@@ -35,16 +39,27 @@ pub struct Exemplar {
     pub photo_area: Vec<f64>,
     /// Share of the shown pixels that is lit.
     pub lit_share: f64,
+    /// The map from unwarped pixels into the photo, if there is one.
+    pub to_photo: Option<Homography>,
     pub working: Working,
 }
 
 impl Exemplar {
-    pub fn new(input: &Input, working_side: f64, job: Job) -> Result<Self> {
+    /// Cuts an exemplar out of its input, up to a magnification unless that is 0. Errors: no valid pixel, no light
+    /// (`Degenerate`).
+    pub fn new(input: &Input, working_side: f64, max_magnification: f64, job: Job) -> Result<Self> {
         let Input { unwarped: image, light, .. } = *input;
         let (width, height) = (image.width, image.height);
-        let shown = shown_pixels(input)?;
+        let mut shown = shown_pixels(input)?;
+        if let Some((_, to_photo)) = input.photo.filter(|_| max_magnification > 0.0) {
+            let limit = MagnificationLimit::new(to_photo, (&shown, width), max_magnification);
+            limit.inspect(|limit| limit.restrict(&mut shown, width));
+        }
         let (components, photo_area) = lights(input, &shown)?;
-        let roles = roles::classify(&components, &shown, width, height);
+        let mut roles = roles::classify(&components, &shown, width, height);
+        if let Some((_, to_photo)) = input.photo {
+            fragments::demote(&components, &mut roles, &photo_area, to_photo);
+        }
 
         let is_usable = |(&s, &l): (&bool, &u32)| s && (l == 0 || roles[l as usize - 1] != Role::Cut);
         let usable = try_collect(shown.iter().zip(&components.labels).map(is_usable))?;
@@ -53,20 +68,41 @@ impl Exemplar {
 
         let lit = components.list.iter().map(|c| c.area).sum::<usize>();
         let lit_share = lit as f64 / shown.iter().filter(|&&s| s).count() as f64;
-        Ok(Self { width, height, shown, components, roles, photo_area, lit_share, working })
+        Ok(Self {
+            width,
+            height,
+            shown,
+            components,
+            roles,
+            photo_area,
+            lit_share,
+            to_photo: input.photo.map(|p| p.1),
+            working,
+        })
     }
 
     /// The statistics of the pattern of `unwarped`, in its pixels; `periods` as in [`Pattern`].
-    pub fn statistics(&self, unwarped: &Image, periods: [Option<f64>; 2]) -> Statistics {
+    ///
+    /// Where it is `weighed`, each part weighs as many pixels of the photo as show it.
+    pub fn statistics(&self, unwarped: &Image, periods: [Option<f64>; 2], weighed: bool) -> Statistics {
         // Lamps are what the texture may show as such.
         let Self { width, height, components, .. } = self;
+        let to_photo = self.to_photo.filter(|_| weighed);
         let pieces: Vec<bool> = self.roles.iter().map(|role| role.is_piece()).collect();
         let colour = |i: usize| self.shown[i].then(|| unwarped.rgb(i % width, i / width));
-        Statistics::of(&Pattern { width: *width, height: *height, components, whole: &pieces, periods, colour })
+        Statistics::of(&Pattern {
+            width: *width,
+            height: *height,
+            components,
+            whole: &pieces,
+            periods,
+            to_photo: self.to_photo,
+            colour,
+        })
     }
 
-    /// How much of an unwarped pixel is light, as far as `light`, the confidence, tells: of components, and of what fades beside
-    /// them. Nothing beyond the last pixel is.
+    /// How much of an unwarped pixel is light, as far as `light`, the confidence, tells: of components, and of what
+    /// fades beside them. Nothing beyond the last pixel is.
     pub fn coverage(&self, light: &Image, pixel: usize) -> f32 {
         let is_light = self.components.labels.get(pixel).is_some_and(|label| *label != 0);
         match self.shown.get(pixel) {
@@ -85,9 +121,10 @@ impl Exemplar {
         self.components.list.iter().enumerate().filter(|(k, _)| self.roles[*k].is_piece())
     }
 
-    /// The index of the lamp that an unwarped pixel belongs to.
-    pub fn component_at(&self, pixel: usize) -> Option<usize> {
-        (self.components.labels[pixel] as usize).checked_sub(1)
+    /// The part that is magnified up to a factor against the sharpest pixel; `None` where that is all, or there is no
+    /// photo.
+    pub fn magnification_limit(&self, max_magnification: f64) -> Option<MagnificationLimit> {
+        MagnificationLimit::new(self.to_photo?, (&self.shown, self.width), max_magnification)
     }
 }
 
@@ -131,11 +168,5 @@ fn lights(input: &Input, shown: &[bool]) -> Result<(Components, Vec<f64>)> {
 
 /// The area of each component in the photo, to first order; without a photo, that in the unwarped image.
 fn photo_areas(components: &Components, to_photo: Option<Homography>) -> Vec<f64> {
-    let magnification = |at: DVec2| {
-        to_photo.map_or(1.0, |h| {
-            let p = |dx: f64, dy: f64| h.apply(at + DVec2::new(dx, dy));
-            (p(0.5, 0.0) - p(-0.5, 0.0)).perp_dot(p(0.0, 0.5) - p(0.0, -0.5)).abs()
-        })
-    };
-    components.list.iter().map(|c| c.area as f64 * magnification(c.centre)).collect()
+    components.list.iter().map(|c| c.area as f64 * LocalMap::new(to_photo, c.centre).area()).collect()
 }

@@ -4,8 +4,8 @@ use super::components::{Component, Components};
 
 /// A lamp that the border cuts is like a whole one if it is at most this much longer and wider. [judged on 5 photos]
 const CUT_LAMP_SLACK: f64 = 1.35;
-/// A lamp may touch the border with this share of its width and be whole: masks fray. A border that cuts it off meets all of its
-/// width; one that meets so much of it takes a twentieth of a round lamp. [judged on 5 photos]
+/// A lamp may touch the border with this share of its width and be whole: masks fray. A border that cuts it off meets
+/// all of its width; one that meets so much of it takes a twentieth of a round lamp. [judged on 5 photos]
 const WHOLE_CONTACT: f64 = 0.6;
 /// A light runs through if it covers this share of the shown pixels on a line through it. [rounding]
 const RUNS_THROUGH: f64 = 0.97;
@@ -19,7 +19,8 @@ pub enum Role {
     WholeAtBorder,
     /// A part of such a lamp that the border cuts off. It is not shown: whole ones take its place.
     Cut,
-    /// A light that the border cuts and that no whole lamp resembles. It moves as one piece, as far as the photo shows it.
+    /// A light that the border cuts and that no whole lamp resembles. It moves as one piece, as far as the photo shows
+    /// it.
     Partial,
     /// A light that runs through all that is shown. It follows the patches.
     Through,

@@ -18,7 +18,8 @@ pub struct Working {
     pub confidence: Vec<f32>,
     /// Share of a pixel that is light.
     pub coverage: Vec<f32>,
-    /// May be used: shown, and not part of a lamp that the border cuts off while whole ones are there to take its place.
+    /// May be used: shown, and not part of a lamp that the border cuts off while whole ones are there to take its
+    /// place.
     pub usable: Vec<bool>,
     /// Shown, cut lamps and all, and the share that is light: what the pattern is read from.
     pub shown: Vec<bool>,

@@ -52,8 +52,8 @@ impl<'a> Lights<'a> {
         Some(if self.labels[i] != 0 { share.clamp(0.5, 1.0) } else { share.clamp(0.0, 0.5) })
     }
 
-    /// What a texel of a lamp adds to it, as steps from it and areas: itself, whole if it lies deep in the lamp; and at the edge its
-    /// part of those around it that are less than half light.
+    /// What a texel of a lamp adds to it, as steps from it and areas: itself, whole if it lies deep in the lamp; and
+    /// at the edge its part of those around it that are less than half light.
     pub fn parts(&self, at: [isize; 2], mut add: impl FnMut([isize; 2], f64)) {
         let is_dark = |at: [isize; 2]| self.label(at) == Some(0);
         let step = |by: [isize; 2], from: [isize; 2]| [from[0] + by[0], from[1] + by[1]];
@@ -71,8 +71,8 @@ impl<'a> Lights<'a> {
         }
     }
 
-    /// How much of a texel at the edge is light. Where coverage takes more than two texels from none to all it is blurred: there it
-    /// tells the distance from the edge.
+    /// How much of a texel at the edge is light. Where coverage takes more than two texels from none to all it is
+    /// blurred: there it tells the distance from the edge.
     fn sharpened(&self, at: [isize; 2]) -> f64 {
         let coverage = self.coverage(at).unwrap_or(0.0);
         let is_lit = self.label(at) != Some(0);

@@ -8,8 +8,8 @@ pub fn reach(crumb: f64) -> usize {
     (2.0 * crumb.sqrt()).ceil() as usize
 }
 
-/// Takes out every connected piece of light smaller than `crumb` texels, and compact: no longer than the [`reach`] of one. Those
-/// that `is_cut` says of by their first and last texel are the rest of something larger.
+/// Takes out every connected piece of light smaller than `crumb` texels, and compact: no longer than the [`reach`] of
+/// one. Those that `is_cut` says of by their first and last texel are the rest of something larger.
 pub fn remove(
     texture: &mut Image,
     mask: &mut Image,
@@ -29,8 +29,8 @@ pub fn remove(
     }
 }
 
-/// Takes out the texels of lamps that `goes` names by lamp and texel, and rims whose lamps all go: texels less than half of
-/// which is light, which the mask leaves out.
+/// Takes out the texels of lamps that `goes` names by lamp and texel, and rims whose lamps all go: texels less than
+/// half of which is light, which the mask leaves out.
 pub fn take_out(texture: &mut Image, mask: &mut Image, found: &Components, goes: impl Fn(usize, usize) -> bool) {
     let (width, height) = (mask.width, mask.height);
     let lamp = |i: usize| (found.labels[i] as usize).checked_sub(1);

@@ -1,8 +1,8 @@
 //! From patches to lamps: which lamps of the exemplar the texture shows, each as one piece.
 //!
-//! The texture is black off the lights (Fig. 12c), so all that a patch contributes is its lamps. A seam that must pass a
-//! lamp, because the lamp is wider than the overlap, would leave part of it; instead a lamp is shown whole where most of it
-//! lies in patches of its own shift, and not at all where less does or where another lamp took the place.
+//! The texture is black off the lights (Fig. 12c), so all that a patch contributes is its lamps. A seam that must pass
+//! a lamp, because the lamp is wider than the overlap, would leave part of it; instead a lamp is shown whole where
+//! most of it lies in patches of its own shift, and not at all where less does or where another lamp took the place.
 
 use super::instance::Instance;
 use super::sharpest;
@@ -61,7 +61,8 @@ impl Canvas<'_> {
         self.footprints[k as usize].iter().filter_map(move |&[x, y]| self.texel(x + dx, y + dy))
     }
 
-    /// Which lamps the patches show at which shift, by the share of the lamp that they show, best first: share, lamp and label.
+    /// Which lamps the patches show at which shift, by the share of the lamp that they show, best first: share, lamp
+    /// and label.
     fn claims(&self, exemplar_height: usize, job: Job) -> Result<Vec<(f64, u32, u32)>> {
         let rows = rows(&self.footprints, exemplar_height);
         let mut shown: BTreeMap<(u32, u32), usize> = BTreeMap::new();
@@ -109,8 +110,8 @@ impl Canvas<'_> {
     }
 }
 
-/// The lamps of an exemplar that repeats as a whole: all of them in each cell of the lattice that the texture shows a part of; where
-/// it repeats itself, in each cell that begins in it.
+/// The lamps of an exemplar that repeats as a whole: all of them in each cell of the lattice that the texture shows a
+/// part of; where it repeats itself, in each cell that begins in it.
 pub fn repeat(exemplar: &Exemplar, [a, b]: [DVec2; 2], offset: DVec2, size: DVec2, wraps: bool) -> Vec<Instance> {
     let inverse = DMat2::from_cols(a, b).inverse();
     let point = |p: [usize; 2]| DVec2::new(p[0] as f64, p[1] as f64);
@@ -137,8 +138,8 @@ struct Piece {
     lamp: u32,
 }
 
-/// The lamps that each working row shows, from left to right. Of lamps that share a pixel, because both are smaller than it, the
-/// last has it.
+/// The lamps that each working row shows, from left to right. Of lamps that share a pixel, because both are smaller
+/// than it, the last has it.
 fn rows(footprints: &[Vec<[i32; 2]>], height: usize) -> Vec<Vec<Piece>> {
     let mut rows: Vec<BTreeMap<i32, u32>> = vec![BTreeMap::new(); height];
     for (k, pixels) in footprints.iter().enumerate() {

@@ -1,8 +1,8 @@
 //! Kinds of lamps: those of about the same size and shape, whatever their colour and however they are turned.
 //!
-//! A lamp is told by its area and the smallest rectangle around its outline, of which a square fills all, a disc π/4, a
-//! triangle half. The lamp with most of its like makes a kind with them; so on with the rest. Of lamps smaller than about
-//! twenty texels the outline does not tell squares from discs as wide.
+//! A lamp is told by its area and the smallest rectangle around its outline, of which a square fills all, a disc π/4,
+//! a triangle half. The lamp with most of its like makes a kind with them; so on with the rest. Of lamps smaller than
+//! about twenty texels the outline does not tell squares from discs as wide.
 
 use super::luminaire::Luminaire;
 use crate::geometry::polygon;
@@ -57,8 +57,8 @@ struct Step<'a> {
     count: usize,
 }
 
-/// Numbers the kinds of lamps from 1, those with most lamps first. Each counts for as many lamps as it says; those that count
-/// for none, as what the border cuts does, have no kind, 0.
+/// Numbers the kinds of lamps from 1, those with most lamps first. Each counts for as many lamps as it says; those
+/// that count for none, as what the border cuts does, have no kind, 0.
 pub fn number<'a>(lamps: impl Iterator<Item = (&'a mut Luminaire, usize)>) {
     let mut steps: BTreeMap<[i64; 3], Step> = BTreeMap::new();
     for (lamp, count) in lamps {
@@ -88,8 +88,8 @@ pub fn number<'a>(lamps: impl Iterator<Item = (&'a mut Luminaire, usize)>) {
     }
 }
 
-/// Sides of the smallest rectangle around some corners, the long one first: one of its sides lies along one of their convex
-/// hull's (Freeman and Shapira 1975), so along one between two of them.
+/// Sides of the smallest rectangle around some corners, the long one first: one of its sides lies along one of their
+/// convex hull's (Freeman and Shapira 1975), so along one between two of them.
 fn smallest_rectangle(corners: &[DVec2]) -> DVec2 {
     let extent = |axis: DVec2| polygon::extent(corners, axis);
     let hull = polygon::convex_hull(corners.to_vec());

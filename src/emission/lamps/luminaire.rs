@@ -17,10 +17,10 @@ pub struct Luminaire {
     pub colour: Vec3,
     /// Share of the light of the whole texture, in `[0, 1]`.
     pub flux_share: f64,
-    /// Corners of the outline in texels, from x towards y: where half of a texel would be light. Where the confidence of the lights
-    /// tells that between 0 and 1, and the lamp is wider than two texels, within a quarter of one or of an unwarped pixel,
-    /// whichever is larger; its corners, where they are not sharper than a right angle, within 0.71 of that. Else it follows the
-    /// sides of texels.
+    /// Corners of the outline in texels, from x towards y: where half of a texel would be light. Where the confidence
+    /// of the lights tells that between 0 and 1, and the lamp is wider than two texels, within a quarter of one or of
+    /// an unwarped pixel, whichever is larger; its corners, where they are not sharper than a right angle, within 0.71
+    /// of that. Else it follows the sides of texels.
     pub outline: Vec<DVec2>,
     /// Number of its kind ([`super::kinds`]), from 1, those with most lamps first; 0 of a lamp that the border cuts.
     pub kind: u32,

@@ -2,9 +2,11 @@
 
 pub mod coverage;
 pub mod crumbs;
+pub mod design;
 pub mod instance;
 pub mod instances;
 pub mod kinds;
+pub mod lattice_fill;
 pub mod luminaire;
 pub mod luminaires;
 pub mod outline;

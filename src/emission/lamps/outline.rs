@@ -1,10 +1,11 @@
 //! The outline of a lamp, finer than its texels: where half of what a texel covers would be light.
 //!
-//! Marching squares (Lorensen and Cline 1987) between the centres of texels. The outline crosses from a texel that is light to
-//! one beside it that is not; on which way it goes on where texels meet by a corner only, the lamp's connection decides. Where
-//! between two centres it crosses, both coverages tell: a straight edge that no other texel beside these is partly beyond
-//! makes their sum its place, to which a level set of values in between comes within 0.09 texels only. Corners are sharper than
-//! a texel can show: where two sides of a few texels meet, they go on until they do.
+//! Marching squares (Lorensen and Cline 1987) between the centres of texels. The outline crosses from a texel that is
+//! light to one beside it that is not; on which way it goes on where texels meet by a corner only, the lamp's
+//! connection decides. Where between two centres it crosses, both coverages tell: a straight edge that no other texel
+//! beside these is partly beyond makes their sum its place, to which a level set of values in between comes within
+//! 0.09 texels only. Corners are sharper than a texel can show: where two sides of a few texels meet, they go on until
+//! they do.
 
 use crate::emission::exemplar::components::Component;
 use crate::geometry::polygon;
@@ -14,10 +15,11 @@ use glam::DVec2;
 const TOLERANCE: f64 = 0.1;
 /// The same of texels' corners where all or nothing of each is light: a staircase becomes a line.
 const STAIRCASE: f64 = 1.0;
-/// A lamp up to this wide, in texels, keeps the corners of its texels too: crossings alone would take half of a single one.
+/// A lamp up to this wide, in texels, keeps the corners of its texels too: crossings alone would take half of a single
+/// one.
 const NARROW: f64 = 2.0;
-/// How long a side must be to tell its direction, and what is blunt between two, in texels; how far each goes on at most; and
-/// the cosine of the angle by which they turn at least, 60°, which no disc does that has such sides.
+/// How long a side must be to tell its direction, and what is blunt between two, in texels; how far each goes on at
+/// most; and the cosine of the angle by which they turn at least, 60°, which no disc does that has such sides.
 const SIDE: f64 = 2.0;
 const BLUNT: f64 = 2.0;
 const MAX_EXTENDED: f64 = 1.5;
@@ -25,8 +27,8 @@ const CORNER: f64 = 0.5;
 /// How far from the border of the texture, in texels, a corner on it may be by rounding.
 const ROUNDING: f64 = 1e-6;
 
-/// The outer boundary of a lamp, the lamp on the right, a crossing and the texel corner before it for each texel's edge. Points
-/// are relative to the lamp's first column and row, so that they have the same bits wherever it lies.
+/// The outer boundary of a lamp, the lamp on the right, a crossing and the texel corner before it for each texel's
+/// edge. Points are relative to the lamp's first column and row, so that they have the same bits wherever it lies.
 pub struct Ring {
     crossings: Vec<DVec2>,
     corners: Vec<DVec2>,
@@ -36,8 +38,9 @@ pub struct Ring {
 }
 
 impl Ring {
-    /// Walks around a lamp. `is_in` says which texels are its own, by column and row; `coverage` how much of a texel is light: of
-    /// its own from 0.5 on, of others less, and nothing beyond the texture, where the outline ends at the border.
+    /// Walks around a lamp. `is_in` says which texels are its own, by column and row; `coverage` how much of a texel
+    /// is light: of its own from 0.5 on, of others less, and nothing beyond the texture, where the outline ends at the
+    /// border.
     pub fn walk(
         lamp: &Component,
         is_in: &dyn Fn([isize; 2]) -> bool,
@@ -49,8 +52,8 @@ impl Ring {
         let start = first.unwrap_or(origin);
         let local = |at: [isize; 2]| DVec2::new((at[0] - origin[0]) as f64, (at[1] - origin[1]) as f64);
 
-        // Walk eastwards from there with the lamp at the right hand. Only one texel of the lamp meets the first corner, so the
-        // walk is over when it is back. Where texels touch by a corner, turn left: the lamp holds both.
+        // Walk eastwards from there with the lamp at the right hand. Only one texel of the lamp meets the first
+        // corner, so the walk is over when it is back. Where texels touch by a corner, turn left: the lamp holds both.
         let (mut crossings, mut corners, mut is_soft) = (Vec::new(), Vec::new(), false);
         let (mut at, mut heading) = (start, [1isize, 0isize]);
         loop {
@@ -106,14 +109,14 @@ fn beside(at: [isize; 2], heading: [isize; 2], side: isize) -> [isize; 2] {
     ]
 }
 
-/// Where on the way from the centre of a texel to that of one beside it, of which less than half is light, half of a texel is.
-/// Beyond the border nothing is known: the outline is there.
+/// Where on the way from the centre of a texel to that of one beside it, of which less than half is light, half of a
+/// texel is. Beyond the border nothing is known: the outline is there.
 fn crossing(light: f64, beyond: f64) -> f64 {
     let step = light - beyond;
     match () {
         () if beyond.is_nan() => 0.5,
-        // Both are linear in the place of a straight edge: each itself while it spreads over more texels than these, their sum
-        // where it does not. At a half both say the same.
+        // Both are linear in the place of a straight edge: each itself while it spreads over more texels than these,
+        // their sum where it does not. At a half both say the same.
         () if step > 0.5 => light + beyond - 0.5,
         () => ((light - 0.5) / step.max(f64::MIN_POSITIVE)).min(1.0),
     }
@@ -154,7 +157,8 @@ fn simplify(points: &[DVec2], first: usize, last: usize, tolerance: f64, kept: &
     }
 }
 
-/// The same ring with the corners that lie beyond its blunt ones, but those that a texture, from its first to its last corner, cuts.
+/// The same ring with the corners that lie beyond its blunt ones, but those that a texture, from its first to its last
+/// corner, cuts.
 fn with_corners(ring: &[DVec2], [first, last]: [DVec2; 2]) -> Vec<DVec2> {
     let n = ring.len();
     let point = |i: usize| ring[i % n];

@@ -1,8 +1,9 @@
 //! Light that the photo shows clipped.
 //!
-//! A lamp is brighter than a photo's white, so its core is white in the photo whatever its colour. At its rim, where the
-//! lens blurs it into the dark, all channels are below white: the rim tells the lamp's colour. A core is then given that
-//! colour, as dark as its clipped channels allow; how bright it is beyond that no photo tells, and relighting solves for it.
+//! A lamp is brighter than a photo's white, so its core is white in the photo whatever its colour. At its rim, where
+//! the lens blurs it into the dark, all channels are below white: the rim tells the lamp's colour. A core is then
+//! given that colour, as dark as its clipped channels allow; how bright it is beyond that no photo tells, and
+//! relighting solves for it.
 //!
 //! Not modelled: colour that changes within a lamp's core.
 
@@ -29,7 +30,8 @@ pub struct RimColours {
 }
 
 impl RimColours {
-    /// Reads the rims of the lamps of an image in which channels from `level` on are clipped; 0 takes none for clipped.
+    /// Reads the rims of the lamps of an image in which channels from `level` on are clipped; 0 takes none for
+    /// clipped.
     pub fn find(image: &Image, shown: &[bool], components: &Components, level: f32) -> Option<Self> {
         let colour = |i: usize| image.rgb(i % image.width, i / image.width);
         let lit = || components.labels.iter().enumerate().filter(|(_, label)| **label != 0);
@@ -116,7 +118,8 @@ mod tests {
         for (component, truth, x) in [(0, warm, 40), (1, cool, 110)] {
             assert_eq!(image.rgb(x, 30), Vec3::ONE);
             let light = rim_colours.undo(component, Vec3::ONE);
-            // The ratio of any two channels, which the photo shows as 1: the dark around adds up to a tenth to the rim.
+            // The ratio of any two channels, which the photo shows as 1: the dark around adds up to a tenth to the
+            // rim.
             for (a, b) in [(0, 1), (1, 2), (0, 2)] {
                 let (stated, true_ratio) = (light[a] / light[b], truth[a] / truth[b]);
                 assert!((stated / true_ratio - 1.0).abs() < 0.12, "{light} for {truth}");

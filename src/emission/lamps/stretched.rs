@@ -1,8 +1,9 @@
 //! A stretched lattice, cell by cell.
 //!
-//! Patches show lamps as far apart as the exemplar has them. Where a lattice is stretched, so that the texture can be repeated, lamps
-//! would keep that distance within a patch and jump from one to the next. So each cell of the stretched lattice shows, in its own
-//! place, the lamps of that cell of the exemplar which the patch at its middle shows.
+//! Patches show lamps as far apart as the exemplar has them. Where a lattice is stretched, so that the texture can be
+//! repeated, lamps would keep that distance within a patch and jump from one to the next. So each cell of the
+//! stretched lattice shows, in its own place, the lamps of that cell of the exemplar which the patch at its middle
+//! shows.
 
 use super::instance::Instance;
 use super::sharpest;
@@ -14,7 +15,8 @@ use crate::rng::Rng;
 use glam::{DMat2, DVec2};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The lamps of a texture of `size` unwarped pixels, on the lattice `stretched` instead of the exemplar's `own`, which begins at
+/// The lamps of a texture of `size` unwarped pixels, on the lattice `stretched` instead of the exemplar's `own`, which
+/// begins at
 /// `offset`. `None` where the exemplar shows no lamp, or no cell of it as a whole.
 pub fn place(
     exemplar: &Exemplar,

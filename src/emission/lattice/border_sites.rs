@@ -1,7 +1,8 @@
 //! Places of a lattice that the border of the exemplar cuts.
 //!
-//! A lamp there is left out, since only a part of it is seen. So must be the dark of such a place without a lamp: if patches could
-//! show it, but not its like with a lamp, the texture would miss lamps more often than the exemplar does.
+//! A lamp there is left out, since only a part of it is seen. So must be the dark of such a place without a lamp: if
+//! patches could show it, but not its like with a lamp, the texture would miss lamps more often than the exemplar
+//! does.
 
 use super::cells;
 use crate::emission::exemplar::components::Component;

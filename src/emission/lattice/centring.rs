@@ -30,8 +30,9 @@ impl Bounds {
     }
 }
 
-/// The shift of a lattice that puts a lamp, or the middle between two, into the middle of a texture of `size` unwarped pixels:
-/// of these that by which the border cuts fewest lamps, and then leaves most room to them. `None` without a lattice.
+/// The shift of a lattice that puts a lamp, or the middle between two, into the middle of a texture of `size` unwarped
+/// pixels: of these that by which the border cuts fewest lamps, and then leaves most room to them. `None` without a
+/// lattice.
 pub fn shift(exemplar: &Exemplar, continuation: Continuation, size: DVec2) -> Option<DVec2> {
     let [a, b] = continuation.lattice()?;
     let motif = motif(exemplar, continuation);
@@ -50,8 +51,8 @@ pub fn shift(exemplar: &Exemplar, continuation: Continuation, size: DVec2) -> Op
     Some(shifts[best])
 }
 
-/// What a lattice repeats: the lamps of a cell, that nearest to the middle of the exemplar first. Where the exemplar's extent
-/// serves as a period, all lamps along it are one.
+/// What a lattice repeats: the lamps of a cell, that nearest to the middle of the exemplar first. Where the exemplar's
+/// extent serves as a period, all lamps along it are one.
 fn motif(exemplar: &Exemplar, continuation: Continuation) -> Vec<Bounds> {
     let mut lamps: Vec<Bounds> = exemplar.pieces().map(|(_, lamp)| Bounds::of(lamp)).collect();
     if lamps.is_empty() {

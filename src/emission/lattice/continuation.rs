@@ -56,7 +56,8 @@ impl Continuation {
         })
     }
 
-    /// The period along x and along y, in unwarped pixels, where the lattice has one there; that of a copy is infinite.
+    /// The period along x and along y, in unwarped pixels, where the lattice has one there; that of a copy is
+    /// infinite.
     pub fn periods(&self) -> [Option<f64>; 2] {
         if *self == Self::Copy {
             return [Some(f64::INFINITY); 2];

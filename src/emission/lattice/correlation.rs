@@ -47,8 +47,8 @@ impl Autocorrelation {
         let m = spectrum(&|i| (f64::from(values[i]), 0.0))?;
         let s = spectrum(&|i| (f64::from(values[i]).powi(2), 0.0))?;
 
-        // Cross spectra conj(A) B give the sums of a(p) b(p + shift). Two real results share one transform: v·v + i m·m,
-        // and m·v + i s·v, the sums over the first of each pair; those over the second are at the opposite shift.
+        // Cross spectra conj(A) B give the sums of a(p) b(p + shift). Two real results share one transform: v·v + i
+        // m·m, and m·v + i s·v, the sums over the first of each pair; those over the second are at the opposite shift.
         let cross = |a: &[Complex], b: &[Complex], c: &[Complex], d: &[Complex]| -> Result<Vec<Complex>> {
             let mut grid = try_vec(columns * rows, Complex::default())?;
             for (i, out) in grid.iter_mut().enumerate() {

@@ -1,18 +1,20 @@
 //! The extent of the exemplar as a period: of lights that show no other law.
 
+use super::continuation::Continuation;
 use crate::emission::agreement::statistics;
 use crate::emission::exemplar::Exemplar;
 use crate::emission::exemplar::roles::Role;
 use glam::DVec2;
 
-/// Unwarped pixels between the lamps of one cell and the lamps of the next, where cells are as small as possible. [convention]
+/// Unwarped pixels between the lamps of one cell and the lamps of the next, where cells are as small as possible.
+/// [convention]
 const CELL_GAP: f64 = 4.0;
 
 /// Fewer lamps than this show no law of their own: the exemplar repeats as a whole. [judged on 5 photos]
 const FEW_LAMPS: usize = 6;
 
-/// Room around lamps from which they are a group by themselves, both sides together, in the longest distance from one of them to
-/// the nearest other. [judged on 5 photos]
+/// Room around lamps from which they are a group by themselves, both sides together, in the longest distance from one
+/// of them to the nearest other. [judged on 5 photos]
 const GROUP_MARGIN: f64 = 2.5;
 
 /// Width and height of the usable part of the exemplar, in unwarped pixels.
@@ -21,14 +23,21 @@ pub fn of(exemplar: &Exemplar) -> DVec2 {
     DVec2::new((x1 - x0) as f64, (y1 - y0) as f64) * exemplar.working.pitch
 }
 
+/// The law by which the exemplar repeats as a whole.
+pub fn as_period(exemplar: &Exemplar) -> Continuation {
+    let cell = whole_exemplar(exemplar, of(exemplar));
+    Continuation::Tile([DVec2::X * cell, DVec2::Y * cell])
+}
+
 /// Whether there are too few lamps for a law of their own, or one group of them.
 pub fn has_few_lamps(exemplar: &Exemplar, extent: DVec2) -> bool {
     exemplar.lamps().count() < FEW_LAMPS || is_group(exemplar, extent)
 }
 
-/// The sides at which an exemplar repeats as a whole, so that light covers the share of the plane that it covers of what is shown:
-/// less than its extent where that has dark corners that the photo does not show, or lamps cut off that are left out.
-pub fn whole_exemplar(exemplar: &Exemplar, extent: DVec2) -> DVec2 {
+/// The sides at which an exemplar repeats as a whole, so that light covers the share of the plane that it covers of
+/// what is shown: less than its extent where that has dark corners that the photo does not show, or lamps cut off that
+/// are left out.
+fn whole_exemplar(exemplar: &Exemplar, extent: DVec2) -> DVec2 {
     let lamps = &exemplar.components.list;
     let lit: usize =
         lamps.iter().zip(&exemplar.roles).filter(|(_, role)| **role != Role::Cut).map(|(lamp, _)| lamp.area).sum();
@@ -46,7 +55,8 @@ pub fn whole_exemplar(exemplar: &Exemplar, extent: DVec2) -> DVec2 {
     extent * DVec2::new(x, (share / x).max(least.y).min(1.0))
 }
 
-/// Whether the lamps keep together, far from the sides of what is shown along both axes: they are one thing, as a chandelier is.
+/// Whether the lamps keep together, far from the sides of what is shown along both axes: they are one thing, as a
+/// chandelier is.
 fn is_group(exemplar: &Exemplar, extent: DVec2) -> bool {
     let lamps = &exemplar.components.list;
     let centres: Vec<DVec2> = lamps.iter().map(|lamp| lamp.centre).collect();
@@ -57,8 +67,9 @@ fn is_group(exemplar: &Exemplar, extent: DVec2) -> bool {
     farthest.is_finite() && (extent - (high - low)).min_element() > GROUP_MARGIN * farthest
 }
 
-/// The period at which a row that ends is repeated along itself: as many of its own as the exemplar shows, with the room at both
-/// ends. `None` where it may go on beyond the exemplar: another lamp would find no room at one of the ends.
+/// The period at which a row that ends is repeated along itself: as many of its own as the exemplar shows, with the
+/// room at both ends. `None` where it may go on beyond the exemplar: another lamp would find no room at one of the
+/// ends.
 pub fn repeat_of_row(exemplar: &Exemplar, period: DVec2) -> Option<DVec2> {
     let axis = period.normalize();
     let working = &exemplar.working;

@@ -11,8 +11,8 @@ const MAX_UNLIKE: f64 = 0.4;
 /// Lamps that are looked at. [bench emission:seconds]
 const MAX_LAMPS: usize = 200;
 
-/// Whether a shift leads from lamps to lamps of their kind, where it leads to any: light correlates with itself where a row of narrow
-/// panes falls onto one of wide ones, but that is no period.
+/// Whether a shift leads from lamps to lamps of their kind, where it leads to any: light correlates with itself where
+/// a row of narrow panes falls onto one of wide ones, but that is no period.
 pub fn keeps_kinds(exemplar: &Exemplar, shift: DVec2) -> bool {
     let all: Vec<_> = exemplar.lamps().collect();
     let size = |lamp: &Component| DVec2::new(lamp.size()[0] as f64, lamp.size()[1] as f64);

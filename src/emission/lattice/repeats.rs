@@ -9,8 +9,8 @@ const CHANCE: f32 = 2.0;
 /// Correlation at all shifts along an axis from which the pattern does not change along it.
 const UNCHANGING: f32 = 0.95;
 
-/// Shifts beside a period, in pixels of that image, over which its correlation must fall by so much: where it does not, nothing that
-/// repeats is in sight, only what goes on along the shift.
+/// Shifts beside a period, in pixels of that image, over which its correlation must fall by so much: where it does
+/// not, nothing that repeats is in sight, only what goes on along the shift.
 const FLAT: (isize, f32) = (8, 0.02);
 
 /// A shift at which lights fall onto lights.
@@ -35,8 +35,8 @@ pub fn is_unchanging(correlation: &Autocorrelation, axis: DVec2, least: f32) -> 
     !values.is_empty() && values.iter().all(|&v| v >= UNCHANGING)
 }
 
-/// Local maxima of the correlation in the half-plane of shifts, to a fraction of a pixel. Along a direction in which nothing
-/// changes they are ridges: there only the shifts across it are looked at.
+/// Local maxima of the correlation in the half-plane of shifts, to a fraction of a pixel. Along a direction in which
+/// nothing changes they are ridges: there only the shifts across it are looked at.
 pub fn peaks(
     correlation: &Autocorrelation,
     (width, height): (usize, usize),
@@ -69,7 +69,8 @@ pub fn peaks(
                 })
             });
             if is_peak && !is_flat {
-                // The vertex of the parabola through three values: where it is, and how far it rises above the middle one.
+                // The vertex of the parabola through three values: where it is, and how far it rises above the middle
+                // one.
                 let vertex = |low: f32, high: f32| {
                     let (slope, curvature) = (high - low, low + high - 2.0 * value);
                     if curvature > -1e-6 {
@@ -88,7 +89,8 @@ pub fn peaks(
     found
 }
 
-/// Measures every shift again by the farthest peak that is a multiple of it: an error there counts by its fraction only.
+/// Measures every shift again by the farthest peak that is a multiple of it: an error there counts by its fraction
+/// only.
 pub fn sharpen(peaks: &mut [Repeat]) {
     let all: Vec<DVec2> = peaks.iter().map(|p| p.shift).collect();
     for Repeat { shift, .. } in peaks {

@@ -1,15 +1,16 @@
 //! How much light a texture has, against what it should have.
 //!
-//! Parts of the exemplar that fit more often than others would decide how much light there is, and where lamps are missing how
-//! many. So what a block has too much or too little of it passes on to those beside and below that come after it, as in error
-//! diffusion (Floyd and Steinberg 1976): not only the whole has its share of light, but any part of it.
+//! Parts of the exemplar that fit more often than others would decide how much light there is, and where lamps are
+//! missing how many. So what a block has too much or too little of it passes on to those beside and below that come
+//! after it, as in error diffusion (Floyd and Steinberg 1976): not only the whole has its share of light, but any part
+//! of it.
 
 use crate::error::Result;
 use crate::image::try_vec;
 
-/// What a lamp too many or too few counts for, in differences of its pixels: on a lattice as many as one in the wrong place makes in
-/// colour, confidence and distances. Elsewhere light is not all there is to keep: from a third of a pixel's difference on patches
-/// that bring it would be chosen which do not keep the distances between lamps.
+/// What a lamp too many or too few counts for, in differences of its pixels: on a lattice as many as one in the wrong
+/// place makes in colour, confidence and distances. Elsewhere light is not all there is to keep: from a third of a
+/// pixel's difference on patches that bring it would be chosen which do not keep the distances between lamps.
 const ON_LATTICE: f64 = 3.0;
 const ANYWHERE: f64 = 0.3;
 

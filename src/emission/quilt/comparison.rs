@@ -27,8 +27,8 @@ const ROW_STEP: usize = 4;
 /// Pixels compared by one thread before another is worth waking.
 const TASK: usize = 1 << 16;
 
-/// A shift, how many empty pixels of a block it fills, by how many pixels of light more than their share, and its mean squared
-/// difference from the known ones, with what that light counts for.
+/// A shift, how many empty pixels of a block it fills, by how many pixels of light more than their share, and its mean
+/// squared difference from the known ones, with what that light counts for.
 #[derive(Clone, Copy)]
 pub struct Scored {
     pub shift: Shift,
@@ -57,7 +57,8 @@ impl<'a> Comparison<'a> {
         let working = guide.working;
         let shown = working.shown_coverage.iter().zip(&working.shown).filter(|(_, shown)| **shown);
         let (lit, all) = shown.fold((0.0, 0usize), |(lit, all), (&light, _)| (lit + f64::from(light), all + 1));
-        // Lattice shifts are rounded to whole pixels, which alone makes both distances differ by the root of a sixth of one.
+        // Lattice shifts are rounded to whole pixels, which alone makes both distances differ by the root of a sixth
+        // of one.
         let slack = match is_lattice {
             true => (f64::from(guide.metadata_weight) / (3.0 * guide.cap.powi(2))) as f32,
             false => 0.0,
@@ -74,8 +75,8 @@ impl<'a> Comparison<'a> {
         })
     }
 
-    /// The part of a run that a shift takes from within the exemplar: how many of its pixels come before, how many there are,
-    /// and the place of the first in the exemplar.
+    /// The part of a run that a shift takes from within the exemplar: how many of its pixels come before, how many
+    /// there are, and the place of the first in the exemplar.
     pub fn shown(&self, run: &Run, shift: &Shift) -> Option<(usize, usize, [usize; 2])> {
         let working = self.guide.working;
         let (x, y) = (run.x as i64 - i64::from(shift.working[0]), run.y as i64 - i64::from(shift.working[1]));
@@ -85,8 +86,8 @@ impl<'a> Comparison<'a> {
         inside.then(|| (skipped as usize, length as usize, [(x + skipped) as usize, y as usize]))
     }
 
-    /// How many empty pixels of a block each shift fills, or 0 if far less than the best; and whether it shows something usable in all
-    /// of the block.
+    /// How many empty pixels of a block each shift fills, or 0 if far less than the best; and whether it shows
+    /// something usable in all of the block.
     pub fn fills(&self, block: &Block, shifts: &[Shift]) -> Vec<(usize, bool)> {
         let Rect { x, y, w, h } = block.rect;
         let empty = count(&block.empty);
@@ -124,8 +125,9 @@ impl<'a> Comparison<'a> {
         shifts.iter().zip(bounds).map(exact).collect()
     }
 
-    /// The shifts that fill `least` or more of the empty pixels, or without it nearly as many as the best does, and how well
-    /// they agree with the known ones. The error of those that are no match for the best, or for one of error `limit`, is infinite.
+    /// The shifts that fill `least` or more of the empty pixels, or without it nearly as many as the best does, and
+    /// how well they agree with the known ones. The error of those that are no match for the best, or for one of error
+    /// `limit`, is infinite.
     pub fn score(
         &self,
         block: &Block,
@@ -173,8 +175,8 @@ impl<'a> Comparison<'a> {
         Ok(scored.into_iter().flatten().collect())
     }
 
-    /// Mean squared difference of a shift, which may show something usable everywhere, from known pixels, of which there are `filled`;
-    /// infinite as soon as it exceeds `limit`.
+    /// Mean squared difference of a shift, which may show something usable everywhere, from known pixels, of which
+    /// there are `filled`; infinite as soon as it exceeds `limit`.
     pub fn error(&self, known: &[Run], (shift, is_whole): (&Shift, bool), filled: usize, limit: f32) -> f32 {
         let working = self.guide.working;
         let most = f64::from(limit) * filled as f64;
@@ -206,8 +208,9 @@ impl<'a> Comparison<'a> {
         if compared > 0 { (sum / compared as f64) as f32 } else { 0.0 }
     }
 
-    /// By how many pixels of light more than their share each of some shifts fills the empty pixels of a block. On a lattice their share
-    /// is what all of them show on average, since its lamps are always at the same places of a block; elsewhere that of the exemplar.
+    /// By how many pixels of light more than their share each of some shifts fills the empty pixels of a block. On a
+    /// lattice their share is what all of them show on average, since its lamps are always at the same places of a
+    /// block; elsewhere that of the exemplar.
     pub fn excess(&self, block: &Block, shifts: impl Iterator<Item = Shift>) -> Vec<f64> {
         let light_of = |shift: Shift| {
             let parts = block.empty.iter().filter_map(|run| self.shown(run, &shift));

@@ -4,7 +4,8 @@ use crate::emission::exemplar::working::Working;
 use crate::image::Image;
 use glam::{Vec3, Vec4};
 
-/// What is compared of a pixel, colour and metadata: scaled by the roots of their weights, so that squares add up as they are.
+/// What is compared of a pixel, colour and metadata: scaled by the roots of their weights, so that squares add up as
+/// they are.
 pub type Feature = [Vec4; 2];
 
 /// Colour and metadata of the exemplar, their weights, and how many patches are compared by them.
@@ -33,8 +34,8 @@ impl Guide<'_> {
         ((1.0f32 / 3.0).sqrt(), self.metadata_weight.sqrt())
     }
 
-    /// After which difference each channel of the metadata is the same again. Distances wrap: one cap to the left of a lamp is as far
-    /// as one cap to its right.
+    /// After which difference each channel of the metadata is the same again. Distances wrap: one cap to the left of a
+    /// lamp is as far as one cap to its right.
     pub fn turns(&self) -> Vec4 {
         let turn = 2.0 * self.scales().1;
         Vec4::new(f32::INFINITY, turn, turn, f32::INFINITY)

@@ -1,9 +1,10 @@
-//! The three metadata channels that lead the synthesis through empty space: confidence, and the signed x and y distance
-//! to the nearest feature ("Lighting Style Transfer", §6 and Fig. 12b; after Lefebvre and Hoppe 2006).
+//! The three metadata channels that lead the synthesis through empty space: confidence, and the signed x and y
+//! distance to the nearest feature ("Lighting Style Transfer", §6 and Fig. 12b; after Lefebvre and Hoppe 2006).
 //!
-//! The paper does not say what "horizontal and vertical distance" is where the nearest lamp of the row and of the plane
-//! differ. Here the two are the components of the offset from a pixel to its *nearest lit pixel* in the plane, so that
-//! they always speak of one lamp, vary continuously but for the bisectors between lamps, and exist in rows without light.
+//! The paper does not say what "horizontal and vertical distance" is where the nearest lamp of the row and of the
+//! plane differ. Here the two are the components of the offset from a pixel to its *nearest lit pixel* in the plane,
+//! so that they always speak of one lamp, vary continuously but for the bisectors between lamps, and exist in rows
+//! without light.
 
 use crate::error::Result;
 use crate::exec;
@@ -13,8 +14,9 @@ use crate::job::Job;
 /// No lit pixel anywhere.
 const NONE: u32 = u32::MAX;
 
-/// Confidence in channel 0; the x and y offset to the nearest lit pixel in channels 1 and 2, divided by `cap` and clamped
-/// to [-1, 1]; both are 1 where there is no light at all. The two ends of the range mean the same: nothing near.
+/// Confidence in channel 0; the x and y offset to the nearest lit pixel in channels 1 and 2, divided by `cap` and
+/// clamped to [-1, 1]; both are 1 where there is no light at all. The two ends of the range mean the same: nothing
+/// near.
 pub fn compute(
     confidence: &[f32],
     is_lit: impl Fn(usize) -> bool,
@@ -39,8 +41,8 @@ pub fn compute(
     Ok(out)
 }
 
-/// Index of the lit pixel nearest to each pixel, exact and in linear time: along columns by two sweeps, then along rows by
-/// the lower envelope of parabolas (Felzenszwalb and Huttenlocher 2012).
+/// Index of the lit pixel nearest to each pixel, exact and in linear time: along columns by two sweeps, then along
+/// rows by the lower envelope of parabolas (Felzenszwalb and Huttenlocher 2012).
 fn nearest_feature(is_lit: impl Fn(usize) -> bool, width: usize, height: usize, job: Job) -> Result<Vec<u32>> {
     // The nearest lit row within each column.
     let mut row_of = try_vec(width * height, NONE)?;

@@ -1,9 +1,11 @@
-//! Iterative patch placement: image quilting (Efros and Freeman 2001) over colour and metadata ("Lighting Style Transfer", §6).
+//! Iterative patch placement: image quilting (Efros and Freeman 2001) over colour and metadata ("Lighting Style
+//! Transfer", §6).
 //!
-//! Blocks are filled in scanline order. A patch is a shift of the exemplar; of the shifts that cover a block best, one is
-//! drawn among those that agree best with what is already there. What a patch cannot show, because the photo did not, is
-//! filled by further patches of the same block. On a lattice only shifts by lattice vectors are tried: whatever is chosen,
-//! the lamps stay in phase, and errors do not add up from patch to patch because every shift is measured from the origin.
+//! Blocks are filled in scanline order. A patch is a shift of the exemplar; of the shifts that cover a block best, one
+//! is drawn among those that agree best with what is already there. What a patch cannot show, because the photo did
+//! not, is filled by further patches of the same block. On a lattice only shifts by lattice vectors are tried:
+//! whatever is chosen, the lamps stay in phase, and errors do not add up from patch to patch because every shift is
+//! measured from the origin.
 
 pub mod balance;
 pub mod block;
@@ -53,7 +55,8 @@ struct Quilt<'a> {
     seed: u64,
 }
 
-/// Fills `width` × `height` working pixels with patches of side `block`; a lattice is shifted by `offset` unwarped pixels.
+/// Fills `width` × `height` working pixels with patches of side `block`; a lattice is shifted by `offset` unwarped
+/// pixels.
 pub fn place(
     guide: &Guide,
     continuation: Continuation,
@@ -102,8 +105,8 @@ pub fn place(
     Ok(quilt.patch_map)
 }
 
-/// The corners at which a whole block of usable pixels can be taken from an exemplar of a width, and the sides of the block: where
-/// patches are free a whole block must be found somewhere, so it shrinks until there is one.
+/// The corners at which a whole block of usable pixels can be taken from an exemplar of a width, and the sides of the
+/// block: where patches are free a whole block must be found somewhere, so it shrinks until there is one.
 fn admissible_corners(
     usable: &AreaSums,
     width: usize,
@@ -249,8 +252,8 @@ impl Quilt<'_> {
             .collect()
     }
 
-    /// Draws one of the shifts that are as good as the best. A row of lamps begins as the exemplar does, and goes on with it as
-    /// far as it goes.
+    /// Draws one of the shifts that are as good as the best. A row of lamps begins as the exemplar does, and goes on
+    /// with it as far as it goes.
     fn choose(&self, block: &Block, scored: &[Scored]) -> Option<Scored> {
         let rect = &block.rect;
         if matches!(self.continuation, Continuation::Row(_)) && self.patch_map.shifts.is_empty() {

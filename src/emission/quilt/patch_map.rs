@@ -19,8 +19,8 @@ pub struct Shift {
     pub exact: DVec2,
 }
 
-/// Which shift of the exemplar each working pixel of the result shows. Patches are wide, so a row is kept as its runs of one
-/// label: positions only, however large the texture is.
+/// Which shift of the exemplar each working pixel of the result shows. Patches are wide, so a row is kept as its runs
+/// of one label: positions only, however large the texture is.
 #[derive(Clone, Debug, Default)]
 pub struct PatchMap {
     pub width: usize,
@@ -72,8 +72,8 @@ impl PatchMap {
         self.ends.push(self.runs.len());
     }
 
-    /// The same again and again over `width` × `height` pixels: every `across`, along one axis, in unwarped pixels. A shift that
-    /// comes from two sides keeps one label.
+    /// The same again and again over `width` × `height` pixels: every `across`, along one axis, in unwarped pixels. A
+    /// shift that comes from two sides keeps one label.
     pub fn repeated(&self, (width, height): (usize, usize), across: DVec2, pitch: DVec2) -> Self {
         let mut out = Self::new(width, height);
         let mut shifts = Shifts::default();

@@ -1,7 +1,7 @@
 //! The minimum-error boundary cut of image quilting (Efros and Freeman 2001, §2.1).
 
-/// The path from the top row to the bottom row of a `width` × `height` grid of costs, moving at most one column per row,
-/// with the least sum; the column it takes in each row. The leftmost of equal paths.
+/// The path from the top row to the bottom row of a `width` × `height` grid of costs, moving at most one column per
+/// row, with the least sum; the column it takes in each row. The leftmost of equal paths.
 pub fn vertical_cut(cost: &[f32], width: usize, height: usize) -> Vec<usize> {
     if width == 0 || height == 0 {
         return vec![0; height];

@@ -7,9 +7,10 @@ use crate::error::Result;
 use crate::image::try_vec;
 use glam::{DMat2, DVec2};
 
-/// The same of lights that follow the patches: each cell of the stretched lattice shows, in its own place, what the patch at its middle
-/// shows there, and where that shows nothing, what the others do. Along an axis on which nothing changes there are no
-/// cells. The patch_map meets itself at the sides of a texture of `size` unwarped pixels, which holds a whole number of them.
+/// The same of lights that follow the patches: each cell of the stretched lattice shows, in its own place, what the
+/// patch at its middle shows there, and where that shows nothing, what the others do. Along an axis on which nothing
+/// changes there are no cells. The patch_map meets itself at the sides of a texture of `size` unwarped pixels, which
+/// holds a whole number of them.
 pub fn stretch(
     exemplar: &Exemplar,
     patch_map: &PatchMap,
