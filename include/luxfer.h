@@ -1769,12 +1769,15 @@ luxfer_status luxfer_segment_release(luxfer_segment *segment);
 /* ====================================================================================================================
  * Emission
  *
- * From the unwarped lights of a photo to an emissive texture of any size that carries their pattern on, and the list of
- * its luminaires.
+ * From the unwarped lights of a photo to an emissive texture of any size that carries their pattern on, and the list
+ * of its luminaires.
  * ==================================================================================================================== */
 
 /** An emissive texture in the making. See luxfer_emission_create. */
 typedef struct luxfer_emission luxfer_emission;
+
+/** How the lights of an exemplar go on: a LUXFER_LAW_ value. */
+typedef int32_t luxfer_emission_law;
 
 /** Settings of the emission. Fill them with luxfer_emission_params_init. */
 typedef struct luxfer_emission_params {
@@ -1795,32 +1798,33 @@ typedef struct luxfer_emission_params {
     /** Seed of the synthesis; default 1. */
     uint64_t seed;
     /**
-     * Correlation of the lights with themselves from which they are taken for regular, in [0, 1]; default 0.6. At 0 any
-     * repetition is held to exactly, at 1 none is, and patches go anywhere.
+     * Correlation of the lights with themselves from which they are taken for regular, in [0, 1]; default 0.6. At 0
+     * any repetition is held to exactly, at 1 none is, and patches go anywhere.
      */
     float least_regularity;
     /** 1, the default, shows every lamp as one piece; with 0 seams may cut lamps. */
     uint32_t whole_lamps;
     /**
-     * Where the pattern begins, in texels right of and below the texture's corner, each in [-1e6, 1e6]; default 0. Lights without
-     * a lattice begin nowhere: of these it shifts lamps of a texture that is tileable, and must be 0 in others.
+     * Where the pattern begins, in texels right of and below the texture's corner, each in [-1e6, 1e6]; default 0.
+     * Lights without a lattice begin nowhere: of these it shifts lamps of a texture that is tileable, and must be 0
+     * in others.
      */
     double offset[2];
     /**
-     * Channel value from which the photo is clipped, in [0, 1]; default 0.95. Lamps it shows so get the colour of their rims,
-     * as dark as the clipped channels allow. With 0 nothing is taken for clipped.
+     * Channel value from which the photo is clipped, in [0, 1]; default 0.95. Lamps it shows so get the colour of
+     * their rims, as dark as the clipped channels allow. With 0 nothing is taken for clipped.
      */
     float clip_level;
     /** With 1 every lamp shines evenly, in its mean colour; default 0: as in the photo. */
     uint32_t even_lamps;
     /**
-     * With 1 the texture may be repeated: what leaves it on one side comes in on the other, and a lattice is stretched, by less
-     * than half a period over the whole, to fit. Needs whole_lamps. Default 0.
+     * With 1 the texture may be repeated: what leaves it on one side comes in on the other, and a lattice is
+     * stretched, by less than half a period over the whole, to fit. Needs whole_lamps. Default 0.
      */
     uint32_t tileable;
     /**
-     * With 1 a lattice lies evenly between the sides of the texture, shifted by offset from there: a lamp or the middle between
-     * two in its middle, so that the border cuts as few lamps as it can. Default 0.
+     * With 1 a lattice lies evenly between the sides of the texture, shifted by offset from there: a lamp or the
+     * middle between two in its middle, so that the border cuts as few lamps as it can. Default 0.
      */
     uint32_t centred;
     /**
@@ -1829,6 +1833,19 @@ typedef struct luxfer_emission_params {
     uint32_t candidates;
     /** Must be 0. */
     uint32_t reserved;
+    /** How the lights go on: a LUXFER_LAW_ value other than LUXFER_LAW_COPY; default LUXFER_LAW_BEST. */
+    luxfer_emission_law law;
+    /**
+     * With 1, the default, lamps of a kind have one size and an outline that is exact at any resolution, and lie at
+     * the sites of their lattice. Needs the photo and whole_lamps. With 0 each lamp is shown with the outline of the
+     * mask.
+     */
+    uint32_t clean_lamps;
+    /**
+     * Magnification of the photo up to which the exemplar is used, against its sharpest pixel and in length, in [1,
+     * 1e6]: what is magnified more counts as not shown. Default 0: all of it is used.
+     */
+    double max_magnification;
 } luxfer_emission_params;
 
 /** An image of the emission: a LUXFER_EMISSION_ value. */
@@ -1841,25 +1858,41 @@ typedef struct luxfer_emission_report {
     /** Number of luminaires; see luxfer_emission_get_luminaire. */
     uint32_t luminaires;
     /**
-     * The largest relative difference between texture and exemplar in the share that is lit, the area of whole lamps, and the
-     * distance from each to the nearest other. It weighs as much as exemplar_lamps. NaN of a plan, which is no texture yet.
+     * The largest relative difference between texture and exemplar in the share that is lit, the area of whole lamps,
+     * and the distance from each to the nearest other. It weighs as much as exemplar_lamps. NaN of a plan, which is
+     * no texture yet.
      */
     double error;
     /**
-     * How regular the lights are, in [0, 1]: correlation with themselves shifted by the lattice that was found, 0 without.
+     * How regular the lights are, in [0, 1]: correlation with themselves shifted by the lattice that was found, 0
+     * without.
      */
     double regularity;
     /**
-     * Number of lamps that the exemplars show whole. Fewer than six tell little about a design: what the border cuts off is a large
-     * part of what there is, and without a whole lamp the texture shows the cut ones.
+     * Number of lamps that the exemplars show whole. Fewer than six tell little about a design: what the border cuts
+     * off is a large part of what there is, and without a whole lamp the texture shows the cut ones.
      */
     uint32_t exemplar_lamps;
     /**
-     * By how much the exemplar's own statistics are off, as far as can be told: the root mean square of the same difference between
-     * parts of the texture as large as the exemplar, and the whole. An error of up to twice this says nothing against the texture.
-     * 0 where the texture shows nothing else than the exemplar does, of blended exemplars, and of a plan.
+     * By how much the exemplar's own statistics are off, as far as can be told: the root mean square of the same
+     * difference between parts of the texture as large as the exemplar, and the whole. An error of up to twice this
+     * says nothing against the texture. 0 where the texture shows nothing else than the exemplar does, of blended
+     * exemplars, and of a plan.
      */
     float sampling_error;
+    /** How the lights go on, and the law that would have been next best: LUXFER_LAW_ values. */
+    luxfer_emission_law law;
+    luxfer_emission_law runner_up;
+    /**
+     * How well the law predicts the lamps of the photo from each other, in [0, 1], each weighed by its photo pixels;
+     * NaN where too few of the lights are whole lamps to tell.
+     */
+    double law_score;
+    /**
+     * By how much that exceeds the score of the runner-up; below 0 where the law was kept though another scores
+     * slightly better.
+     */
+    double margin;
 } luxfer_emission_report;
 
 /** One lamp of the texture. Set struct_size before the call. */
@@ -1881,7 +1914,8 @@ typedef struct luxfer_luminaire {
     /** Mean linear colour, relative to the photo's white. */
     float colour[3];
     /**
-     * Number of its kind, from 1, those with most lamps first: lamps of about the same size and shape. 0 if the border cuts it.
+     * Number of its kind, from 1, those with most lamps first: lamps of about the same size and shape. 0 if the
+     * border cuts it.
      */
     uint32_t kind;
 } luxfer_luminaire;
@@ -1900,8 +1934,30 @@ typedef struct luxfer_luminaire {
 /** The same of its result. */
 #define LUXFER_EMISSION_METADATA 3
 
+/** The law that predicts the lamps of the photo best: that of their correlation, unless another is clearly better. */
+#define LUXFER_LAW_BEST 0
+
+/** The law that the correlation of the lights tells, by least_regularity. */
+#define LUXFER_LAW_CORRELATION 1
+
+/** A lattice of two periods. */
+#define LUXFER_LAW_LATTICE 2
+
+/** A row of one period; the extent of the exemplar serves as the other. */
+#define LUXFER_LAW_ROW 3
+
+/** The exemplar repeats as a whole. */
+#define LUXFER_LAW_WHOLE 4
+
+/** Patches go anywhere. */
+#define LUXFER_LAW_FREE 5
+
+/** Of results only: the texture is a part of the exemplar, or was given. */
+#define LUXFER_LAW_COPY 6
+
 /**
- * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+ * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is
+ * wrong.
  */
 luxfer_status luxfer_emission_params_init(luxfer_emission_params *params,
                                           size_t size);
@@ -1910,9 +1966,9 @@ luxfer_status luxfer_emission_params_init(luxfer_emission_params *params,
 luxfer_status luxfer_emission_create(luxfer_context *context, luxfer_emission **emission);
 
 /**
- * Sets the exemplar, three images of one size: the unwarped photo (linear RGB), the unwarped confidence of the lights (1
- * channel, in [0, 1]) and where both are valid (1 channel, 1 or 0). Further ones are added by luxfer_emission_add_style. Any
- * thread.
+ * Sets the exemplar, three images of one size: the unwarped photo (linear RGB), the unwarped confidence of the lights
+ * (1 channel, in [0, 1]) and where both are valid (1 channel, 1 or 0). Further ones are added by
+ * luxfer_emission_add_style. Any thread.
  */
 luxfer_status luxfer_emission_set_exemplar(luxfer_emission *emission,
                                            luxfer_image *unwarped,
@@ -1928,10 +1984,10 @@ luxfer_status luxfer_emission_set_photo(luxfer_emission *emission,
                                         const double *to_photo);
 
 /**
- * Starts a job that makes the texture as a whole; luxfer_emission_start_plan does without its memory. params may be NULL for
- * the defaults. The caller releases *job. Any thread.
- * LUXFER_INVALID_OPERATION if the exemplar is missing or a job runs already. The job may end with LUXFER_DEGENERATE if
- * there are no lights in the exemplar, LUXFER_INVALID_ARGUMENT if sizes differ or a setting is out of range.
+ * Starts a job that makes the texture as a whole; luxfer_emission_start_plan does without its memory. params may be
+ * NULL for the defaults. The caller releases *job. Any thread.
+ * LUXFER_INVALID_OPERATION if the exemplar is missing or a job runs already. The job may end with LUXFER_DEGENERATE
+ * if there are no lights in the exemplar, LUXFER_INVALID_ARGUMENT if sizes differ or a setting is out of range.
  */
 luxfer_status luxfer_emission_start(luxfer_emission *emission,
                                     const luxfer_emission_params *params,
@@ -1953,8 +2009,8 @@ luxfer_status luxfer_emission_get_report(luxfer_emission *emission,
                                          luxfer_emission_report *report);
 
 /**
- * Describes a luminaire of the texture. Of a plan, which has no texel yet, it is as the exemplar shows it, cut where the texture
- * ends; lights that run through their exemplar are as the texture shows them. Any thread.
+ * Describes a luminaire of the texture. Of a plan, which has no texel yet, it is as the exemplar shows it, cut where
+ * the texture ends; lights that run through their exemplar are as the texture shows them. Any thread.
  * LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such luminaire.
  */
 luxfer_status luxfer_emission_get_luminaire(luxfer_emission *emission,
@@ -1964,10 +2020,11 @@ luxfer_status luxfer_emission_get_luminaire(luxfer_emission *emission,
 /**
  * Tells a corner of a luminaire's outline, in texels. Any thread.
  *
- * The outline lies where half of a texel would be light, finer than texels where the confidence of the lights is: within a quarter
- * of a texel, or of an unwarped pixel where that is larger; corners of the lamp within 0.71 of one. Of lamps up to two texels wide,
- * of a mask that is all or nothing and of lights of a plan that follow its patches it follows the sides of texels.
- * LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such luminaire or corner.
+ * The outline lies where half of a texel would be light, finer than texels where the confidence of the lights is:
+ * within a quarter of a texel, or of an unwarped pixel where that is larger; corners of the lamp within 0.71 of one.
+ * Of lamps up to two texels wide, of a mask that is all or nothing and of lights of a plan that follow its patches it
+ * follows the sides of texels. LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such
+ * luminaire or corner.
  */
 luxfer_status luxfer_emission_get_corner(luxfer_emission *emission,
                                          uint32_t index,

@@ -134,9 +134,9 @@ fn make(mut composition: Composition, input: &Input, styles: &[Style], params: &
             Continuation::Tile(_) => [Some(f64::INFINITY); 2],
             other => other.periods(),
         };
-        // A texture that shows the photo as it is shows its far part too.
-        let weighed = !matches!(layer.continuation, Continuation::Tile(_) | Continuation::Copy);
-        let own = layer.exemplar.statistics(input.unwarped, periods, weighed && layer.is_clean());
+        let own = layer.exemplar.statistics(input.unwarped, periods);
+        // Lamps that are shown by their designs have lost their bloom.
+        let own = if layer.is_clean() { own.with_area(layer.designs.area_ratio(&layer.exemplar)) } else { own };
         (own.scaled(1.0 / layer.scale), composition.weights.mean(k))
     });
     let expected = Statistics::mixed(parts);
@@ -178,7 +178,7 @@ fn statistics_of(texture: &Image, components: &Components, periods: [Option<f64>
     let inside = |c: &Component| c.min.iter().all(|&low| low > 0) && c.max[0] + 1 < width && c.max[1] + 1 < height;
     let whole: Vec<bool> = components.list.iter().map(inside).collect();
     let colour = |i: usize| Some(Vec3::from_slice(&texture.data[3 * i..]));
-    Statistics::of(&Pattern { width, height, components, whole: &whole, periods, to_photo: None, colour })
+    Statistics::of(&Pattern { width, height, components, whole: &whole, periods, colour })
 }
 
 /// The exemplar's metadata as the patch_map shows them; where it shows nothing, nothing is near.

@@ -237,6 +237,26 @@ class SegmentImage(IntEnum):
     helps; 1 channel."""
 
 
+class EmissionLaw(IntEnum):
+    """How the lights of an exemplar go on."""
+
+    BEST = 0
+    """The law that predicts the lamps of the photo best: that of their correlation, unless another is clearly
+    better."""
+    CORRELATION = 1
+    """The law that the correlation of the lights tells, by least_regularity."""
+    LATTICE = 2
+    """A lattice of two periods."""
+    ROW = 3
+    """A row of one period; the extent of the exemplar serves as the other."""
+    WHOLE = 4
+    """The exemplar repeats as a whole."""
+    FREE = 5
+    """Patches go anywhere."""
+    COPY = 6
+    """Of results only: the texture is a part of the exemplar, or was given."""
+
+
 class EmissionImage(IntEnum):
     """An image of the emission."""
 
@@ -1139,6 +1159,15 @@ class EmissionParams(TypedDict, total=False):
     candidates: int
     """Patches that are compared for each block, at most, where none is held to a lattice, in [1, 65536];
     default 192."""
+    law: EmissionLaw | str | int
+    """How the lights go on: EmissionLaw other than EmissionLaw.COPY; default EmissionLaw.BEST."""
+    clean_lamps: int
+    """With 1, the default, lamps of a kind have one size and an outline that is exact at any resolution, and
+    lie at the sites of their lattice. Needs the photo and whole_lamps. With 0 each lamp is shown with the
+    outline of the mask."""
+    max_magnification: float
+    """Magnification of the photo up to which the exemplar is used, against its sharpest pixel and in length, in
+    [1, 1e6]: what is magnified more counts as not shown. Default 0: all of it is used."""
 
 
 @dataclass(frozen=True)
@@ -1162,6 +1191,15 @@ class EmissionReport:
     same difference between parts of the texture as large as the exemplar, and the whole. An error of up to
     twice this says nothing against the texture. 0 where the texture shows nothing else than the exemplar does,
     of blended exemplars, and of a plan."""
+    law: EmissionLaw
+    """How the lights go on, and the law that would have been next best: EmissionLaw."""
+    runner_up: EmissionLaw
+    law_score: float
+    """How well the law predicts the lamps of the photo from each other, in [0, 1], each weighed by its photo
+    pixels; NaN where too few of the lights are whole lamps to tell."""
+    margin: float
+    """By how much that exceeds the score of the runner-up; below 0 where the law was kept though another scores
+    slightly better."""
 
 
 @dataclass(frozen=True)

@@ -48,8 +48,7 @@ pub fn error(
         let roles = roles::classify(&components, &shown, width, height);
         let pieces: Vec<bool> = roles.iter().map(|role| role.is_piece()).collect();
         let colour = |i: usize| shown[i].then(|| glam::Vec3::from_slice(&texture.data[3 * at(i)..]));
-        let pattern =
-            Pattern { width, height, components: &components, whole: &pieces, periods, to_photo: None, colour };
+        let pattern = Pattern { width, height, components: &components, whole: &pieces, periods, colour };
         Ok(Statistics::of(&pattern).difference(whole))
     })?;
     let squares = parts.into_iter().map(|part| part.map(|off| off * off)).sum::<Result<f64>>()?;

@@ -7,8 +7,6 @@
 //! (Harris 1978).
 
 use crate::emission::exemplar::components::Components;
-use crate::emission::exemplar::foreshortening::LocalMap;
-use crate::geometry::Homography;
 use crate::image::colour::luminance;
 use glam::{DMat2, DVec2, Vec3};
 use std::f64::consts::{PI, TAU};
@@ -37,16 +35,13 @@ pub struct Pattern<'a, C> {
     pub whole: &'a [bool],
     /// Period along x and y, if there is one; infinite where the pattern as a whole is the period.
     pub periods: [Option<f64>; 2],
-    /// Where a photo shows the pattern: the map into it. Each part then weighs as many pixels of the photo as show it.
-    pub to_photo: Option<Homography>,
     /// Linear colour of a pixel; nothing where the pattern is not shown.
     pub colour: C,
 }
 
 impl Statistics {
     pub fn of<C: Fn(usize) -> Option<Vec3>>(pattern: &Pattern<C>) -> Self {
-        let Pattern { width, height, components, whole, periods, to_photo, colour } = pattern;
-        let density = |x: f64, y: f64| to_photo.map_or(1.0, |h| LocalMap::density(&h, DVec2::new(x, y)));
+        let Pattern { width, height, components, whole, periods, colour } = pattern;
         let columns: Vec<f64> = (0..*width).map(|x| weight(x as f64 + 0.5, *width, periods[0])).collect();
 
         // Of pixels.
@@ -55,7 +50,6 @@ impl Statistics {
             let row = weight(y as f64 + 0.5, *height, periods[1]);
             for (x, column) in columns.iter().enumerate() {
                 let Some(colour) = colour(y * width + x) else { continue };
-                let row = row * density(x as f64 + 0.5, y as f64 + 0.5);
                 all += row * column;
                 if components.labels[y * width + x] != 0 {
                     lit += row * column;
@@ -67,8 +61,7 @@ impl Statistics {
         // Of lamps.
         let lamps: Vec<(DVec2, f64)> =
             components.list.iter().zip(*whole).filter(|(_, w)| **w).map(|(c, _)| (c.centre, c.area as f64)).collect();
-        let place =
-            |at: DVec2| weight(at.x, *width, periods[0]) * weight(at.y, *height, periods[1]) * density(at.x, at.y);
+        let place = |at: DVec2| weight(at.x, *width, periods[0]) * weight(at.y, *height, periods[1]);
         let mean = |of: &dyn Fn(usize) -> bool, value: &dyn Fn(usize) -> f64| {
             let counted = || (0..lamps.len()).filter(|i| of(*i));
             let weights: f64 = counted().map(|i| place(lamps[i].0)).sum();
@@ -112,6 +105,11 @@ impl Statistics {
     /// The same where a pixel is this many times as long.
     pub fn scaled(self, scale: f64) -> Self {
         Self { area: self.area * scale * scale, spacing: self.spacing * scale, ..self }
+    }
+
+    /// The statistics of the same lamps with this many times their area.
+    pub fn with_area(self, ratio: f64) -> Self {
+        Self { lit: (self.lit * ratio).min(1.0), area: self.area * ratio, ..self }
     }
 
     /// The largest relative difference from another pattern, of lamps only in what both have. Luminance is left out: a
@@ -195,15 +193,7 @@ mod tests {
             .map(|c| c.min.iter().all(|&v| v > 0) && c.max[0] + 1 < width && c.max[1] + 1 < height)
             .collect();
         let colour = |i: usize| Some(if lit(i) { Vec3::splat(2.0) } else { Vec3::ZERO });
-        Statistics::of(&Pattern {
-            width,
-            height,
-            components: &components,
-            whole: &whole,
-            periods,
-            to_photo: None,
-            colour,
-        })
+        Statistics::of(&Pattern { width, height, components: &components, whole: &whole, periods, colour })
     }
 
     #[test]

@@ -2,7 +2,6 @@
 
 use super::window::{self, Window};
 use crate::emission::exemplar::Exemplar;
-use crate::emission::exemplar::evidence::Evidence;
 use crate::emission::exemplar::roles::Role;
 use crate::emission::lamps::design::Designs;
 use crate::emission::lamps::instance::Instance;
@@ -241,7 +240,7 @@ impl<'a> Setting<'a> {
         if designs.kinds.is_empty() || ends {
             return shown;
         }
-        match Sites::new(exemplar, &Evidence::of(exemplar, Role::is_whole), continuation) {
+        match Sites::new(exemplar, &exemplar.evidence(Role::is_whole), continuation) {
             Some(sites) => {
                 let area = (offset, params.size());
                 lattice_fill::place(exemplar, designs, &sites, continuation, shown, area, params.seed)

@@ -1,9 +1,7 @@
 //! Lamps as evidence: where they are and how large, each weighed by the photo pixels that show it.
 
-use super::Exemplar;
 use super::components::Component;
 use super::foreshortening::LocalMap;
-use super::roles::Role;
 use crate::geometry::Homography;
 use glam::DVec2;
 
@@ -29,15 +27,6 @@ impl Evidence {
         let size = DVec2::new(lamp.size()[0] as f64, lamp.size()[1] as f64);
         let blur = LocalMap::new(to_photo, lamp.centre).photo_pixel();
         Self { component, centre: lamp.centre, size, weight, blur }
-    }
-
-    /// The lamps of some roles, those that the photo shows best first.
-    pub fn of(exemplar: &Exemplar, has_role: impl Fn(Role) -> bool) -> Vec<Self> {
-        let lamps = exemplar.components.list.iter().enumerate().filter(|(k, _)| has_role(exemplar.roles[*k]));
-        let mut all: Vec<Self> =
-            lamps.map(|(k, lamp)| Self::new(k, lamp, exemplar.photo_area[k], exemplar.to_photo)).collect();
-        all.sort_by(|a, b| b.weight.total_cmp(&a.weight));
-        all
     }
 
     /// Groups of lamps that are alike but for blur, around the lamp that the photo shows best.

@@ -25,12 +25,6 @@ impl LocalMap {
         self.jacobian.x_axis.perp_dot(self.jacobian.y_axis).abs()
     }
 
-    /// Photo pixels per unwarped pixel at a point, in area, to a factor that is the same everywhere: the determinant
-    /// of the homography over the cube of its denominator.
-    pub fn density(to_photo: &Homography, at: DVec2) -> f64 {
-        denominator(to_photo, at).powi(-3)
-    }
-
     /// Unwarped pixels per photo pixel.
     pub fn inverse(&self) -> DMat2 {
         self.jacobian.inverse()

@@ -15,6 +15,7 @@ use crate::geometry::Homography;
 use crate::image::{Image, try_collect, try_vec};
 use crate::job::Job;
 use components::{Component, Components};
+use evidence::Evidence;
 use foreshortening::{LocalMap, MagnificationLimit};
 use roles::Role;
 use working::{Sources, Working};
@@ -82,23 +83,12 @@ impl Exemplar {
     }
 
     /// The statistics of the pattern of `unwarped`, in its pixels; `periods` as in [`Pattern`].
-    ///
-    /// Where it is `weighed`, each part weighs as many pixels of the photo as show it.
-    pub fn statistics(&self, unwarped: &Image, periods: [Option<f64>; 2], weighed: bool) -> Statistics {
+    pub fn statistics(&self, unwarped: &Image, periods: [Option<f64>; 2]) -> Statistics {
         // Lamps are what the texture may show as such.
         let Self { width, height, components, .. } = self;
-        let to_photo = self.to_photo.filter(|_| weighed);
         let pieces: Vec<bool> = self.roles.iter().map(|role| role.is_piece()).collect();
         let colour = |i: usize| self.shown[i].then(|| unwarped.rgb(i % width, i / width));
-        Statistics::of(&Pattern {
-            width: *width,
-            height: *height,
-            components,
-            whole: &pieces,
-            periods,
-            to_photo: self.to_photo,
-            colour,
-        })
+        Statistics::of(&Pattern { width: *width, height: *height, components, whole: &pieces, periods, colour })
     }
 
     /// How much of an unwarped pixel is light, as far as `light`, the confidence, tells: of components, and of what
@@ -114,6 +104,15 @@ impl Exemplar {
     /// The whole lamps.
     pub fn lamps(&self) -> impl Iterator<Item = &Component> {
         self.components.list.iter().zip(&self.roles).filter(|(_, role)| role.is_whole()).map(|(c, _)| c)
+    }
+
+    /// The lamps of some roles as evidence, those that the photo shows best first.
+    pub fn evidence(&self, has_role: impl Fn(Role) -> bool) -> Vec<Evidence> {
+        let lamps = self.components.list.iter().enumerate().filter(|(k, _)| has_role(self.roles[*k]));
+        let mut all: Vec<Evidence> =
+            lamps.map(|(k, lamp)| Evidence::new(k, lamp, self.photo_area[k], self.to_photo)).collect();
+        all.sort_by(|a, b| b.weight.total_cmp(&a.weight));
+        all
     }
 
     /// The components that move as one piece, and their indices.

@@ -27,6 +27,9 @@ const ROUNDER: f64 = 0.03;
 const MAX_SMEARED: f64 = 160.0;
 const SMEAR: f64 = 1.25;
 const ALONG: f64 = 0.9;
+/// Length of the mean of doubled directions, from which lamps are long the same way: 1 where all are. Lamps that are
+/// long each along its own blur are discs, whatever their size. [judged on 20 photos]
+const SAME_WAY: f64 = 0.93;
 /// Share of lamp and shape together that they have in common, at least. [judged on 20 photos]
 const MIN_AGREEMENT: f64 = 0.72;
 /// Angle in radians up to which lamps follow the axes of the plane. [judged on 20 photos]
@@ -87,7 +90,7 @@ impl Designs {
     /// Finds the kinds of the whole lamps, whose outlines are given, and the design of each.
     pub fn find(exemplar: &Exemplar, outlines: &[Luminaire]) -> Self {
         let mut designs = Self { kinds: Vec::new(), lamps: vec![None; outlines.len()] };
-        for kind in Evidence::kinds(&Evidence::of(exemplar, Role::is_whole)) {
+        for kind in Evidence::kinds(&exemplar.evidence(Role::is_whole)) {
             let members: Vec<Member> = kind.iter().filter_map(|lamp| Member::new(lamp, exemplar, outlines)).collect();
             if let Some((design, fitted)) = fit(&members, designs.kinds.len()) {
                 designs.kinds.push(design);
@@ -95,6 +98,18 @@ impl Designs {
             }
         }
         designs
+    }
+
+    /// Area of the designs over the area of their lamps in the unwarped photo.
+    pub fn area_ratio(&self, exemplar: &Exemplar) -> f64 {
+        let (mut designed, mut shown) = (0.0, 0.0);
+        for (k, lamp) in exemplar.components.list.iter().enumerate() {
+            if let Some((design, _)) = self.of(k) {
+                designed += design.area();
+                shown += lamp.area as f64;
+            }
+        }
+        if shown > 0.0 { designed / shown } else { 1.0 }
     }
 
     /// The design of a component, and how it shows it.
@@ -203,7 +218,12 @@ fn smeared_disc(members: &[&Member]) -> Option<f64> {
     let total: f64 = members.iter().map(|m| m.weight).sum();
     let mean_area = members.iter().map(|m| m.weight * m.weight).sum::<f64>() / total;
     let smeared: f64 = members.iter().filter(|m| m.is_smeared()).map(|m| m.weight).sum();
-    if mean_area > MAX_SMEARED || smeared < 0.5 * total {
+    let turn = |m: &&Member| {
+        let [[_, x], [_, y]] = principal(m.moments);
+        DVec2::from_angle(2.0 * y.atan2(x)) * m.weight
+    };
+    let common_turn = members.iter().map(|m| turn(m)).sum::<DVec2>().length() / total;
+    if smeared < 0.5 * total || (mean_area > MAX_SMEARED && common_turn > SAME_WAY) {
         return None;
     }
     common_side(members.iter().map(|m| {

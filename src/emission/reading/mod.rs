@@ -134,8 +134,8 @@ impl Reading {
     /// Compares the law that the settings ask for with others, and keeps the best.
     fn compare(&mut self, whole: &Correlated, job: Job) -> Result<()> {
         let exemplar = &self.exemplar;
-        let evidence = Evidence::of(exemplar, Role::is_whole);
-        let parts = Evidence::of(exemplar, |role| matches!(role, Role::Cut | Role::Partial));
+        let evidence = exemplar.evidence(Role::is_whole);
+        let parts = exemplar.evidence(|role| matches!(role, Role::Cut | Role::Partial));
         let seen: f64 = evidence.iter().map(|l| l.weight).sum();
         let through = exemplar.roles.iter().zip(&exemplar.photo_area).filter(|(role, _)| **role == Role::Through);
         let endless: f64 = through.map(|(_, area)| area).sum();
@@ -217,8 +217,8 @@ impl Reading {
         if is_asked(&self.continuation) {
             return Ok(());
         }
-        let evidence = Evidence::of(&self.exemplar, Role::is_whole);
-        let parts = Evidence::of(&self.exemplar, |role| matches!(role, Role::Cut | Role::Partial));
+        let evidence = self.exemplar.evidence(Role::is_whole);
+        let parts = self.exemplar.evidence(|role| matches!(role, Role::Cut | Role::Partial));
         let mut proposals = self.propose(whole, job)?;
         proposals.retain(|p| is_asked(&p.continuation));
         proposals.iter_mut().for_each(|p| p.score = score(&self.exemplar, (&evidence, &parts), p.continuation));
