@@ -18,9 +18,9 @@ use crate::geometry::polygon;
 use glam::{DMat2, DVec2};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Longest ellipse, in its width: lamps are discs. And by how much an ellipse must agree better than a rectangle,
-/// whose corners blur rounds. [judged on 20 photos]
-const MAX_ELLIPSE: f64 = 1.3;
+/// Longest ellipse, in its width: blur makes discs long, but longer shapes are tubes with round ends. And by how much an
+/// ellipse must agree better than a rectangle, whose corners blur rounds. [judged on 20 photos]
+const MAX_ELLIPSE: f64 = 2.5;
 const ROUNDER: f64 = 0.03;
 /// Photo pixels up to which blur may make the shape of a lamp; ratio of axes from which it is long; and the cosine of
 /// the angle to the blur's long axis. [judged on 20 photos]
