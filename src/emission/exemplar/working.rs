@@ -2,9 +2,16 @@
 
 use super::components::Components;
 use crate::error::Result;
+use crate::image::colour::luminance;
 use crate::image::{Image, pyramid, try_collect};
 use crate::job::Job;
 use glam::DVec2;
+
+/// A lamp is compared within, and surroundings up to, this share of its half box; and the share of light up to which a
+/// pixel is one of the surroundings. [judged on 20 photos]
+const INNER: f64 = 0.6;
+const OUTER: f64 = 2.0;
+const UNLIT: f32 = 0.05;
 
 /// The exemplar at the size the synthesis works at.
 pub struct Working {
@@ -24,6 +31,8 @@ pub struct Working {
     /// Shown, cut lamps and all, and the share that is light: what the pattern is read from.
     pub shown: Vec<bool>,
     pub shown_coverage: Vec<f32>,
+    /// Mean luminance of what is shown, lights and all.
+    pub luminance: Vec<f32>,
 }
 
 /// What the working size is made from.
@@ -44,16 +53,17 @@ impl Working {
         let pitch = DVec2::new(image.width as f64 / width as f64, image.height as f64 / height as f64);
 
         // Average colour, confidence, light and validity together; what is not usable counts for nothing.
-        const CHANNELS: usize = 8;
+        const CHANNELS: usize = 9;
         let mut full = Image::new(image.width, image.height, CHANNELS)?;
         let mut brightest = 0f32;
         for (i, pixel) in full.data.chunks_exact_mut(CHANNELS).enumerate().filter(|(i, _)| shown[*i]) {
             pixel[6] = 1.0;
             pixel[7] = f32::from(components.labels[i] != 0);
+            let colour = image.rgb(i % image.width, i / image.width);
+            pixel[8] = luminance(colour);
             if !usable[i] {
                 continue;
             }
-            let colour = image.rgb(i % image.width, i / image.width);
             if components.labels[i] != 0 {
                 pixel[..3].copy_from_slice(&colour.to_array());
                 brightest = brightest.max(colour.max_element());
@@ -79,12 +89,36 @@ impl Working {
             return Self::new(sources, longest, job);
         }
         let (shown, shown_coverage) = (all(6)?, try_collect(channel(7).copied())?);
-        Ok(Self { width, height, pitch, colour, confidence, coverage, usable, shown, shown_coverage })
+        let luminance = try_collect(channel(8).copied())?;
+        Ok(Self { width, height, pitch, colour, confidence, coverage, usable, shown, shown_coverage, luminance })
     }
 
     /// Whether half of a pixel is light.
     pub fn is_lit(&self, pixel: usize) -> bool {
         self.coverage[pixel] >= 0.5
+    }
+
+    /// By how much a box in unwarped pixels, about a centre, is brighter than the unlit surroundings; `None` where
+    /// they are not shown.
+    pub fn contrast(&self, centre: DVec2, half: DVec2) -> Option<f64> {
+        let (inner, outer) = (half * INNER, half * OUTER + self.pitch);
+        let mut sums = [(0.0, 0usize); 2];
+        let low = ((centre - outer) / self.pitch).floor();
+        let high = ((centre + outer) / self.pitch).ceil();
+        for y in low.y as i32..high.y as i32 {
+            for x in low.x as i32..high.x as i32 {
+                let Some(i) = self.index(x, y).filter(|&i| self.shown[i]) else { continue };
+                let off = ((DVec2::new(f64::from(x), f64::from(y)) + 0.5) * self.pitch - centre).abs();
+                let is_inside = off.cmple(inner.max(self.pitch / 2.0)).all();
+                let is_around = off.cmpgt(half + self.pitch).any() && self.shown_coverage[i] < UNLIT;
+                if is_inside || is_around {
+                    let (sum, count) = &mut sums[usize::from(!is_inside)];
+                    (*sum, *count) = (*sum + f64::from(self.luminance[i]), *count + 1);
+                }
+            }
+        }
+        let [(inside, n), (around, m)] = sums;
+        (n > 0 && m > 0).then(|| inside / n as f64 - around / m as f64)
     }
 
     /// The index of a pixel, if there is one.

@@ -18,8 +18,8 @@ use crate::geometry::polygon;
 use glam::{DMat2, DVec2};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Longest ellipse, in its width: blur makes discs long, but longer shapes are tubes with round ends. And by how much an
-/// ellipse must agree better than a rectangle, whose corners blur rounds. [judged on 20 photos]
+/// Longest ellipse, in its width: blur makes discs long, but longer shapes are tubes with round ends. And by how much
+/// an ellipse must agree better than a rectangle, whose corners blur rounds. [judged on 20 photos]
 const MAX_ELLIPSE: f64 = 2.5;
 const ROUNDER: f64 = 0.03;
 /// Photo pixels up to which blur may make the shape of a lamp; ratio of axes from which it is long; and the cosine of
@@ -32,6 +32,8 @@ const ALONG: f64 = 0.9;
 const SAME_WAY: f64 = 0.93;
 /// Share of lamp and shape together that they have in common, at least. [judged on 20 photos]
 const MIN_AGREEMENT: f64 = 0.72;
+/// Share of a rectangle's other side, about its middle, in which a side is measured. [judged on 20 photos]
+const MIDDLE: f64 = 0.6;
 /// Angle in radians up to which lamps follow the axes of the plane. [judged on 20 photos]
 const ALIGNED: f64 = 0.07;
 /// Standard deviation of a side, and of the bloom at each edge, in pixels of the photo. [judged on 20 photos]
@@ -168,6 +170,21 @@ impl Member {
         DVec2::new(along(axis), along(axis.perp()))
     }
 
+    /// Sides along and across an axis, if it is of a shape. A rectangle's are measured in the middle of the other:
+    /// blur rounds its corners.
+    fn sides(&self, axis: DVec2, shape: Shape) -> DVec2 {
+        let sides = self.deviations(axis) * shape.sides_per_deviation();
+        if shape == Shape::Ellipse {
+            return sides;
+        }
+        let width = |across: DVec2, length: f64| {
+            let (at, half) = (across.dot(self.centre), MIDDLE * length / 2.0);
+            let above = polygon::clip(&self.outline, across, at + half);
+            polygon::area(&polygon::clip(&above, -across, half - at)).abs() / (2.0 * half).max(f64::MIN_POSITIVE)
+        };
+        DVec2::new(width(axis.perp(), sides.y), width(axis, sides.x))
+    }
+
     /// Unwarped pixels along and across an axis that a pixel of the photo covers.
     fn blur_along(&self, axis: DVec2) -> DVec2 {
         let along = |a: DVec2| (a.abs() * self.blur).length();
@@ -185,11 +202,11 @@ fn fit(members: &[Member], kind: usize) -> Option<(Design, Vec<(usize, Fitted)>)
     let axis = common_axis(&judges);
     let mean = |value: &dyn Fn(&Member) -> f64| judges.iter().map(|m| m.weight * value(m)).sum::<f64>() / total;
     let design = [Shape::Rectangle, Shape::Ellipse].map(|shape| {
-        let sides = judges.iter().map(|m| (m.deviations(axis) * shape.sides_per_deviation(), m.blur_along(axis)));
+        let sides = judges.iter().map(|m| (m.sides(axis, shape), m.blur_along(axis)));
         let side = |k: usize| common_side(sides.clone().map(|(size, blur)| (size[k], blur[k])));
         let design = Design { shape, size: DVec2::new(side(0)?, side(1)?), axis };
         let agreement = mean(&|m| {
-            let own = Design { size: m.deviations(axis) * shape.sides_per_deviation(), ..design };
+            let own = Design { size: m.sides(axis, shape), ..design };
             own.agreement(&m.outline, m.area, m.centre)
         });
         Some((design, agreement))
@@ -204,9 +221,9 @@ fn fit(members: &[Member], kind: usize) -> Option<(Design, Vec<(usize, Fitted)>)
     if let Some(diameter) = smeared_disc(&judges) {
         design = Design { shape: Shape::Ellipse, size: DVec2::splat(diameter), axis: DVec2::X };
     }
-    let (axis, factor) = (design.axis, design.shape.sides_per_deviation());
+    let Design { axis, shape, .. } = design;
     let fitted = |m: &Member| {
-        let (size, photo_pixel) = (m.deviations(axis) * factor, m.blur_along(axis));
+        let (size, photo_pixel) = (m.sides(axis, shape), m.blur_along(axis));
         (m.component, Fitted { kind, centre: m.centre, size, photo_pixel })
     };
     Some((design, members.iter().map(fitted).collect()))

@@ -91,5 +91,20 @@ pub fn repeat_of_row(exemplar: &Exemplar, period: DVec2) -> Option<DVec2> {
     let (start, end) = span([pixels(x0, pitch_x), pixels(y0, pitch_y), pixels(x1, pitch_x), pixels(y1, pitch_y)]);
     let gap = period.length() - longest;
     let times = ((end - start) / period.length()).round();
-    (low - start > gap && end - high > gap && times >= 1.0).then(|| period * times)
+    let ends = low - start > gap && end - high > gap && ends_in_view(exemplar, period);
+    (ends && times >= 1.0).then(|| period * times)
+}
+
+/// Whether a photo shows the places beyond the first and the last lamp of a row: its plane is no rectangle. Without a photo
+/// all is in view.
+fn ends_in_view(exemplar: &Exemplar, period: DVec2) -> bool {
+    let is_shown = |p: DVec2| {
+        let inside = p.cmpge(DVec2::ZERO).all() && p.x < exemplar.width as f64 && p.y < exemplar.height as f64;
+        inside && exemplar.shown[p.y as usize * exemplar.width + p.x as usize]
+    };
+    let along = |p: &DVec2| period.dot(*p);
+    let first = exemplar.lamps().map(|l| l.centre).min_by(|a, b| along(a).total_cmp(&along(b)));
+    let last = exemplar.lamps().map(|l| l.centre).max_by(|a, b| along(a).total_cmp(&along(b)));
+    let both = first.zip(last).is_some_and(|(first, last)| is_shown(first - period) && is_shown(last + period));
+    exemplar.to_photo.is_none() || both
 }

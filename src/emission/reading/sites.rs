@@ -15,6 +15,10 @@ use glam::{DMat2, DVec2};
 
 /// Lamps of a site are no farther from each other than this share of the shorter period. [judged on 20 photos]
 const OFF_SITE: f64 = 0.12;
+/// Contrast against the surroundings, in that of the site's lamps, from which a place shines though no light is
+/// marked; and the lamps that are compared. [judged on 20 photos]
+const SHINES: f64 = 0.2;
+const MAX_COMPARED: usize = 5;
 /// Sites in view that are looked at. [bench emission:seconds]
 const MAX_SITES: usize = 20_000;
 /// Largest length of the period that is taken for none: nothing changes along it, in unwarped pixels. [rounding]
@@ -27,15 +31,18 @@ pub struct Site {
     pub at: DVec2,
     /// Its lamps, those that the photo shows best first.
     pub lamps: Vec<Evidence>,
-    /// Photo pixels of the lamps, and of the lamps that are missing at sites in full view.
+    /// Photo pixels of the lamps.
     pub shown: f64,
+    /// Photo pixels of lamps at sites in full view that are marked as none: that shine, and that do not.
+    pub unmarked: f64,
     pub missing: f64,
 }
 
 impl Site {
     /// Share of the sites in view that have a lamp, weighed by photo pixels.
     pub fn occupancy(&self) -> f64 {
-        self.shown / (self.shown + self.missing).max(f64::MIN_POSITIVE)
+        let seen = self.shown + self.unmarked;
+        seen / (seen + self.missing).max(f64::MIN_POSITIVE)
     }
 }
 
@@ -67,12 +74,18 @@ impl Sites {
                 let first = &site.lamps[0];
                 let slack = OFF_SITE * shortest + (lamp.blur + first.blur);
                 let off = sites.residual(lamp.centre - first.centre);
-                lamp.is_like(first) && off.abs().cmple(slack).all()
+                lamp.may_be_like(first) && off.abs().cmple(slack).all()
             };
             match sites.list.iter().position(is_here) {
                 Some(k) => sites.list[k].lamps.push(*lamp),
                 None => {
-                    sites.list.push(Site { at: lamp.centre, lamps: vec![*lamp], shown: 0.0, missing: 0.0 });
+                    sites.list.push(Site {
+                        at: lamp.centre,
+                        lamps: vec![*lamp],
+                        shown: 0.0,
+                        unmarked: 0.0,
+                        missing: 0.0,
+                    });
                 }
             }
         }
@@ -101,13 +114,14 @@ impl Sites {
         let shown: f64 = lamps.iter().map(|l| l.weight).sum();
         let off: DVec2 = lamps.iter().map(|l| self.residual(l.centre - first.centre) * l.weight).sum();
         let at = first.centre + off / shown.max(f64::MIN_POSITIVE);
-        let missing = self.missing(at, lamps, exemplar);
+        let (unmarked, missing) = self.missing(at, lamps, exemplar);
         let site = &mut self.list[k];
-        (site.at, site.shown, site.missing) = (at, shown, missing);
+        (site.at, site.shown, site.unmarked, site.missing) = (at, shown, unmarked, missing);
     }
 
-    /// Photo pixels of the lamps that are missing in full view.
-    fn missing(&self, at: DVec2, lamps: &[Evidence], exemplar: &Exemplar) -> f64 {
+    /// Photo pixels of the lamps that are not marked in full view: where the photo shines as lamps of the site do, and
+    /// where it does not.
+    fn missing(&self, at: DVec2, lamps: &[Evidence], exemplar: &Exemplar) -> (f64, f64) {
         let size = DVec2::new(exemplar.width as f64, exemplar.height as f64);
         let half = lamps[0].size / 2.0;
         let is_shown = |p: DVec2| {
@@ -125,11 +139,19 @@ impl Sites {
         };
         let steps = cells::between(self.to_cells, DVec2::ZERO - at, size - at);
         let along = steps.filter(|[_, j]| !self.is_row || *j == 0).take(MAX_SITES);
-        along
+        let empty = along
             .map(|[i, j]| at + self.basis[0] * i as f64 + self.basis[1] * j as f64)
-            .filter(|&p| corners.iter().all(|c| is_shown(p + *c)) && !is_taken(p))
-            .map(|p| 4.0 * half.element_product() * LocalMap::new(exemplar.to_photo, p).area())
-            .sum()
+            .filter(|&p| corners.iter().all(|c| is_shown(p + *c)) && !is_taken(p));
+        let contrast = |p: DVec2| exemplar.working.contrast(p, half);
+        let of_lamps = lamps.iter().take(MAX_COMPARED).filter_map(|l| contrast(l.centre));
+        let brightest = of_lamps.fold(0.0, f64::max);
+        let (mut unmarked, mut missing) = (0.0, 0.0);
+        for p in empty {
+            let pixels = 4.0 * half.element_product() * LocalMap::new(exemplar.to_photo, p).area();
+            let shines = brightest > 0.0 && contrast(p).is_some_and(|c| c >= SHINES * brightest);
+            if shines { unmarked += pixels } else { missing += pixels }
+        }
+        (unmarked, missing)
     }
 
     /// How well the lattice predicts the lamps, in [0, 1]: the share of the photo pixels of seen and predicted lamps
