@@ -1861,6 +1861,9 @@ luxfer_status luxfer_segment_release(luxfer_segment *segment);
 /** A synthesis of an emissive texture. See luxfer_emission_create. */
 typedef struct luxfer_emission luxfer_emission;
 
+/** How the lights of an exemplar go on: a LUXFER_LAW_ value. */
+typedef int32_t luxfer_emission_law;
+
 /** Settings of the emission. Fill them with luxfer_emission_params_init. */
 typedef struct luxfer_emission_params {
     /** sizeof(luxfer_emission_params), set by luxfer_emission_params_init. */
@@ -1916,6 +1919,19 @@ typedef struct luxfer_emission_params {
     uint32_t candidates;
     /** Must be 0. */
     uint32_t reserved;
+    /** How the lights go on: a LUXFER_LAW_ value other than LUXFER_LAW_COPY; default LUXFER_LAW_BEST. */
+    luxfer_emission_law law;
+    /**
+     * With 1, the default, lamps of a kind have one size and an outline that is exact at any resolution, and lie at
+     * the sites of their lattice. Needs the photo and whole_lamps. With 0 each lamp is shown with the outline of the
+     * mask.
+     */
+    uint32_t clean_lamps;
+    /**
+     * Magnification of the photo up to which the exemplar is used, against its sharpest pixel and in length, in [1,
+     * 1e6]: what is magnified more counts as not shown. Default 0: all of it is used.
+     */
+    double max_magnification;
 } luxfer_emission_params;
 
 /** An image of the emission: a LUXFER_EMISSION_ value. */
@@ -1949,6 +1965,19 @@ typedef struct luxfer_emission_report {
      * exemplars, and for a plan.
      */
     float sampling_error;
+    /** How the lights go on, and the law that would have been next best: LUXFER_LAW_ values. */
+    luxfer_emission_law law;
+    luxfer_emission_law runner_up;
+    /**
+     * How well the law predicts the lamps of the photo from each other, in [0, 1], each weighed by its photo pixels;
+     * NaN where too few of the lights are whole lamps to tell.
+     */
+    double law_score;
+    /**
+     * By how much that exceeds the score of the runner-up; below 0 where the law was kept though another scores
+     * slightly better.
+     */
+    double margin;
 } luxfer_emission_report;
 
 /** A lamp of the texture. Set struct_size before the call. */
@@ -1990,8 +2019,30 @@ typedef struct luxfer_luminaire {
 /** Metadata of the result, with these channels. */
 #define LUXFER_EMISSION_METADATA 3
 
+/** The law that predicts the lamps of the photo best: that of their correlation, unless another is clearly better. */
+#define LUXFER_LAW_BEST 0
+
+/** The law that the correlation of the lights tells, by least_regularity. */
+#define LUXFER_LAW_CORRELATION 1
+
+/** A lattice of two periods. */
+#define LUXFER_LAW_LATTICE 2
+
+/** A row of one period; the extent of the exemplar serves as the other. */
+#define LUXFER_LAW_ROW 3
+
+/** The exemplar repeats as a whole. */
+#define LUXFER_LAW_WHOLE 4
+
+/** Patches go anywhere. */
+#define LUXFER_LAW_FREE 5
+
+/** Of results only: the texture is a part of the exemplar, or was given. */
+#define LUXFER_LAW_COPY 6
+
 /**
- * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is wrong.
+ * Fills *params with the defaults; size is sizeof *params. LUXFER_INVALID_ARGUMENT if params is NULL or size is
+ * wrong.
  */
 luxfer_status luxfer_emission_params_init(luxfer_emission_params *params,
                                           size_t size);

@@ -362,8 +362,9 @@ layouts! {
         focal principal axes is_unwarped reserved to_photo corners corner_errors pixel_size aspect_confidence
         distortion distortion_error squareness squareness_errors;
     luxfer_emission_params: struct_size width height block scale working_side metadata_weight seed least_regularity
-        whole_lamps offset clip_level even_lamps tileable centred candidates reserved;
-    luxfer_emission_report: struct_size luminaires error regularity exemplar_lamps sampling_error;
+        whole_lamps offset clip_level even_lamps tileable centred candidates reserved law clean_lamps max_magnification;
+    luxfer_emission_report: struct_size luminaires error regularity exemplar_lamps sampling_error law runner_up
+        law_score margin;
     luxfer_luminaire: struct_size corners centre size orientation area flux_share colour kind;
     luxfer_requirements: struct_size scattering lights textures bounces brightest_material albedo
         flat_triangles;

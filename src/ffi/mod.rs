@@ -28,6 +28,7 @@ mod demo_photo;
 mod design;
 mod distribution;
 mod emission;
+mod emission_law;
 mod emission_tiles;
 mod false_colour;
 mod features;

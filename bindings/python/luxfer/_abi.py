@@ -95,6 +95,13 @@ LUXFER_EMISSION_TEXTURE = 0
 LUXFER_EMISSION_MASK = 1
 LUXFER_EMISSION_EXEMPLAR_METADATA = 2
 LUXFER_EMISSION_METADATA = 3
+LUXFER_LAW_BEST = 0
+LUXFER_LAW_CORRELATION = 1
+LUXFER_LAW_LATTICE = 2
+LUXFER_LAW_ROW = 3
+LUXFER_LAW_WHOLE = 4
+LUXFER_LAW_FREE = 5
+LUXFER_LAW_COPY = 6
 LUXFER_RENDER_BEAUTY = 0
 LUXFER_RENDER_VARIANCE = 1
 LUXFER_RENDER_PATHS = 2
@@ -674,7 +681,11 @@ class luxfer_emission_params(Structure):
         ("centred", c_uint32),
         ("candidates", c_uint32),
         ("reserved", c_uint32),
+        ("law", c_int32),
+        ("clean_lamps", c_uint32),
+        ("max_magnification", c_double),
     ]
+    enumerations: dict[str, type] = {"law": types.EmissionLaw}
 
 
 class luxfer_emission_report(Structure):
@@ -687,7 +698,12 @@ class luxfer_emission_report(Structure):
         ("regularity", c_double),
         ("exemplar_lamps", c_uint32),
         ("sampling_error", c_float),
+        ("law", c_int32),
+        ("runner_up", c_int32),
+        ("law_score", c_double),
+        ("margin", c_double),
     ]
+    enumerations: dict[str, type] = {"law": types.EmissionLaw, "runner_up": types.EmissionLaw}
     result = types.EmissionReport
 
 

@@ -254,6 +254,26 @@ class SegmentImage(IntEnum):
     channel."""
 
 
+class EmissionLaw(IntEnum):
+    """How the lights of an exemplar go on."""
+
+    BEST = 0
+    """The law that predicts the lamps of the photo best: that of their correlation, unless another is clearly
+    better."""
+    CORRELATION = 1
+    """The law that the correlation of the lights tells, by least_regularity."""
+    LATTICE = 2
+    """A lattice of two periods."""
+    ROW = 3
+    """A row of one period; the extent of the exemplar serves as the other."""
+    WHOLE = 4
+    """The exemplar repeats as a whole."""
+    FREE = 5
+    """Patches go anywhere."""
+    COPY = 6
+    """Of results only: the texture is a part of the exemplar, or was given."""
+
+
 class EmissionImage(IntEnum):
     """An image of the emission."""
 
@@ -1228,6 +1248,15 @@ class EmissionParams(TypedDict, total=False):
     candidates: int
     """Maximum number of candidate patches that are compared for each block, without a lattice, in [1, 65536];
     default 192."""
+    law: EmissionLaw | str | int
+    """How the lights go on: EmissionLaw other than EmissionLaw.COPY; default EmissionLaw.BEST."""
+    clean_lamps: int
+    """With 1, the default, lamps of a kind have one size and an outline that is exact at any resolution, and
+    lie at the sites of their lattice. Needs the photo and whole_lamps. With 0 each lamp is shown with the
+    outline of the mask."""
+    max_magnification: float
+    """Magnification of the photo up to which the exemplar is used, against its sharpest pixel and in length, in
+    [1, 1e6]: what is magnified more counts as not shown. Default 0: all of it is used."""
 
 
 @dataclass(frozen=True)
