@@ -1280,6 +1280,15 @@ class EmissionReport:
     for error, between the whole texture and parts of it that are as large as the exemplar. If error is at most
     twice this value, it does not indicate a bad texture. 0 if the texture shows only a part of the exemplar,
     for blended exemplars, and for a plan."""
+    law: EmissionLaw
+    """How the lights go on, and the law that would have been next best: EmissionLaw."""
+    runner_up: EmissionLaw
+    law_score: float
+    """How well the law predicts the lamps of the photo from each other, in [0, 1], each weighed by its photo
+    pixels; NaN where too few of the lights are whole lamps to tell."""
+    margin: float
+    """By how much that exceeds the score of the runner-up; below 0 where the law was kept though another scores
+    slightly better."""
 
 
 @dataclass(frozen=True)
