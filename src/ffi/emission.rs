@@ -115,7 +115,7 @@ pub struct luxfer_emission_params {
 // SAFETY: plain numbers.
 unsafe impl Versioned for luxfer_emission_params {
     const NAME: &'static str = "luxfer_emission_params";
-    const SIZES: &'static [usize] = &[88, 104];
+    const SIZES: &'static [usize] = &[104];
     fn defaults() -> Self {
         let d = emission::Params::default();
         Self {
@@ -207,7 +207,7 @@ pub struct luxfer_emission_report {
 // SAFETY: plain numbers.
 unsafe impl Versioned for luxfer_emission_report {
     const NAME: &'static str = "luxfer_emission_report";
-    const SIZES: &'static [usize] = &[32, 56];
+    const SIZES: &'static [usize] = &[56];
     fn defaults() -> Self {
         Self {
             struct_size: 56,
