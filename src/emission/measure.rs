@@ -1,6 +1,9 @@
 //! What an exemplar shows, for those who set the size of its pattern by its lamps.
 
 use super::agreement::statistics;
+use super::compose::layer::outlines;
+use super::exemplar::components::Component;
+use super::lamps::design::Designs;
 use super::lattice::continuation::Continuation;
 use super::params::{Input, Params};
 use super::reading::Reading;
@@ -35,9 +38,19 @@ pub fn measure(input: &Input, params: &Params, job: Job) -> Result<Measure> {
             nearest.get(nearest.len() / 2).copied().filter(|d| d.is_finite()).unwrap_or(0.0)
         }
     };
-    let mut lengths: Vec<usize> = exemplar.lamps().map(|lamp| lamp.size()[0].max(lamp.size()[1])).collect();
-    lengths.sort_unstable();
+    // Lamps that will be shown clean have the length of their design.
+    let designs = match params.whole_lamps && params.clean_lamps && input.photo.is_some() {
+        true => Designs::find(exemplar, &outlines(exemplar, input, job)?),
+        false => Designs::default(),
+    };
+    let whole = exemplar.components.list.iter().enumerate().filter(|(k, _)| exemplar.roles[*k].is_whole());
+    let length = |(k, lamp): (usize, &Component)| match designs.of(k) {
+        Some((design, _)) => 2.0 * design.half_box().max_element(),
+        None => lamp.size()[0].max(lamp.size()[1]) as f64,
+    };
+    let mut lengths: Vec<f64> = whole.map(length).collect();
+    lengths.sort_by(f64::total_cmp);
     let columns = (0..exemplar.width).filter(|&x| (0..exemplar.height).any(|y| exemplar.shown[y * exemplar.width + x]));
-    let (lamp_length, width) = (lengths.get(lengths.len() / 2).map_or(0.0, |&l| l as f64), columns.count() as f64);
+    let (lamp_length, width) = (lengths.get(lengths.len() / 2).copied().unwrap_or(0.0), columns.count() as f64);
     Ok(Measure { lamp_length, spacing, width, reading })
 }

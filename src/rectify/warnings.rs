@@ -22,7 +22,7 @@ const SIGNIFICANT: f64 = 3.0;
 /// Magnification of the photo beyond which the edge of a lamp is a guess. [judged on 38 photos]
 const SHARP_MAGNIFICATION: f64 = 4.0;
 /// Share of the plane that may be magnified beyond it. [judged on 38 photos]
-const MAX_MAGNIFIED: f64 = 0.6;
+const MAX_MAGNIFIED: f64 = 0.8;
 /// Sine of the angle between the plane and the rays that see it, for half of the plane. [judged on 38 photos]
 const MIN_INCIDENCE: f64 = 0.1;
 /// Pixels of the unwarped plane that are looked at, along each side.

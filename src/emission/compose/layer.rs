@@ -278,7 +278,7 @@ impl<'a> Setting<'a> {
 }
 
 /// The outlines of the components of an exemplar, in unwarped pixels.
-fn outlines(exemplar: &Exemplar, input: &Input, job: Job) -> Result<Vec<Luminaire>> {
+pub fn outlines(exemplar: &Exemplar, input: &Input, job: Job) -> Result<Vec<Luminaire>> {
     let coverage = |pixel: usize| exemplar.coverage(input.light, pixel);
     luminaires::find(&input.unwarped.to_rgb()?, &exemplar.components, &coverage, job)
 }
