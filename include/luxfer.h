@@ -1965,8 +1965,9 @@ typedef struct luxfer_emission_report {
      * exemplars, and for a plan.
      */
     float sampling_error;
-    /** How the lights go on, and the law that would have been next best: LUXFER_LAW_ values. */
+    /** How the lights go on: a LUXFER_LAW_ value. */
     luxfer_emission_law law;
+    /** The law that would have been next best: a LUXFER_LAW_ value. */
     luxfer_emission_law runner_up;
     /**
      * How well the law predicts the lamps of the photo from each other, in [0, 1], each weighed by its photo pixels;

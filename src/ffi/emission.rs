@@ -193,8 +193,9 @@ pub struct luxfer_emission_report {
     /// this value, it does not indicate a bad texture. 0 if the texture shows only a part of the exemplar, for blended
     /// exemplars, and for a plan.
     pub sampling_error: f32,
-    /// How the lights go on, and the law that would have been next best: LUXFER_LAW_ values.
+    /// How the lights go on: a LUXFER_LAW_ value.
     pub law: luxfer_emission_law,
+    /// The law that would have been next best: a LUXFER_LAW_ value.
     pub runner_up: luxfer_emission_law,
     /// How well the law predicts the lamps of the photo from each other, in [0, 1], each weighed by its photo pixels;
     /// NaN where too few of the lights are whole lamps to tell.

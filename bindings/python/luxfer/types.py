@@ -1281,8 +1281,9 @@ class EmissionReport:
     twice this value, it does not indicate a bad texture. 0 if the texture shows only a part of the exemplar,
     for blended exemplars, and for a plan."""
     law: EmissionLaw
-    """How the lights go on, and the law that would have been next best: EmissionLaw."""
+    """How the lights go on: EmissionLaw."""
     runner_up: EmissionLaw
+    """The law that would have been next best: EmissionLaw."""
     law_score: float
     """How well the law predicts the lamps of the photo from each other, in [0, 1], each weighed by its photo
     pixels; NaN where too few of the lights are whole lamps to tell."""
