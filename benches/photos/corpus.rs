@@ -93,7 +93,7 @@ fn truth(name: &str, record: &Value, [width, height]: [usize; 2]) -> Truth {
     let to_photo = matrix(&record["H_image_from_ceiling"]);
     let size = DVec2::new(width as f64, height as f64);
     let layout = to_photo.and_then(|map| layout(record, &listed, &measured, &lamps, &map, size));
-    Truth { lights, plane: None, lamps, layout, to_photo, is_trap: TRAPS.contains(&name) }
+    Truth { lights, plane: None, either: None, lamps, layout, to_photo, is_trap: TRAPS.contains(&name) }
 }
 
 /// The lamps in their plane: as measured there, else as the photo shows the whole ones.
@@ -111,7 +111,13 @@ fn layout(
     };
     let exact = [on_plane(measured), on_plane(listed)].concat();
     if !exact.is_empty() {
-        return Some(Lamps { whole: exact, others: Vec::new(), lit: lit(&record["luminaires_from_ceiling"]) });
+        return Some(Lamps {
+            whole: exact,
+            kinds: Vec::new(),
+            cut: Vec::new(),
+            others: Vec::new(),
+            lit: lit(&record["luminaires_from_ceiling"]),
+        });
     }
     let from_photo = to_photo.inverse();
     let is_whole = |p: &DVec2| p.min_element() > BORDER && (size - *p).min_element() > BORDER;
@@ -121,7 +127,7 @@ fn layout(
         corners.iter().all(|p| p.is_finite()).then(|| Shape::of(&corners, None)).flatten()
     };
     let whole: Vec<Shape> = whole.filter_map(shape).collect();
-    (!whole.is_empty()).then(|| Lamps { whole, others: Vec::new(), lit: None })
+    (!whole.is_empty()).then(|| Lamps { whole, kinds: Vec::new(), cut: Vec::new(), others: Vec::new(), lit: None })
 }
 
 /// The share of a lattice that is lit.
@@ -142,7 +148,7 @@ fn lamp(item: &Value) -> Option<Lamp> {
     let polygons: Vec<Vec<DVec2>> = drawn.chain([&item["px_polygon_clipped_to_image"]]).filter_map(polygon).collect();
     let first = polygons.first()?;
     let middle = first.iter().sum::<DVec2>() / first.len() as f64;
-    Some(Lamp { centre: point(&item["centre_px"]).unwrap_or(middle), polygons })
+    Some(Lamp { centre: point(&item["centre_px"]).unwrap_or(middle), polygons, pixels: Vec::new() })
 }
 
 /// The corners of a rectangle `[u0, u1, v0, v1]`, or the corners themselves.

@@ -2,8 +2,8 @@
 
 use super::masks::Mask;
 use super::outcome::Outcome;
-use super::shapes::Lamps;
-use super::truth::{Photo, Truth};
+use super::shapes::{Lamps, Shape, median};
+use super::truth::{Lamp, Photo, Truth};
 use glam::DVec2;
 use luxfer::geometry::Homography;
 use luxfer::rectify::Unwarped;
@@ -41,12 +41,16 @@ struct Limits {
     aspect: f64,
     spacing: f64,
     lit: f64,
+    /// Largest share of the lamps that may be of another kind than in truth.
+    kinds: f64,
 }
 
 /// A texture that anyone recognises as the photo's. [convention]
-const RIGHT: Limits = Limits { precision: 0.8, found: 0.9, area: 1.25, aspect: 1.25, spacing: 1.1, lit: 1.35 };
+const RIGHT: Limits =
+    Limits { precision: 0.8, found: 0.9, area: 1.25, aspect: 1.25, spacing: 1.1, lit: 1.35, kinds: 0.25 };
 /// A texture that needs a correction or two. [convention]
-const USABLE: Limits = Limits { precision: 0.5, found: 0.7, area: 2.0, aspect: 1.6, spacing: 1.3, lit: 2.0 };
+const USABLE: Limits =
+    Limits { precision: 0.5, found: 0.7, area: 2.0, aspect: 1.6, spacing: 1.3, lit: 2.0, kinds: 0.5 };
 
 /// Logarithms of the ratios of the texture's lamps to the true ones; absent where one side does not tell.
 #[derive(Clone, Copy, Debug, Default)]
@@ -61,6 +65,8 @@ pub struct Agreement {
     pub lit: Option<f64>,
     /// Larger of the two for the steps of the lattice, each against its own.
     pub lattice: Option<f64>,
+    /// Share of the lamps that are of another kind than in truth, where that has several.
+    pub kinds: Option<f64>,
 }
 
 impl Agreement {
@@ -72,7 +78,12 @@ impl Agreement {
         let spacing = |lamps: &Lamps| if lines { lamps.spacing_across() } else { lamps.spacing() };
         let lit = texture.lit.zip(truth.lit).map(|([lit, _], [low, high])| (lit / lit.clamp(low, high)).ln());
         let steps = texture.steps().zip(truth.steps());
+        let kinds = truth.by_kind();
+        if !kinds.is_empty() {
+            return Self { spacing: demanded(spacing(texture), spacing(truth)), lit, ..Self::by_kind(texture, &kinds) };
+        }
         Self {
+            kinds: None,
             area: if lines { demanded(texture.width(), truth.width()) } else { demanded(texture.area(), truth.area()) },
             aspect: if lines { None } else { ratio(texture.aspect(), truth.aspect()) },
             spacing: if truth.whole.len() < 3 {
@@ -85,12 +96,33 @@ impl Agreement {
         }
     }
 
+    /// Each lamp of the texture is held against the true kind that its area is nearest to.
+    fn by_kind(texture: &Lamps, kinds: &[[f64; 3]]) -> Self {
+        let nearest = |shape: &Shape| {
+            let off = |kind: &[f64; 3]| (shape.area / kind[0]).ln().abs();
+            (0..kinds.len()).min_by(|a, b| off(&kinds[*a]).total_cmp(&off(&kinds[*b]))).unwrap_or(0)
+        };
+        let assigned: Vec<(&Shape, usize)> = texture.whole.iter().map(|shape| (shape, nearest(shape))).collect();
+        if assigned.is_empty() {
+            return Self { area: Some(f64::INFINITY), ..Self::default() };
+        }
+        let share = |kind: usize| assigned.iter().filter(|(_, k)| *k == kind).count() as f64 / assigned.len() as f64;
+        let off = kinds.iter().enumerate().map(|(kind, [.., truth])| (share(kind) - truth).abs()).sum::<f64>() / 2.0;
+        Self {
+            area: median(assigned.iter().map(|(shape, kind)| (shape.area / kinds[*kind][0]).ln())),
+            aspect: median(assigned.iter().map(|(shape, kind)| (shape.aspect() / kinds[*kind][1]).ln())),
+            kinds: Some(off),
+            ..Self::default()
+        }
+    }
+
     fn is_within(&self, limits: &Limits) -> bool {
         let within = |value: Option<f64>, factor: f64| value.is_none_or(|v| v.abs() <= factor.ln());
         within(self.area, limits.area)
             && within(self.aspect, limits.aspect)
             && within(self.spacing, limits.spacing)
             && within(self.lit, limits.lit)
+            && self.kinds.is_none_or(|off| off <= limits.kinds)
     }
 }
 
@@ -124,7 +156,7 @@ impl Judgement {
             precision: has_lamps.then(|| lights.as_ref().map_or(0.0, |lights| precision(lights, truth))),
             found: has_lamps.then(|| lights.as_ref().map_or(0.0, |lights| found(lights, truth))),
             lights_iou: lights.filter(|_| truth.plane.is_some()).map(|lights| lights.iou(&truth.lights)),
-            plane_iou: plane.zip(truth.plane.as_ref()).map(|(plane, truth)| plane.iou(truth)),
+            plane_iou: plane.as_ref().and_then(|plane| plane_iou(plane, truth)),
             unwarp: results.unwarped.as_ref().zip(truth.to_photo).and_then(|(unwarped, map)| deviation(unwarped, &map)),
             agreement,
             verdict: Verdict::Unjudged,
@@ -155,9 +187,22 @@ fn precision(lights: &Mask, truth: &Truth) -> f64 {
     lights.common(&truth.lights.dilated(NEAR)) as f64 / lights.count().max(1) as f64
 }
 
-/// Share of the lamps whose centre lies in a mask.
+/// Share of the lamps whose centre lies in a mask, or half of whose pixels where these are known.
 fn found(lights: &Mask, truth: &Truth) -> f64 {
-    truth.lamps.iter().filter(|lamp| lights.holds(lamp.centre)).count() as f64 / truth.lamps.len() as f64
+    let is_found = |lamp: &&Lamp| match lamp.pixels.len() {
+        0 => lights.holds(lamp.centre),
+        count => 2 * lamp.pixels.iter().filter(|&&i| lights.on[i as usize]).count() >= count,
+    };
+    truth.lamps.iter().filter(is_found).count() as f64 / truth.lamps.len() as f64
+}
+
+/// Intersection over union with the true plane, over the pixels that are plane or not.
+fn plane_iou(plane: &Mask, truth: &Truth) -> Option<f64> {
+    let mut plane = plane.clone();
+    if let Some(either) = &truth.either {
+        plane.on.iter_mut().zip(&either.on).for_each(|(on, either)| *on &= !either);
+    }
+    truth.plane.as_ref().map(|truth| plane.iou(truth))
 }
 
 /// Root mean square distance of unwarped points, as far as the plane is seen, from the best similar figure of the true ones,

@@ -33,15 +33,25 @@ impl Outcome {
     }
 
     /// Runs the stages from one on up to the emissive texture.
-    pub fn from(mut transfer: Transfer, first: Stage) -> Self {
+    pub fn from(transfer: Transfer, first: Stage) -> Self {
+        Self::between(transfer, first, Stage::Emission)
+    }
+
+    fn between(mut transfer: Transfer, first: Stage, last: Stage) -> Self {
         let mut seconds = 0.0;
         let (cpu_seconds, failure) = time(Clock::Process, || {
             let job = Monitor::default();
-            let (wall, result) = time(Clock::Wall, || transfer.run(first, Stage::Emission, job.job(), |_| {}));
+            let (wall, result) = time(Clock::Wall, || transfer.run(first, last, job.job(), |_| {}));
             seconds = wall;
             result.err().map(|e| e.to_string())
         });
         Self { transfer, failure, seconds, cpu_seconds }
+    }
+
+    /// Runs the stages up to the masks only.
+    pub fn masks(photo: &Photo) -> Self {
+        let input = Input { photo: Some(photo.image.clone()), strokes: photo.strokes.clone(), ..Input::default() };
+        Self::between(Transfer { input, ..Transfer::default() }, Stage::View, Stage::Lights)
     }
 
     /// Solves for the light's strength and renders the room, for people to look at.
@@ -79,14 +89,16 @@ impl Outcome {
 fn lamps(emission: &Emission, unit: f64) -> Lamps {
     let size = DVec2::new(emission.mask.width as f64, emission.mask.height as f64);
     let is_whole = |p: &DVec2| p.min_element() > 0.0 && (size - *p).min_element() > 0.0;
-    let whole = emission.luminaires.iter().filter(|lamp| lamp.outline.iter().all(is_whole));
     let shape = |outline: &[DVec2], area: f64| {
         let outline: Vec<DVec2> = outline.iter().map(|p| *p * unit).collect();
         Shape::of(&outline, Some(area * unit * unit))
     };
-    let whole = whole.filter_map(|lamp| shape(&lamp.outline, lamp.area)).collect();
+    let of = |whole: bool| -> Vec<Shape> {
+        let wanted = emission.luminaires.iter().filter(|lamp| lamp.outline.iter().all(is_whole) == whole);
+        wanted.filter_map(|lamp| shape(&lamp.outline, lamp.area)).collect()
+    };
     let lit = emission.mask.data.iter().map(|&m| f64::from(m)).sum::<f64>() / emission.mask.data.len() as f64;
-    Lamps { whole, others: Vec::new(), lit: Some([lit; 2]) }
+    Lamps { whole: of(true), cut: of(false), lit: Some([lit; 2]), ..Lamps::default() }
 }
 
 /// What a transfer onto the ceiling of a scene starts from.

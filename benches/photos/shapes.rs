@@ -53,6 +53,10 @@ impl Shape {
 pub struct Lamps {
     /// The lamps that are seen whole.
     pub whole: Vec<Shape>,
+    /// The kind of each of these, where known.
+    pub kinds: Vec<usize>,
+    /// Lamps that the border of a texture cuts: lines are compared by these too.
+    pub cut: Vec<Shape>,
     /// Centres of further lamps, which are cut or hidden in part: they say how far apart lamps are.
     pub others: Vec<DVec2>,
     /// Least and largest share of the plane that may be said to be lit.
@@ -65,12 +69,30 @@ impl Lamps {
         median(self.whole.iter().map(Shape::aspect)).is_some_and(|aspect| aspect > LINE_ASPECT)
     }
 
+    /// Of each kind, if there are several: median area, median aspect ratio, and share of the lamps.
+    pub fn by_kind(&self) -> Vec<[f64; 3]> {
+        let last = self.kinds.iter().max().copied().unwrap_or(0);
+        let of =
+            |kind: usize| self.whole.iter().zip(&self.kinds).filter(move |(_, k)| **k == kind).map(|(shape, _)| shape);
+        let kinds = (0..=last).filter(|_| last > 0).filter_map(|kind| {
+            let share = of(kind).count() as f64 / self.whole.len() as f64;
+            Some([median(of(kind).map(|s| s.area))?, median(of(kind).map(Shape::aspect))?, share])
+        });
+        kinds.collect()
+    }
+
     pub fn area(&self) -> Option<f64> {
         median(self.whole.iter().map(|s| s.area))
     }
 
+    /// All that is known of lines.
+    fn lines(&self) -> impl Iterator<Item = &Shape> {
+        self.whole.iter().chain(&self.cut)
+    }
+
+    /// Median width of lines.
     pub fn width(&self) -> Option<f64> {
-        median(self.whole.iter().map(|s| s.sides.y))
+        median(self.lines().map(|s| s.sides.y))
     }
 
     pub fn aspect(&self) -> Option<f64> {
@@ -94,7 +116,7 @@ impl Lamps {
             let overlaps = apart.dot(a.axis).abs() < (a.sides.x + b.sides.x) / 2.0;
             (overlaps && across > a.sides.y + b.sides.y).then_some(across)
         };
-        median(self.whole.iter().filter_map(|a| self.whole.iter().filter_map(|b| beside(a, b)).min_by(f64::total_cmp)))
+        median(self.lines().filter_map(|a| self.lines().filter_map(|b| beside(a, b)).min_by(f64::total_cmp)))
     }
 
     /// Lengths of the two shortest steps from lamp to lamp that are not along one line, the shorter first: the periods of a

@@ -87,7 +87,7 @@ pub fn save(image: &Image, name: &str) {
 }
 
 /// The photo with its strokes: plane green, elsewhere dark red, lights yellow, no lights blue.
-fn strokes(photo: &Photo) -> Image {
+pub fn strokes(photo: &Photo) -> Image {
     let mut image = (*photo.image).clone();
     let mut draw = |strokes: &[Stroke], positive: Vec3, negative: Vec3| {
         for stroke in strokes {

@@ -101,6 +101,24 @@ impl Tally {
         table.print(title);
     }
 
+    /// Counts of the verdicts by the pattern that a generated photo's name ends in.
+    pub fn by_pattern(&self) {
+        let pattern = |line: &Line| line.name.split('_').nth(1).unwrap_or_default().to_string();
+        let mut patterns: Vec<String> = self.lines.iter().map(pattern).collect();
+        patterns.sort();
+        patterns.dedup();
+        let mut table = Table::new(["pattern", "photos", "right", "usable", "wrong"]);
+        for name in patterns {
+            let of = |verdict: Option<Verdict>| {
+                let is = |line: &&Line| pattern(line) == name && verdict.is_none_or(|v| line.judgement.verdict == v);
+                self.lines.iter().filter(is).count().to_string()
+            };
+            let verdicts = [Verdict::Right, Verdict::Usable, Verdict::Wrong].map(|v| of(Some(v)));
+            table.row([name.clone(), of(None)].into_iter().chain(verdicts));
+        }
+        table.print("By pattern");
+    }
+
     /// Values that a run may have, of all that have one.
     pub fn values(&self, of: impl Fn(&Line) -> Option<f64>) -> Vec<f64> {
         self.lines.iter().filter_map(of).collect()

@@ -24,6 +24,8 @@ pub struct Lamp {
     /// In photo pixels.
     pub centre: DVec2,
     pub polygons: Vec<Vec<DVec2>>,
+    /// Its pixels (`y * width + x`), where they are known one by one.
+    pub pixels: Vec<u32>,
 }
 
 #[derive(Clone, Debug)]
@@ -32,6 +34,8 @@ pub struct Truth {
     pub lights: Mask,
     /// Pixels of the plane with its lamps, where known.
     pub plane: Option<Mask>,
+    /// Pixels that may be taken for the plane or not, as of beams under a ceiling.
+    pub either: Option<Mask>,
     pub lamps: Vec<Lamp>,
     /// The lamps in their plane, where the camera is known; 1 is the distance of the camera from the plane.
     pub layout: Option<Lamps>,
